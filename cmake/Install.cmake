@@ -1,0 +1,23 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
+install(TARGETS trussmap EXPORT trussmapTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/trussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT trussmapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
+configure_package_config_file(cmake/trussmapConfig.cmake.in
+                              ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
+                              INSTALL_DESTINATION ${config_dir})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
+              cmake/FindCholmod.cmake
+        DESTINATION ${config_dir})
+if(TARGET trussmap_command)
+  install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The plane: angles, rotations and poses.
+//
+//   x, y      position                                   m     map frame
+//   heading   angle of the robot's forward axis, counter-clockwise from +x   rad
+//
+// A pose T = (x, y, heading) stands for the motion that carries the map frame onto the robot:
+// compose(A, B) drives A first and then B, with B given in A's frame.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace trussmap {
+
+using Vector2 = Eigen::Vector2d;
+using Matrix2 = Eigen::Matrix2d;
+using Matrix3 = Eigen::Matrix3d;
+
+struct Pose {
+  double x = 0.0;        ///< m
+  double y = 0.0;        ///< m
+  double heading = 0.0;  ///< rad, not wrapped: whole turns are kept
+
+  [[nodiscard]] Vector2 position() const { return {x, y}; }
+};
+
+/// The angle's representative in (-pi, pi].
+[[nodiscard]] double wrap_angle(double angle);
+
+/// The angle's representative within half a turn of `reference`.
+[[nodiscard]] double unwrap_near(double angle, double reference);
+
+/// Direction of a vector, atan2(y, x), in (-pi, pi].
+[[nodiscard]] double direction(const Vector2& vector);
+
+/// The vector turned by a quarter turn counter-clockwise.
+[[nodiscard]] Vector2 quarter_turn(const Vector2& vector);
+
+/// R(angle): R * v turns v counter-clockwise.
+[[nodiscard]] Matrix2 rotation(double angle);
+
+/// R(angle) acting on (x, y), leaving the heading alone: carries 3x3 pose covariances over.
+[[nodiscard]] Matrix3 pose_rotation(double angle);
+
+/// First `a`, then `b` as seen from where `a` ended.
+[[nodiscard]] Pose compose(const Pose& a, const Pose& b);
+
+[[nodiscard]] Pose inverse(const Pose& pose);
+
+/// `to` as seen from `from`; the heading difference is not wrapped.
+[[nodiscard]] Pose relative(const Pose& from, const Pose& to);
+
+/// Symmetric part, to keep rounding from spoiling a covariance.
+[[nodiscard]] Matrix3 symmetrised(const Matrix3& matrix);
+
+}  // namespace trussmap

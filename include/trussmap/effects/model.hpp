@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What is believed of a robot: its geometry, its noise, and the physical effects in its odometry.
+// The TOML file of the same shape is read and written by io/model_toml.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct Robot {
+  double wheelbase = 0.34;  ///< m, nominal
+};
+
+/// Standard deviations. Wheel noise as Chong & Kleeman (1997), eq. 4: the variance of a wheel's
+/// travel is k^2 |travel|.
+struct Noise {
+  double left = 0.003;           ///< k_L, m^(1/2)
+  double right = 0.003;          ///< k_R, m^(1/2)
+  double compass = 0.02;         ///< rad per reading
+  double sighting = 0.005;       ///< m per coordinate, standing on a landmark
+  double range = 0.05;           ///< m per range reading
+  double bearing = 0.02;         ///< rad per bearing reading
+  double survey = 0.001;         ///< m per coordinate
+  double truth = 0.002;          ///< m per coordinate of a truth row
+  double truth_heading = 0.005;  ///< rad per truth row
+  double range_relative = 0.0;   ///< fraction of the range, added to `range` in quadrature
+  double heading_per_s = 0.0;    ///< rad/s^(1/2)
+  double heading_per_rad = 0.0;  ///< rad/rad^(1/2) turned
+  double travel_per_s = 0.0;     ///< m/s^(1/2)
+};
+
+/// Channel x shape: each coefficient scales one shape expression.
+struct Effect {
+  std::string name;
+  std::string channel;
+  std::vector<std::string> shape;
+  std::vector<double> coefficients;  ///< empty until fitted
+  bool per_session = false;          ///< one set of coefficients per recording
+};
+
+struct Model {
+  Robot robot;
+  Noise noise;
+  std::vector<Effect> effects;  ///< in the order they were added
+};
+
+}  // namespace trussmap

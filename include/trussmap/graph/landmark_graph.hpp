@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The relational graph of landmarks and routes: the map as knowledge, before any mechanics.
+//
+// Landmarks are numbered 0, 1, ... in the order they are added and have unique names; routes are
+// numbered likewise, join two different landmarks, and there is at most one between a pair. The
+// graph itself is a Boost.Graph adjacency list, open for its algorithms through boost_graph().
+#pragma once
+
+#include "trussmap/core/planar.hpp"
+#include "trussmap/graph/route.hpp"
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <boost/graph/adjacency_list.hpp>
+
+namespace trussmap {
+
+struct Landmark {
+  std::string name;
+  Vector2 position = Vector2::Zero();  ///< m
+  std::optional<Matrix2> covariance;   ///< of the position, m^2, where known
+};
+
+class LandmarkGraph {
+ public:
+  /// Vertex property: Landmark. Edge property: the route's number.
+  using BoostGraph =
+      boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, Landmark, int>;
+
+  /// Throws std::invalid_argument if the name is empty or taken.
+  int add_landmark(const std::string& name, const Vector2& position);
+
+  /// A route without traversals yet. Throws std::invalid_argument if the two are the same
+  /// landmark, unknown, or joined already.
+  int add_route(int source, int target);
+
+  /// Takes the drive from `from` to `to` into the averages of their route, which is added if
+  /// there is none (its direction is then from -> to). Returns the route.
+  int add_traversal(int from, int to, const Traversal& traversal);
+
+  [[nodiscard]] int landmarks() const;
+  [[nodiscard]] int routes() const { return static_cast<int>(routes_.size()); }
+  [[nodiscard]] const Landmark& landmark(int number) const;
+  [[nodiscard]] Landmark& landmark(int number);
+  [[nodiscard]] const Route& route(int number) const;
+  [[nodiscard]] Route& route(int number);
+
+  [[nodiscard]] std::optional<int> find(const std::string& name) const;
+  [[nodiscard]] std::optional<int> route_between(int a, int b) const;
+  [[nodiscard]] std::vector<int> routes_at(int landmark) const;
+
+  [[nodiscard]] const BoostGraph& boost_graph() const { return graph_; }
+
+ private:
+  BoostGraph graph_;
+  std::vector<Route> routes_;
+  std::unordered_map<std::string, int> numbers_;
+};
+
+/// The landmark at the other end of the route.
+[[nodiscard]] int other_end(const Route& route, int landmark);
+
+}  // namespace trussmap

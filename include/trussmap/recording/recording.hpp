@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a robot recorded: the wheels' travel, the compass, the landmarks it recognised, and what
+// somebody measured independently. Plain data, exactly as in the CSV streams.
+//
+//   drive      one row per odometry interval, which ends at t            columns, one value a row
+//   sightings  at time t the robot recognised a landmark
+//   survey     independently measured landmark positions
+//   truth      independently measured robot poses
+//
+// Absent values are NaN: a compass reading, a range (the robot stands on the landmark), a survey
+// point's sd (the model's applies). Several recordings together are sessions of the same robot in
+// the same place: landmarks of the same name are the same, poses are not.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+struct Covariate {
+  std::string name;            ///< a letter, then letters, digits, _
+  std::vector<double> values;  ///< one per drive row, in the column's own unit
+};
+
+struct Drive {
+  std::vector<double> t;        ///< s, strictly increasing; end of the row's interval
+  std::vector<double> left;     ///< m, signed travel of the left wheel over the interval
+  std::vector<double> right;    ///< m
+  std::vector<double> heading;  ///< rad, compass reading at t, NaN = none; empty = no compass
+  std::vector<Covariate> covariates;
+
+  [[nodiscard]] std::size_t rows() const { return t.size(); }
+  [[nodiscard]] bool has_compass() const { return !heading.empty(); }
+  /// Start of the first interval: it is as long as the second.
+  [[nodiscard]] double start() const { return rows() > 1 ? t[0] - (t[1] - t[0]) : t[0]; }
+};
+
+struct Sighting {
+  double t = 0.0;  ///< s
+  std::string landmark;
+  double range = kAbsent;    ///< m; NaN: the robot stands on the landmark
+  double bearing = kAbsent;  ///< rad, from the robot's forward axis
+
+  [[nodiscard]] bool standing() const { return range != range; }
+};
+
+struct SurveyPoint {
+  std::string landmark;
+  double x = 0.0;       ///< m
+  double y = 0.0;       ///< m
+  double sd = kAbsent;  ///< m per coordinate; NaN: the model's `survey`
+};
+
+struct TruthRow {
+  double t = 0.0;        ///< s
+  double x = 0.0;        ///< m
+  double y = 0.0;        ///< m
+  double heading = 0.0;  ///< rad
+};
+
+struct Recording {
+  std::string name;  ///< where it came from, for messages
+  Drive drive;
+  std::vector<Sighting> sightings;  ///< in order of time
+  std::vector<SurveyPoint> survey;
+  std::vector<TruthRow> truth;  ///< in order of time
+};
+
+}  // namespace trussmap

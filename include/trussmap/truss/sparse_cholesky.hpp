@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Sparse Cholesky factorisation of a symmetric positive definite matrix (CHOLMOD behind it).
+//
+//   A   n x n, of which only the LOWER triangle is read
+//   L   its factor under a fill-reducing permutation
+//
+// analyse once per structure, factorise for every set of values, solve as often as wanted. A live
+// factor can be changed by a low-rank update, A + W W', without factorising anew.
+//
+// Not copyable; one object is used by one thread at a time, different objects by any threads.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+
+#include <Eigen/SparseCore>
+
+namespace trussmap {
+
+/// Column-major, int indices: CHOLMOD's own layout.
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+enum class Ordering { automatic, amd, metis, natural };
+
+/// Thrown by factorise: the matrix is not positive definite. `column` is that of A at which the
+/// factorisation broke down.
+class NotPositiveDefinite : public std::runtime_error {
+ public:
+  explicit NotPositiveDefinite(int column)
+      : std::runtime_error("the matrix is not positive definite"), column_(column) {}
+  [[nodiscard]] int column() const { return column_; }
+
+ private:
+  int column_;
+};
+
+class SparseCholesky {
+ public:
+  explicit SparseCholesky(Ordering ordering = Ordering::automatic);
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  /// Ordering and symbolic factorisation for this pattern (values are ignored).
+  void analyse(const SparseMatrix& lower);
+
+  /// Numerical factorisation; the pattern must be the one analysed. Throws NotPositiveDefinite.
+  void factorise(const SparseMatrix& lower);
+
+  /// A x = b for each column of b. Call after factorise.
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+
+  /// Makes the factor that of A + W W' (n x k, few columns). The factor becomes simplicial LDL'.
+  void update(const SparseMatrix& w);
+
+  /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
+  [[nodiscard]] double reciprocal_condition() const;
+
+  /// Nonzeros of L as stored.
+  [[nodiscard]] double factor_nonzeros() const;
+
+ private:
+  struct Cholmod;
+  std::unique_ptr<Cholmod> cholmod_;
+};
+
+}  // namespace trussmap
