@@ -1,6 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "trussmap/core/error.hpp"
+
 #include <cstdio>
-int main() {
-  std::puts("trussmap");
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+int complain(const std::exception& error, int status) {
+  std::fprintf(stderr, "trussmap: %s\n", error.what());
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "trussmap 0.1.0");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    return complain(error, kBadInput);
+  } catch (const trussmap::InputError& error) {
+    return complain(error, kBadInput);
+  } catch (const trussmap::app::UsageError& error) {
+    return complain(error, kBadInput);
+  } catch (const std::exception& error) {
+    return complain(error, kFailed);
+  }
+  return 0;
 }

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The sub-commands. Each has a file of its own, command_NAME.cpp, with its options, its
+// setup_NAME, which registers it, and the function that runs it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace trussmap::app {
+
+// A command's callback throws: InputError and UsageError end with status 2, anything else with 1.
+
+/// Options that fit each other badly, or a value out of range: one line, status 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace trussmap::app
