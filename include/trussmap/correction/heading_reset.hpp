@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Without a compass: the heading is dead-reckoned, and taken from the map again whenever the robot
+// has driven a route that the map knows.
+//
+//   V           variance of the heading accumulated since the last reset                 rad^2
+//   W           variance of the route's orientation, from the map and this traversal     rad^2
+//   innovation  orientation of the route in the map - measured orientation               rad
+//   gain        V/(V + W);   heading += gain innovation,   V *= 1 - gain
+//
+// Landmark positions alone do not carry the heading; with this reset the elastic truss stays
+// bounded, without it its errors grow for ever.
+#pragma once
+
+#include "trussmap/core/planar.hpp"
+#include "trussmap/graph/route.hpp"
+#include "trussmap/odometry/arc.hpp"
+
+namespace trussmap {
+
+struct HeadingEstimate {
+  double heading = 0.0;   ///< rad, map frame
+  double variance = 0.0;  ///< V, rad^2
+};
+
+/// A motion (in the frame of its start) turned into map axes: the displacement's covariance gets
+/// the start heading's variance across the displacement.
+[[nodiscard]] Traversal in_map_axes(const Motion& motion, const HeadingEstimate& start);
+
+/// Heading at the motion's end, dead-reckoned.
+[[nodiscard]] HeadingEstimate advanced(const HeadingEstimate& start, const Motion& motion);
+
+/// Variance of a vector's direction: its covariance across it over its squared length, rad^2.
+[[nodiscard]] double direction_variance(const Vector2& vector, const Matrix2& covariance);
+
+/// The reset. `route_variance` = W, `innovation` is wrapped here.
+[[nodiscard]] HeadingEstimate reset_heading(const HeadingEstimate& heading, double innovation,
+                                            double route_variance);
+
+}  // namespace trussmap
