@@ -60,11 +60,21 @@ void check(const Traversal& leg) {
 
 class MapBuilder::State {
  public:
-  explicit State(const MapBuilderOptions& options) : options_(options) {
-    if (options.eta.kind == Eta::Kind::fixed && options.eta.count < 2) {
+  explicit State(const MapBuilderOptions& options) : options_(options) { check_options(); }
+
+  void set_options(const MapBuilderOptions& options) {
+    if (options.method != options_.method || options.eta.kind != options_.eta.kind) {
+      throw std::invalid_argument("a map builder keeps its method and its kind of eta");
+    }
+    State(options).check_options();
+    options_ = options;
+  }
+
+  void check_options() const {
+    if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < 2) {
       throw std::invalid_argument("eta must be 2 landmarks at least");
     }
-    if (!(options.gain_limit > 0.0 && options.gain_limit <= 1.0)) {
+    if (!(options_.gain_limit > 0.0 && options_.gain_limit <= 1.0)) {
       throw std::invalid_argument("the gain limit must be in (0, 1]");
     }
   }
@@ -388,6 +398,8 @@ Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_h
 const MapBuilderOptions& MapBuilder::options() const {
   return state_->options();
 }
+void MapBuilder::set_options(const MapBuilderOptions& options) { state_->set_options(options); }
+
 int MapBuilder::here() const {
   return state_->here();
 }

@@ -87,6 +87,10 @@ class MapBuilder {
 
   [[nodiscard]] const MapBuilderOptions& options() const;
 
+  /// Changes what refinements do from now on. The method and the kind of eta must stay as they
+  /// are, else std::invalid_argument.
+  void set_options(const MapBuilderOptions& options);
+
   /// Landmark the robot stands on, -1 before start().
   [[nodiscard]] int here() const;
 
