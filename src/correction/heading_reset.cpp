@@ -4,20 +4,6 @@
 
 namespace trussmap {
 
-Traversal in_map_axes(const Motion& motion, const HeadingEstimate& start) {
-  const Matrix2 R = rotation(start.heading);
-  Traversal traversal;
-  traversal.displacement = R * motion.displacement.position();
-  const Vector2 swing = quarter_turn(traversal.displacement);
-  traversal.covariance = R * motion.covariance.topLeftCorner<2, 2>() * R.transpose() +
-                         start.variance * swing * swing.transpose();
-  return traversal;
-}
-
-HeadingEstimate advanced(const HeadingEstimate& start, const Motion& motion) {
-  return {start.heading + motion.displacement.heading, start.variance + motion.covariance(2, 2)};
-}
-
 double direction_variance(const Vector2& vector, const Matrix2& covariance) {
   const double length2 = vector.squaredNorm();
   const Vector2 across = quarter_turn(vector);

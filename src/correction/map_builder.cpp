@@ -398,7 +398,9 @@ Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_h
 const MapBuilderOptions& MapBuilder::options() const {
   return state_->options();
 }
-void MapBuilder::set_options(const MapBuilderOptions& options) { state_->set_options(options); }
+void MapBuilder::set_options(const MapBuilderOptions& options) {
+  state_->set_options(options);
+}
 
 int MapBuilder::here() const {
   return state_->here();

@@ -4,10 +4,10 @@
 // Which landmarks are nearest to a point: a spatial index that follows the landmarks about.
 #pragma once
 
+#include "trussmap/core/planar.hpp"
+
 #include <memory>
 #include <vector>
-
-#include "trussmap/core/planar.hpp"
 
 namespace trussmap {
 

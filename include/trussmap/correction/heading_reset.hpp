@@ -14,22 +14,9 @@
 #pragma once
 
 #include "trussmap/core/planar.hpp"
-#include "trussmap/graph/route.hpp"
-#include "trussmap/odometry/arc.hpp"
+#include "trussmap/odometry/dead_reckoning.hpp"
 
 namespace trussmap {
-
-struct HeadingEstimate {
-  double heading = 0.0;   ///< rad, map frame
-  double variance = 0.0;  ///< V, rad^2
-};
-
-/// A motion (in the frame of its start) turned into map axes: the displacement's covariance gets
-/// the start heading's variance across the displacement.
-[[nodiscard]] Traversal in_map_axes(const Motion& motion, const HeadingEstimate& start);
-
-/// Heading at the motion's end, dead-reckoned.
-[[nodiscard]] HeadingEstimate advanced(const HeadingEstimate& start, const Motion& motion);
 
 /// Variance of a vector's direction: its covariance across it over its squared length, rad^2.
 [[nodiscard]] double direction_variance(const Vector2& vector, const Matrix2& covariance);
