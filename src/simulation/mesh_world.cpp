@@ -25,6 +25,7 @@ void require_increasing(const std::vector<double>& lines) {
 
 std::vector<double> even_lines(int count, double spacing) {
   std::vector<double> lines;
+  lines.reserve(idx(count));
   for (int k = 0; k < count; ++k) lines.push_back(k * spacing);
   return lines;
 }
@@ -48,6 +49,9 @@ MeshSize parse_mesh_size(std::string_view text) {
 }
 
 Mesh even_mesh(MeshSize size, double spacing) {
+  if (size.columns < 1 || size.rows < 1) {
+    throw std::invalid_argument("a mesh has one line or more each way");
+  }
   if (!std::isfinite(spacing) || spacing <= 0.0) {
     throw std::invalid_argument("a mesh's spacing must be above 0 m");
   }
@@ -79,11 +83,13 @@ Mesh mesh_of_lines(const std::vector<double>& x, const std::vector<double>& y) {
 
 std::vector<double> random_lines(int count, double shortest, double longest,
                                  std::mt19937_64& random) {
+  if (count < 1) throw std::invalid_argument("a mesh has one line or more each way");
   if (!std::isfinite(longest) || shortest <= 0.0 || longest < shortest) {
     throw std::invalid_argument("gaps between a mesh's lines must be above 0 m, shortest first");
   }
   std::uniform_real_distribution<double> gap(shortest, longest);
   std::vector<double> lines;
+  lines.reserve(idx(count));
   for (int k = 0; k < count; ++k) lines.push_back(k == 0 ? 0.0 : lines.back() + gap(random));
   return lines;
 }

@@ -145,7 +145,6 @@ std::vector<int> euler_walk(const Mesh& mesh, std::mt19937_64& random) {
       trail.push_back(chosen.to);
     }
   }
-  std::reverse(walk.begin(), walk.end());  // so that the first choice is the first drive
   return walk;
 }
 

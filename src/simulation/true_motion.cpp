@@ -12,6 +12,9 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -237,7 +240,7 @@ void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing)
   for (std::size_t k = 0; k < walk.size(); ++k) {
     require(walk[k] >= 0 && walk[k] < mesh.landmarks(), "a walk keeps to the mesh's landmarks");
     require(k == 0 || mesh.displacement(walk[k - 1], walk[k]).norm() >= least,
-            "successive landmarks of a walk must be " + std::to_string(least) + " m apart");
+            fmt::format("successive landmarks of a walk must be at least {:g} m apart", least));
   }
 }
 

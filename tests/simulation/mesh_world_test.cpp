@@ -101,6 +101,8 @@ TEST(Mesh, RefusesWhatIsNoMesh) {
   std::mt19937_64 random(7);
   EXPECT_THROW((void)even_mesh({6, 6}, 0.0), std::invalid_argument);
   EXPECT_THROW((void)even_mesh({1, 1}, 1.0), std::invalid_argument);
+  EXPECT_THROW((void)even_mesh({-2, -3}, 1.0), std::invalid_argument);
+  EXPECT_THROW((void)random_lines(0, 1.0, 2.0, random), std::invalid_argument);
   EXPECT_THROW((void)mesh_of_lines({0.0, 1.0, 1.0}, {0.0}), std::invalid_argument);
   EXPECT_THROW((void)random_lines(3, 2.0, 1.0, random), std::invalid_argument);
   EXPECT_THROW((void)jittered(even_mesh({2, 2}, 1.0), 0.5, random), std::invalid_argument);

@@ -80,7 +80,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return name_of(test.param.size); });
 
 TEST(EulerWalkChoice, IsUniformAtTheStart) {
-  // The first drive from the corner goes either way with probability 1/2: of n = 4000 walks
+  // Two routes meet at the corner, and the walk begins with the one that was not chosen first. So
+  // it goes either way with probability 1/2: of n = 4000 walks
   // n/2 +- 4 sqrt(n)/2 (4 standard deviations) go along +x.
   const Mesh mesh = even_mesh({6, 6}, 1.0);
   std::mt19937_64 random(12);

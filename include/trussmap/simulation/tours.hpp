@@ -34,7 +34,10 @@ enum class WalkKind { euler, face_by_face, depth_first, random };
 
 /// Closed walk from v0 over every route once, the doubled ones twice: Hierholzer's algorithm, at
 /// every landmark a uniform choice among the routes still to be driven (a doubled one counts twice
-/// until it is driven).
+/// until it is driven). It is driven in the order in which the algorithm settles it, the last
+/// choice first. The reference curves decided that: driven the other way round, loops close
+/// differently, and elastic_printed is off by 0.199 m after the first tour instead of 0.241 m (6x6,
+/// 200 seeds; reference 0.242 +- 0.020 m).
 [[nodiscard]] std::vector<int> euler_walk(const Mesh& mesh, std::mt19937_64& random);
 
 /// From v0, round each face counter-clockwise. On a line of landmarks: from end to end.
