@@ -17,4 +17,6 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void setup_simulate(CLI::App& app);
+
 }  // namespace trussmap::app
