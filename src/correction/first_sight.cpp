@@ -13,6 +13,7 @@ std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses
                                          const Vector2& imposed) {
   if (stiffnesses.empty()) throw std::invalid_argument("a chain has at least one bar");
   std::vector<Matrix2> compliances;  // S_1 ... S_n
+  compliances.reserve(stiffnesses.size());
   Matrix2 sum = Matrix2::Zero();
   for (const Matrix2& B : stiffnesses) {
     sum += B.inverse();
@@ -20,6 +21,7 @@ std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses
   }
   const Vector2 force = sum.inverse() * imposed;
   std::vector<Vector2> result;
+  result.reserve(compliances.size());
   for (const Matrix2& S : compliances) result.push_back(S * force);
   result.back() = imposed;
   return result;

@@ -107,6 +107,17 @@ class MapBuilder::State {
     return refine(arrival, leg);
   }
 
+  double settle() {
+    double largest = 0.0;
+    for (int number = 0; number < graph_.routes(); ++number) {
+      Arrival arrival;
+      arrival.route = number;
+      make(refinement_moves(graph_.route(number), arrival), arrival);
+      largest = std::max(largest, arrival.largest_move);
+    }
+    return largest;
+  }
+
   void stand_on(int landmark) { here_ = landmark; }
 
   [[nodiscard]] Vector2 position(int landmark) const { return stored(landmark) + offset_; }
@@ -253,7 +264,7 @@ class MapBuilder::State {
     }
     std::vector<int> members(idx(all));
     for (int k = 0; k < all; ++k) members[idx(k)] = k;
-    return deflect(piece_of(std::move(members)), i, j, loads, true);
+    return deflect(piece_of(std::move(members)), i, j, loads, options_.eta.hold_first);
   }
 
   /// Ring by ring round the route, until the outer ring hardly moves.
@@ -265,7 +276,7 @@ class MapBuilder::State {
       members.insert(members.end(), ring.begin(), ring.end());
       std::sort(members.begin(), members.end());
       const bool everything = static_cast<int>(members.size()) == graph_.landmarks();
-      Moves moves = deflect(piece_of(members), i, j, loads, everything);
+      Moves moves = deflect(piece_of(members), i, j, loads, everything && options_.eta.hold_first);
       if (everything || ring.empty() || hardly_moves(moves, ring)) return moves;
     }
   }
@@ -335,9 +346,9 @@ class MapBuilder::State {
     return piece_of(std::move(reached));
   }
 
-  /// The loads on a piece of the map: held at the first landmark (`whole`), or floating.
+  /// The loads on a piece of the map: `held` at the first landmark, or floating.
   [[nodiscard]] Moves deflect(const Piece& piece, int i, int j, const RefinementLoads& loads,
-                              bool whole) const {
+                              bool held) const {
     std::vector<Bar> bars;
     bars.reserve(piece.routes.size());
     for (const int number : piece.routes) {
@@ -347,8 +358,8 @@ class MapBuilder::State {
     const std::vector<Load> forces{{piece.joint(i), loads.force_i},
                                    {piece.joint(j), loads.force_j}};
     const int joints = static_cast<int>(piece.landmarks.size());
-    Deflection deflection = whole ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
-                                  : solve_floating_truss(joints, bars, forces);
+    Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
+                                 : solve_floating_truss(joints, bars, forces);
     return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
   }
 
@@ -393,6 +404,10 @@ Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
 
 Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_here) {
   return state_->travel(landmark, from_here);
+}
+
+double MapBuilder::settle() {
+  return state_->options().method == Method::gauss_markov ? 0.0 : state_->settle();
 }
 
 const MapBuilderOptions& MapBuilder::options() const {

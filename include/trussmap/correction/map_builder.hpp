@@ -37,6 +37,10 @@ struct Eta {
   enum class Kind { all, fixed, estimated };
   Kind kind = Kind::fixed;
   int count = 50;  ///< for Kind::fixed; 2 at least
+  /// When the structure is the whole map: hold its first landmark (as the reference numbers have
+  /// it), or let it float, which is a little better and much better where the first landmark is
+  /// tied to the map by few or poor routes.
+  bool hold_first = true;
 };
 
 struct MapBuilderOptions {
@@ -84,6 +88,11 @@ class MapBuilder {
   /// A side measurement from the landmark the robot stands on, as by sighting another one from
   /// there: like a drive there and back with one traversal; the robot stays.
   Arrival observe(const std::string& landmark, const Traversal& from_here);
+
+  /// Refines every route once more towards its averages, without a new measurement: routes driven
+  /// only once, which moved nothing, have their say. Returns the largest move, m. Does nothing for
+  /// gauss_markov, whose map is settled always. Cost: one refinement per route.
+  double settle();
 
   [[nodiscard]] const MapBuilderOptions& options() const;
 
