@@ -44,6 +44,14 @@ int LandmarkGraph::add_traversal(int from, int to, const Traversal& traversal) {
   return number;
 }
 
+void LandmarkGraph::set_route(int number, const Route& route) {
+  Route& present = routes_[idx(number)];
+  if (present.source != route.source || present.target != route.target) {
+    throw std::invalid_argument("a route keeps its ends");
+  }
+  present = route;
+}
+
 void LandmarkGraph::set_position(int landmark, const Vector2& position) {
   graph_[idx(landmark)].position = position;
 }

@@ -8,9 +8,9 @@
 #include "trussmap/io/csv.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,33 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 27> kReserved{"speed",
-                                                     "turn_rate",
-                                                     "acceleration",
-                                                     "heading",
-                                                     "x",
-                                                     "y",
-                                                     "t",
-                                                     "distance",
-                                                     "session",
-                                                     "starts",
-                                                     "spins",
-                                                     "reverses_left",
-                                                     "reverses_right",
-                                                     "left",
-                                                     "right",
-                                                     "sin",
-                                                     "cos",
-                                                     "tan",
-                                                     "abs",
-                                                     "sign",
-                                                     "min",
-                                                     "max",
-                                                     "exp",
-                                                     "log",
-                                                     "sqrt",
-                                                     "pi",
-                                                     "e"};
+// clang-format off
+constexpr std::string_view kReserved[] = {
+    "speed", "turn_rate", "acceleration", "heading", "x", "y", "t", "distance", "session",
+    "starts", "spins", "reverses_left", "reverses_right",
+    "left", "right",
+    "sin", "cos", "tan", "abs", "sign", "min", "max", "exp", "log", "sqrt"};
+// clang-format on
 
 bool is_name(std::string_view text) {
   const auto word = [](char c) {
@@ -102,7 +82,7 @@ Drive read_drive(const fs::path& file) {
       csv.fail("column \"" + name +
                "\" cannot be a covariate, expected a letter, then letters, digits or _");
     }
-    if (std::find(kReserved.begin(), kReserved.end(), name) != kReserved.end()) {
+    if (std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved)) {
       csv.fail("column \"" + name + "\" is a reserved name, expected another for a covariate");
     }
     drive.covariates.push_back({name, {}});

@@ -45,6 +45,9 @@ class LandmarkGraph {
   /// there is none (its direction is then from -> to). Returns the route.
   int add_traversal(int from, int to, const Traversal& traversal);
 
+  /// Replaces a route's averages. Throws std::invalid_argument if its ends differ.
+  void set_route(int number, const Route& route);
+
   void set_position(int landmark, const Vector2& position);
   void set_covariance(int landmark, const Matrix2& covariance);
 
