@@ -5,6 +5,8 @@
 // setup_NAME, which registers it, and the function that runs it.
 #pragma once
 
+#include <stdexcept>
+
 #include <CLI/CLI.hpp>
 
 namespace trussmap::app {
@@ -17,6 +19,8 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void setup_build(CLI::App& app);
+void setup_convert(CLI::App& app);
 void setup_simulate(CLI::App& app);
 
 }  // namespace trussmap::app

@@ -107,12 +107,12 @@ class MapBuilder::State {
     return refine(arrival, leg);
   }
 
-  double settle() {
+  double settle(double gain_limit) {
     double largest = 0.0;
     for (int number = 0; number < graph_.routes(); ++number) {
       Arrival arrival;
       arrival.route = number;
-      make(refinement_moves(graph_.route(number), arrival), arrival);
+      make(refinement_moves(graph_.route(number), gain_limit, arrival), arrival);
       largest = std::max(largest, arrival.largest_move);
     }
     return largest;
@@ -205,7 +205,7 @@ class MapBuilder::State {
     average_in(route, route.source == here_ ? leg : reversed(leg));
     if (!options_.refine) return arrival;
     try {
-      const Moves moves = refinement_moves(route, arrival);
+      const Moves moves = refinement_moves(route, options_.gain_limit, arrival);
       make(moves, arrival);
     } catch (...) {
       route = before;
@@ -224,7 +224,8 @@ class MapBuilder::State {
     return stiffest;
   }
 
-  [[nodiscard]] Moves refinement_moves(const Route& route, Arrival& arrival) const {
+  [[nodiscard]] Moves refinement_moves(const Route& route, double gain_limit,
+                                       Arrival& arrival) const {
     const int i = route.source;
     const int j = route.target;
     const Vector2 present = stored(j) - stored(i);
@@ -236,7 +237,7 @@ class MapBuilder::State {
     arrival.eta = static_cast<int>(moves.landmarks.size());
     if (options_.method == Method::elastic) {
       const Vector2 obtained = displacement_of(moves, j) - displacement_of(moves, i);
-      const double gain = limited_gain(obtained, target - present, options_.gain_limit);
+      const double gain = limited_gain(obtained, target - present, gain_limit);
       for (Vector2& u : moves.displacements) u *= gain;
     }
     // A floating piece that holds the first landmark moves it: count the map as shifted instead.
@@ -406,8 +407,8 @@ Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_h
   return state_->travel(landmark, from_here);
 }
 
-double MapBuilder::settle() {
-  return state_->options().method == Method::gauss_markov ? 0.0 : state_->settle();
+double MapBuilder::settle(double gain_limit) {
+  return state_->options().method == Method::elastic ? state_->settle(gain_limit) : 0.0;
 }
 
 const MapBuilderOptions& MapBuilder::options() const {

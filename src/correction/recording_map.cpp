@@ -46,7 +46,8 @@ RecordingMap look(const std::vector<Recording>& recordings, const Model& model,
   for (const Recording& recording : recordings) {
     Session(recording, model, options, guide, builder, candidates, result).run();
   }
-  for (int round = 0; round < options.settle; ++round) builder.settle();
+  for (int round = 0; round < options.settle; ++round)
+    builder.settle(options.builder.gain_limit / (round + 1));
   result.map = builder.map();
   result.unconfirmed = candidates.unconfirmed();
   return result;

@@ -89,10 +89,11 @@ class MapBuilder {
   /// there: like a drive there and back with one traversal; the robot stays.
   Arrival observe(const std::string& landmark, const Traversal& from_here);
 
-  /// Refines every route once more towards its averages, without a new measurement: routes driven
-  /// only once, which moved nothing, have their say. Returns the largest move, m. Does nothing for
-  /// gauss_markov, whose map is settled always. Cost: one refinement per route.
-  double settle();
+  /// `elastic` only: refines every route once more towards its averages, without a new measurement
+  /// and with this gain limit. Routes driven only once, which moved nothing, have their say.
+  /// Returns the largest move, m. Rounds with falling limits (1/2, 1/4, 1/6, ...) come to rest
+  /// close to the least-squares map. Cost: one refinement per route.
+  double settle(double gain_limit);
 
   [[nodiscard]] const MapBuilderOptions& options() const;
 

@@ -17,8 +17,8 @@
 // Without a compass the heading is taken from the map on every leg between landmarks that it knows
 // (heading_reset.hpp). While the map is young that carries its errors along; therefore the
 // recordings are looked at `looks` times, each time building the map anew, with heading and gate
-// taken from the map of the look before. At the end the map is settled `settle` times
-// (MapBuilder::settle).
+// taken from the map of the look before. At the end an elastic map is settled in `settle` rounds
+// with falling gain (MapBuilder::settle).
 #pragma once
 
 #include "trussmap/correction/map_builder.hpp"
@@ -35,11 +35,11 @@ namespace trussmap {
 struct RecordingMapOptions {
   MapBuilderOptions builder{.eta = {.hold_first = false}};
   double min_drive = kDefaultMinDrive;  ///< m
-  double gate = 6.0;                    ///< standard deviations; infinity: no gate
+  double gate = 8.0;                    ///< standard deviations; infinity: no gate
   double map_sd = 0.3;                  ///< m per coordinate: how wrong the map itself may be
   int confirmations = 3;                ///< of a landmark that is only seen from afar
   int looks = 2;                        ///< without a compass; with one, one look is enough
-  int settle = 1;                       ///< rounds of settling at the end
+  int settle = 5;                       ///< rounds of settling at the end
 };
 
 struct RejectedSighting {
