@@ -45,19 +45,6 @@ struct BuildOptions {
 
 constexpr std::size_t kRejectedShown = 10;
 
-Eta parse_eta(const std::string& text) {
-  Eta eta;
-  eta.hold_first = false;
-  if (text == "all") {
-    eta.kind = Eta::Kind::all;
-  } else if (text == "auto") {
-    eta.kind = Eta::Kind::estimated;
-  } else {
-    eta.count = std::stoi(text);
-  }
-  return eta;
-}
-
 /// How the map is made: "adjustment" is the elastic builder's legs, everything at once.
 RecordingMapOptions map_options(const BuildOptions& options) {
   RecordingMapOptions result;
@@ -66,6 +53,7 @@ RecordingMapOptions map_options(const BuildOptions& options) {
                           : options.method == "adjustment"    ? Method::gauss_markov
                                                               : Method::elastic;
   result.builder.eta = parse_eta(options.eta);
+  result.builder.eta.hold_first = false;
   result.min_drive = options.min_drive;
   result.gate = options.gate;
   return result;
@@ -193,7 +181,7 @@ void run_build(const BuildOptions& options) {
                      "has effects, which build cannot apply yet; expected a model without any");
   }
   RecordingMap built = map_recordings(recordings, model, map_options(options));
-  if (options.method == "adjustment") built.map = adjust_linear(built.map);
+  if (options.method == "adjustment") built.map = adjust_linear(built.map).map;
 
   const std::vector<SurveyPoint> survey = survey_of(recordings);
   Judged judged;
@@ -232,12 +220,7 @@ void setup_build(CLI::App& app) {
   command
       ->add_option("--eta", options->eta,
                    "How many landmarks a refinement may move: a number, all, or auto")
-      ->check([](const std::string& text) {
-        const bool word = text == "all" || text == "auto";
-        return word || whole_number(2)(*std::make_unique<std::string>(text)).empty()
-                   ? std::string()
-                   : "'" + text + "' is no whole number from 2, all or auto";
-      })
+      ->check(eta_text())
       ->capture_default_str();
   command
       ->add_option("--min-drive", options->min_drive,

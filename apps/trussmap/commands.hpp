@@ -22,5 +22,6 @@ class UsageError : public std::runtime_error {
 void setup_build(CLI::App& app);
 void setup_convert(CLI::App& app);
 void setup_simulate(CLI::App& app);
+void setup_tour(CLI::App& app);
 
 }  // namespace trussmap::app

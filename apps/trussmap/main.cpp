@@ -29,6 +29,7 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_build(app);
   trussmap::app::setup_convert(app);
   trussmap::app::setup_simulate(app);
+  trussmap::app::setup_tour(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version

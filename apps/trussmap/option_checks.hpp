@@ -4,6 +4,8 @@
 // Checks of option values that complain in plain words.
 #pragma once
 
+#include "trussmap/correction/map_builder.hpp"
+
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -36,6 +38,30 @@ inline CLI::Validator whole_number(std::uint64_t least) {
                : "'" + text + "' is not a whole number of " + std::to_string(least) + " or more";
   };
   return {check, ""};
+}
+
+/// A number of landmarks from 2 on, "all" or "auto".
+inline CLI::Validator eta_text() {
+  const auto check = [](std::string& text) -> std::string {
+    const bool word = text == "all" || text == "auto";
+    return word || whole_number(2)(text).empty()
+               ? ""
+               : "'" + text + "' is no whole number from 2, all or auto";
+  };
+  return {check, ""};
+}
+
+/// What eta_text() let through.
+inline Eta parse_eta(const std::string& text) {
+  Eta eta;
+  if (text == "all") {
+    eta.kind = Eta::Kind::all;
+  } else if (text == "auto") {
+    eta.kind = Eta::Kind::estimated;
+  } else {
+    eta.count = std::stoi(text);
+  }
+  return eta;
 }
 
 }  // namespace trussmap::app

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap tour: the elastic paper's experiment.
+#include "trussmap/experiment/tour_experiment.hpp"
+#include "trussmap/io/atomic_file.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "option_checks.hpp"
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::json;
+
+struct CommandOptions {
+  std::string mesh = "6x6";
+  double spacing = 5.0;  // m
+  std::vector<double> x_lines;
+  std::vector<double> y_lines;
+  std::string walk = "euler";
+  int tours = 20;
+  int seeds = 20;
+  std::uint64_t first_seed = 1;
+  double odometry_error = 0.05;
+  double compass_error = 0.03;  // rad
+  std::string eta = "all";
+  std::string json_file;
+};
+
+TourOptions experiment_options(const CommandOptions& options) {
+  TourOptions result;
+  if (options.x_lines.empty() != options.y_lines.empty()) {
+    throw UsageError("--x-lines and --y-lines go together");
+  }
+  try {
+    result.mesh = options.x_lines.empty()
+                      ? even_mesh(parse_mesh_size(options.mesh), options.spacing)
+                      : mesh_of_lines(options.x_lines, options.y_lines);
+    result.walk = parse_walk_kind(options.walk);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  result.tours = options.tours;
+  result.seeds = options.seeds;
+  result.first_seed = options.first_seed;
+  result.odometry_error = options.odometry_error;
+  result.compass_error = options.compass_error;
+  result.eta = parse_eta(options.eta);
+  return result;
+}
+
+json figures_json(const TourFigures& figures) {
+  json result = {{"stretch_error", figures.stretch_error.mean},
+                 {"stretch_error_se", figures.stretch_error.standard_error},
+                 {"orientation_error_rad", figures.orientation_error.mean},
+                 {"orientation_error_rad_se", figures.orientation_error.standard_error}};
+  if (figures.position_error) {
+    result["position_error_m"] = figures.position_error->mean;
+    result["position_error_m_se"] = figures.position_error->standard_error;
+  }
+  return result;
+}
+
+json result_json(const TourResult& result) {
+  json tours = json::array();
+  for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
+    json methods;
+    for (const auto& [name, figures] : result.tours[tour]) methods[name] = figures_json(figures);
+    tours.push_back({{"tour", tour + 1}, {"methods", methods}});
+  }
+  return {{"tours", tours},
+          {"first_sight",
+           {{"before", figures_json(result.first_sight_before)},
+            {"after", figures_json(result.first_sight_after)}}}};
+}
+
+/// Which tours a table shows: the first few, then fewer and fewer, and the last.
+std::vector<std::size_t> shown_tours(std::size_t count) {
+  std::vector<std::size_t> shown;
+  for (const std::size_t tour : {1, 2, 3, 4, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+    if (tour <= count) shown.push_back(tour);
+  }
+  if (shown.back() != count) shown.push_back(count);
+  return shown;
+}
+
+template <class Pick>
+void print_block(const TourResult& result, const char* title, int digits, const Pick& pick) {
+  fmt::print("\n{}\n  tour", title);
+  std::vector<std::string> methods;
+  for (const std::string& method : tour_methods()) {
+    if (pick(result.tours.front().at(method))) methods.push_back(method);
+  }
+  for (const std::string& method : methods) fmt::print("  {:>16}", method);
+  fmt::print("\n");
+  for (const std::size_t tour : shown_tours(result.tours.size())) {
+    fmt::print("  {:>4}", tour);
+    for (const std::string& method : methods) {
+      fmt::print("  {:>16.{}f}", pick(result.tours[tour - 1].at(method))->mean, digits);
+    }
+    fmt::print("\n");
+  }
+}
+
+void print_result(const TourResult& result, const CommandOptions& options) {
+  const MethodFigures& last = result.tours.back();
+  const double raw = last.at("raw").stretch_error.mean;
+  fmt::print(
+      "after {} tours the elastic map's routes are {:.2f} % too long or short and {:.4f} rad "
+      "askew\n"
+      "(single measurements: {:.2f} %, {:.4f} rad; the best possible, the adjustment: {:.2f} %, "
+      "{:.4f} rad);\nmeans over {} seeds\n",
+      result.tours.size(), 100.0 * last.at("elastic").stretch_error.mean,
+      last.at("elastic").orientation_error.mean, 100.0 * raw, last.at("raw").orientation_error.mean,
+      100.0 * last.at("adjustment").stretch_error.mean,
+      last.at("adjustment").orientation_error.mean, options.seeds);
+  print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
+              [](const TourFigures& f) { return std::optional<Figure>(f.stretch_error); });
+  print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
+              [](const TourFigures& f) { return std::optional<Figure>(f.orientation_error); });
+  print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
+              [](const TourFigures& f) { return f.position_error; });
+  fmt::print(
+      "\nfirst sight, tour 1: before {:.3f} / {:.3f} rad, after {:.3f} / {:.3f} rad "
+      "(the paper's Table I, one map: 0.049 / 0.033, then 0.046 / 0.032)\n",
+      result.first_sight_before.stretch_error.mean,
+      result.first_sight_before.orientation_error.mean, result.first_sight_after.stretch_error.mean,
+      result.first_sight_after.orientation_error.mean);
+}
+
+void run_tour(const CommandOptions& options) {
+  const TourResult result = run_tours(experiment_options(options));
+  if (!options.json_file.empty()) write_file(options.json_file, result_json(result).dump(2) + "\n");
+  print_result(result, options);
+}
+
+void add_world(CLI::App& command, CommandOptions& options) {
+  command.add_option("--mesh", options.mesh, "Landmarks along x and along y, like 6x6")
+      ->capture_default_str();
+  command.add_option("--spacing", options.spacing, "Distance between neighbours [m]")
+      ->check(above_zero())
+      ->capture_default_str();
+  command
+      .add_option("--x-lines", options.x_lines,
+                  "Uneven mesh: x of its columns [m], like 0,1,9,11 (with --y-lines)")
+      ->delimiter(',');
+  command.add_option("--y-lines", options.y_lines, "Uneven mesh: y of its rows [m]")
+      ->delimiter(',');
+  command.add_option("--walk", options.walk, "How a tour covers the routes; drawn anew each tour")
+      ->check(CLI::IsMember({"euler", "face", "depth-first", "random"}))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void setup_tour(CLI::App& app) {
+  auto options = std::make_shared<CommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "tour", "Tour a simulated mesh again and again and compare all methods with the truth");
+  add_world(*command, *options);
+  command->add_option("--tours", options->tours, "Number of tours")
+      ->check(whole_number(1))
+      ->capture_default_str();
+  command->add_option("--seeds", options->seeds, "Average over this many seeds")
+      ->check(whole_number(1))
+      ->capture_default_str();
+  command->add_option("--first-seed", options->first_seed, "The first of them")
+      ->check(whole_number(0))
+      ->capture_default_str();
+  command
+      ->add_option("--odometry-error", options->odometry_error,
+                   "Mean absolute error of a route's stretch, as a fraction of it")
+      ->check(above_zero())
+      ->capture_default_str();
+  command
+      ->add_option("--compass-error", options->compass_error,
+                   "Mean absolute error of a route's orientation [rad]")
+      ->check(above_zero())
+      ->capture_default_str();
+  command
+      ->add_option("--eta", options->eta,
+                   "Landmarks a refinement may move: a number, all, or auto (estimated each time)")
+      ->check(eta_text())
+      ->capture_default_str();
+  command->add_option("--json", options->json_file, "The figures, complete (JSON)");
+  command->callback([options] { run_tour(*options); });
+}
+
+}  // namespace trussmap::app

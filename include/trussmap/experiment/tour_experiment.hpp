@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The elastic paper's experiment: a robot tours a mesh again and again, every method builds its map
+// from the same measurements, and after each tour the maps are compared with the truth.
+//
+//   stretch_error      sigma: mean over routes of |s_map - s|/s
+//   orientation_error  rho: mean over routes of |theta_map - theta|                    rad
+//   position_error     mean distance of the landmarks from the truth, the first left out   m
+//
+//   raw               single measurements, the first of each route
+//   dead_reckoning    positions where the landmarks were first met, never corrected
+//   weighted_average  each route's own means; it has no positions
+//   elastic_printed   the paper's two phases as printed
+//   elastic           the same, gain limited
+//   gauss_markov      exact increments; a traversal's covariance is the robot's error law at the
+//                     route's mean stretch so far, not at its own: single short measurements would
+//                     otherwise look surer than they are and shrink the map
+//   adjustment        batch least squares on the routes' means
+//
+// Golfarelli, Maio & Rizzi (1998), section 4. A seed's walk and measurements are shared by all
+// methods, and do not depend on how many seeds or threads there are.
+#pragma once
+
+#include "trussmap/correction/map_builder.hpp"
+#include "trussmap/simulation/mesh_world.hpp"
+#include "trussmap/simulation/route_robot.hpp"
+#include "trussmap/simulation/tours.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct TourOptions {
+  Mesh mesh;
+  WalkKind walk = WalkKind::euler;
+  int tours = 20;
+  std::uint64_t first_seed = 1;
+  int seeds = 24;
+  /// Mean absolute errors, as in the paper; standard deviations are sqrt(pi/2) times these.
+  double odometry_error = 0.05;  ///< fraction of the stretch
+  double compass_error = 0.03;   ///< rad
+  Eta eta{.kind = Eta::Kind::all};
+};
+
+/// Mean over the seeds, and its standard error.
+struct Figure {
+  double mean = 0.0;
+  double standard_error = 0.0;
+};
+
+struct TourFigures {
+  Figure stretch_error;
+  Figure orientation_error;              ///< rad
+  std::optional<Figure> position_error;  ///< m, where the method has positions
+};
+
+using MethodFigures = std::map<std::string, TourFigures>;
+
+struct TourResult {
+  std::vector<MethodFigures> tours;  ///< after tour 1, 2, ...
+  TourFigures first_sight_before;    ///< single measurements of the first tour
+  TourFigures first_sight_after;     ///< the map after first-sight correction alone, tour 1
+};
+
+/// Names of the methods, in the order in which they are shown.
+[[nodiscard]] const std::vector<std::string>& tour_methods();
+
+/// Throws std::invalid_argument on options out of range.
+[[nodiscard]] TourResult run_tours(const TourOptions& options);
+
+}  // namespace trussmap

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The tour experiment against curves computed elsewhere (tests/reference/elastic_curves.json:
+// 6x6 mesh, 5 % and 0.03 rad, 24 seeds, 20 tours). Two means that agree differ by less than 4 of
+// their combined standard errors.
+#include "trussmap/experiment/tour_experiment.hpp"
+
+#include "trussmap/core/index.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "shared_data.hpp"
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+
+struct Curve {
+  const char* ours;
+  const char* reference;
+};
+
+void PrintTo(const Curve& curve, std::ostream* stream) {
+  *stream << curve.ours;
+}
+
+const TourResult& even_mesh_result() {
+  static const TourResult result = [] {
+    TourOptions options;
+    options.mesh = even_mesh({6, 6}, 1.0);
+    return run_tours(options);
+  }();
+  return result;
+}
+
+class SlowTourCurve : public ::testing::TestWithParam<Curve> {};
+
+void expect_close(const Figure& ours, const json& curve, const std::string& key, std::size_t tour) {
+  const double reference = curve[key][tour];
+  const double error = curve[key + "_se"][tour];
+  EXPECT_LE(std::abs(ours.mean - reference), 4.0 * std::hypot(ours.standard_error, error))
+      << key << " after tour " << tour + 1 << ": " << ours.mean << ", reference " << reference;
+}
+
+TEST_P(SlowTourCurve, AgreesWithTheReferenceAfterEveryTour) {
+  const json curve = testing::reference("elastic_curves.json")["methods"][GetParam().reference];
+  ASSERT_EQ(even_mesh_result().tours.size(), 20U);
+  for (std::size_t tour = 0; tour < 20; ++tour) {
+    const TourFigures& ours = even_mesh_result().tours[tour].at(GetParam().ours);
+    if (curve.contains("sigma") && curve["sigma"].size() > tour) {
+      expect_close(ours.stretch_error, curve, "sigma", tour);
+      expect_close(ours.orientation_error, curve, "rho", tour);
+    }
+    if (curve.contains("abs_m") && curve["abs_m"].size() > tour) {
+      ASSERT_TRUE(ours.position_error.has_value());
+      expect_close(*ours.position_error, curve, "abs_m", tour);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SlowTourCurve,
+                         ::testing::Values(Curve{"raw", "raw"}, Curve{"weighted_average", "wavg"},
+                                           Curve{"elastic_printed", "paper_mean_v0"},
+                                           Curve{"gauss_markov", "gauss_markov_incremental"},
+                                           Curve{"adjustment", "batchGM"},
+                                           Curve{"dead_reckoning", "dr_first"}),
+                         [](const auto& one) { return std::string(one.param.ours); });
+
+TEST(SlowTour, TheLimitedGainComesWithinAQuarterOfTheBatch) {
+  const MethodFigures& tour10 = even_mesh_result().tours[9];
+  EXPECT_LE(tour10.at("elastic").stretch_error.mean,
+            1.25 * tour10.at("adjustment").stretch_error.mean);
+}
+
+TEST(SlowTour, OnAnUnevenMeshThePrintedGainDivergesAndTheLimitedDoesNot) {
+  TourOptions options;
+  options.mesh = mesh_of_lines({0, 1, 9, 11, 21, 22}, {0, 6, 7, 8, 17, 20});
+  options.tours = 10;
+  const TourResult result = run_tours(options);
+  EXPECT_LT(result.tours[9].at("elastic").stretch_error.mean, 0.016);
+  EXPECT_GT(result.tours[9].at("elastic_printed").stretch_error.mean, 0.1);
+}
+
+TEST(Tour, SeedsDoNotDependOnOneAnother) {
+  TourOptions options;
+  options.mesh = even_mesh({3, 4}, 2.0);
+  options.tours = 2;
+  options.seeds = 3;
+  const TourResult together = run_tours(options);
+  options.seeds = 1;
+  double sum = 0.0;
+  for (options.first_seed = 1; options.first_seed <= 3; ++options.first_seed) {
+    sum += run_tours(options).tours[1].at("elastic").stretch_error.mean;
+  }
+  EXPECT_NEAR(sum / 3.0, together.tours[1].at("elastic").stretch_error.mean, 1e-15);
+}
+
+TEST(Tour, TinyErrorsGiveTheTrueMap) {
+  TourOptions options;
+  options.mesh = even_mesh({4, 4}, 1.0);
+  options.tours = 2;
+  options.seeds = 1;
+  options.odometry_error = options.compass_error = 1e-9;
+  const TourResult result = run_tours(options);
+  for (const std::string& method : tour_methods()) {
+    EXPECT_LT(result.tours[1].at(method).stretch_error.mean, 1e-7) << method;
+  }
+}
+
+TEST(Tour, RefusesWhatIsNoExperiment) {
+  TourOptions options;
+  options.mesh = even_mesh({3, 3}, 1.0);
+  options.tours = 0;
+  EXPECT_THROW((void)run_tours(options), std::invalid_argument);
+  options.tours = 1;
+  options.compass_error = 0.0;
+  EXPECT_THROW((void)run_tours(options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace trussmap
