@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -39,6 +40,8 @@ int main(int argc, char** argv) try {
   } catch (const trussmap::InputError& error) {
     return complain(error, kBadInput);
   } catch (const trussmap::app::UsageError& error) {
+    return complain(error, kBadInput);
+  } catch (const std::filesystem::filesystem_error& error) {  // an output folder, mostly
     return complain(error, kBadInput);
   } catch (const std::exception& error) {
     return complain(error, kFailed);

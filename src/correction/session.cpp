@@ -17,6 +17,8 @@ namespace {
 constexpr double kDoubtHeading = 0.1;   // rad
 constexpr double kDoubtPosition = 0.1;  // m
 
+constexpr double kMuchPoorer = 4.0;  // in variance
+
 double mahalanobis(const Vector2& misfit, const Matrix2& covariance) {
   return std::sqrt(misfit.dot(covariance.inverse() * misfit));
 }
@@ -174,12 +176,21 @@ void Session::settle(const Stop& stop, const Accepted& at, const HeadingEstimate
   leg_start_ = path_at(recording_.drive, path_, stop.t);
 }
 
+/// A route's averages are plain: a sighting far poorer than its traversals would only spoil them.
+bool Session::dilutes(const std::string& landmark, const Matrix2& covariance) const {
+  const std::optional<int> known = builder_.find(landmark);
+  if (!known) return false;
+  const std::optional<Route> route = builder_.route_between(builder_.here(), *known);
+  return route && covariance.trace() > kMuchPoorer * route->covariance.trace();
+}
+
 /// The landmarks that are seen from a stop beside its reference: routes from there.
 void Session::observe(const std::vector<Accepted>& others) {
   for (const Accepted& other : others) {
     if (other.sighting->landmark == reference_->landmark) continue;
     const PositionEstimate place = landmark_from_pose(pose_, other.offset);
     if (place.position.squaredNorm() <= 0.0) continue;  // two landmarks stood on at once
+    if (dilutes(other.sighting->landmark, place.covariance)) continue;
     builder_.observe(other.sighting->landmark, {place.position, place.covariance});
     ++result_.side_sightings;
   }

@@ -53,6 +53,7 @@ class Session {
   void reject(const Sighting& sighting, double misfit);
   void arrive(const Stop& stop, const Accepted& at);
   void observe(const std::vector<Accepted>& others);
+  [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
   void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
   [[nodiscard]] LandmarkOffset offset_of(const Sighting& sighting) const;
   [[nodiscard]] std::optional<Vector2> believed(const std::string& landmark) const;

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The command line as a user meets it: status, one line for what is wrong, nothing half-written.
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch_folder.hpp"
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+using testing::Ran;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+
+json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return json::parse(stream);
+}
+
+TEST(Command, HelpIsThereForEveryCommand) {
+  for (const char* name : {"", "simulate", "tour", "build", "convert"}) {
+    const Ran ran = run_trussmap(std::string(name) + " --help");
+    EXPECT_EQ(ran.status, 0) << name;
+    EXPECT_NE(ran.output.find("--help"), std::string::npos) << name;
+  }
+}
+
+TEST(Command, BadUsageEndsWithStatus2AndOneLine) {
+  for (const char* arguments :
+       {"", "bild", "build", "build r --model m --method magic", "tour --eta 1", "tour --tours 0",
+        "tour --mesh 6", "tour --x-lines 0,1", "simulate --out /dev/null/x",
+        "build r --model m --gate -1", "convert a.txt b.txt"}) {
+    const Ran ran = run_trussmap(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_EQ(ran.output.rfind("trussmap: ", 0), 0U) << ran.output;
+  }
+}
+
+TEST(Command, SimulateBuildAndConvertGoTogether) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  ASSERT_EQ(run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --seed 5 --out " + at + "/r").status, 0);
+  const Ran built = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
+                                 "/m.graphml --json " + at + "/m.json --svg " + at + "/m.svg");
+  ASSERT_EQ(built.status, 0) << built.output;
+  const json result = read_json(scratch.path() / "m.json");
+  EXPECT_EQ(result["method"], "elastic");
+  EXPECT_EQ(result["landmarks"], 16);
+  EXPECT_EQ(result["routes"], 24);
+  EXPECT_LT(result["survey"]["rms_m"].get<double>(),
+            0.5 * result["survey"]["rms_dead_reckoning_m"].get<double>());
+  for (const char* format : {"geojson", "dot", "graphml"}) {
+    EXPECT_EQ(run_trussmap("convert " + at + "/m.graphml " + at + "/c." + format).status, 0);
+  }
+  const auto files = scratch.contents();
+  EXPECT_EQ(files.at("m.graphml"), files.at("c.graphml"));
+  EXPECT_NE(files.at("m.svg").find("</svg>"), std::string::npos);
+}
+
+TEST(Command, TheSameSeedGivesTheSameFiles) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string simulate = "simulate --mesh 3x3 --tours 1 --no-compass --range-sensor --seed 9";
+  run_trussmap(simulate + " --out " + at + "/a");
+  run_trussmap(simulate + " --out " + at + "/b");
+  for (const char* run : {"a", "b"}) {
+    const Ran built = run_trussmap("build " + at + "/" + run + " --model " + at + "/" + run +
+                                   "/model.toml --out " + at + "/" + run + "/m.graphml");
+    EXPECT_EQ(built.status, 0) << built.output;
+  }
+  const auto files = scratch.contents();
+  for (const char* file : {"drive.csv", "sightings.csv", "survey.csv", "m.graphml"}) {
+    EXPECT_EQ(files.at(std::string("a/") + file), files.at(std::string("b/") + file)) << file;
+  }
+}
+
+TEST(Command, BadInputNamesFileAndLineAndWritesNothing) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  scratch.write("r/drive.csv", "t,left,right\n0.1,0,0\n0.2,0,zero\n");
+  scratch.write("r/sightings.csv", "t,landmark\n0,A\n");
+  scratch.write("m.toml", "[robot]\nwheelbase = 0.3\n");
+  const auto before = scratch.contents();
+  const Ran ran = run_trussmap("build " + at + "/r --model " + at + "/m.toml --out " + at +
+                               "/m.graphml --json " + at + "/m.json");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.output,
+            "trussmap: " + at + "/r/drive.csv:3: column right is \"zero\", expected a number\n");
+  EXPECT_EQ(scratch.contents(), before);
+}
+
+TEST(Command, AnOutputThatCannotBeWrittenLeavesTheOthersAlone) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 3x3 --tours 1 --out " + at + "/r");
+  scratch.write("m.graphml", "the map of before");
+  const auto before = scratch.contents();
+  const Ran ran = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
+                               "/m.graphml --json " + at + "/no/such/folder.json");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_EQ(scratch.contents(), before);
+}
+
+TEST(Command, ASessionThatStartsOnAnUnknownLandmarkIsNamed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  for (const char* session : {"one", "two"}) {
+    const std::string name = std::string(session) == "one" ? "A" : "X";
+    scratch.write(std::string(session) + "/drive.csv",
+                  "t,left,right\n1,1,1\n2,1,1\n3,0.5,1\n4,1,1\n");
+    scratch.write(std::string(session) + "/sightings.csv",
+                  "t,landmark\n0," + name + "\n2," + name + "2\n4," + name + "3\n");
+  }
+  scratch.write("m.toml", "");
+  const Ran ran = run_trussmap("build " + at + "/one " + at + "/two --model " + at + "/m.toml");
+  EXPECT_EQ(ran.status, 1) << ran.output;
+  EXPECT_EQ(ran.output,
+            "trussmap: landmark X is tied to nothing: a session must start on a landmark of the "
+            "map\n");
+}
+
+}  // namespace
+}  // namespace trussmap
