@@ -11,6 +11,8 @@ namespace trussmap::app {
 
 // A command's callback throws: InputError and UsageError end with status 2, anything else with 1.
 
+void setup_adjust(CLI::App& app);
+
 /// Options that fit each other badly, or a value out of range: one line, status 2.
 class UsageError : public std::runtime_error {
  public:

@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
   app.require_subcommand(1);
   app.set_version_flag("--version", "trussmap 0.1.0");
+  trussmap::app::setup_adjust(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
