@@ -6,6 +6,7 @@
 #include "trussmap/adjustment/pose_graph_descent.hpp"
 #include "trussmap/adjustment/pose_graph_gauge.hpp"
 #include "trussmap/adjustment/pose_graph_headings.hpp"
+#include "trussmap/adjustment/pose_graph_lifting.hpp"
 #include "trussmap/core/error.hpp"
 
 #include <algorithm>
@@ -20,13 +21,14 @@ namespace {
 
 constexpr double kSame = 1e-6;        // relative difference of chi^2 below which minima are one
 constexpr double kImplausible = 4.0;  // standard deviations of chi^2 above its expectation
-constexpr int kTrialIterations = 40;  // of a descent that only looks for a better minimum
+constexpr std::uint64_t kLiftingSeed = 1;
+constexpr DescentOptions kTrial{40, 1e-8};  // a descent that only looks for a better minimum
 
 struct Start {
   std::string name;
   std::vector<Pose> estimates;
   double chi2 = 0.0;
-  std::vector<int> windings;
+  std::vector<int> windings = {};
   bool tried = false;
 };
 
@@ -70,7 +72,7 @@ class Search {
 
   PoseGraphAdjustment run() {
     collect_starts();
-    try_start(lowest_start(), options_.max_iterations);
+    try_start(lowest_start(), final_descent());
     refuse_loose_vertices();
     challenge();
     return report();
@@ -78,7 +80,7 @@ class Search {
 
  private:
   void add(std::string name, std::vector<Pose> estimates) {
-    Start start{std::move(name), std::move(estimates), 0.0, {}, false};
+    Start start{std::move(name), std::move(estimates)};
     start.chi2 = system_.chi_squared(start.estimates);
     start.windings = headings_.windings(start.estimates);
     starts_.push_back(std::move(start));
@@ -118,20 +120,17 @@ class Search {
                              [](const Start& a, const Start& b) { return a.chi2 < b.chi2; });
   }
 
-  void try_start(Start& start, int iterations) {
+  void try_start(Start& start, const DescentOptions& how) {
     start.tried = true;
-    Descent descent = descend(system_, start.estimates, {iterations, options_.tolerance});
-    if (found_ && std::abs(descent.chi2 - best_.chi2) <= kSame * best_.chi2 + kSame) {
-      if (descent.chi2 < best_.chi2 && descent.converged) best_ = std::move(descent);
-      return;
-    }
-    const bool better = !found_ || descent.chi2 < best_.chi2;
-    if (found_) {
-      const std::string& loser = better ? best_start_ : start.name;
-      others_.push_back({loser, better ? best_.chi2 : descent.chi2});
+    Descent descent = descend(system_, start.estimates, how);
+    const bool first = best_start_.empty();
+    if (!first && std::abs(descent.chi2 - best_.chi2) <= kSame * best_.chi2 + kSame * kSame) return;
+    const bool better = first || descent.chi2 < best_.chi2;
+    if (!first) {
+      others_.emplace_back(better ? best_start_ : start.name, better ? best_.chi2 : descent.chi2);
     }
     if (!better) return;
-    found_ = true;
+    descent.converged = descent.converged && how.tolerance <= options_.tolerance;
     best_ = std::move(descent);
     best_start_ = start.name;
     best_windings_ = headings_.windings(best_.estimates);
@@ -153,22 +152,32 @@ class Search {
                     loose.size() == 1 ? "it" : "them", loose.size() == 1 ? "it" : "one"));
   }
 
-  /// Lets other starts try to beat what was found.
+  /// Lets other starts try to beat what was found, then makes the best exact.
   void challenge() {
     for (std::size_t k = 0; k < starts_.size(); ++k) {
       Start& start = starts_[k];
       if (start.tried || start.windings == best_windings_) continue;
       const bool drawn = k < drawn_;
-      const bool implausible = excess_of(best_.chi2, dof_) > kImplausible;
       const bool wanted = options_.start == StartFrom::file && k + 1 == starts_.size();
-      if (drawn || implausible || wanted || start.chi2 < best_.chi2) {
-        try_start(start, kTrialIterations);
-      }
+      if (drawn || wanted || is_implausible() || start.chi2 < best_.chi2) try_start(start, kTrial);
+    }
+    // Where the information is honest and chi^2 is as it should be, there is nothing to look for.
+    const bool doubtful = !others_.empty() && excess_of(best_.chi2, dof_) < -kImplausible;
+    if (!graph_.pose_edges.empty() && (is_implausible() || doubtful)) {
+      const std::vector<Pose> lifted = solve_lifted(graph_, held_, system_.order(), kLiftingSeed);
+      Start start{"the lifted problem", fit_positions(system_, lifted)};
+      try_start(start, kTrial);
     }
     if (best_.converged) return;
-    Start again{best_start_, best_.estimates, best_.chi2, {}, false};
-    found_ = false;
-    try_start(again, options_.max_iterations);
+    const int before = best_.iterations;
+    best_ = descend(system_, best_.estimates, final_descent());
+    best_.iterations += before;
+  }
+
+  [[nodiscard]] bool is_implausible() const { return excess_of(best_.chi2, dof_) > kImplausible; }
+
+  [[nodiscard]] DescentOptions final_descent() const {
+    return {options_.max_iterations, options_.tolerance};
   }
 
   PoseGraphAdjustment report() {
@@ -189,8 +198,7 @@ class Search {
           fmt::format("not converged after {} iterations; the result is not a minimum of chi2",
                       best_.iterations));
     }
-    const double excess = excess_of(best_.chi2, dof_);
-    if (excess > kImplausible) {
+    if (is_implausible()) {
       result.warnings.push_back(
           fmt::format("chi2 {:.6g} is far too large for {} degrees of freedom: wrong edges, too "
                       "much information claimed, or a local minimum",
@@ -212,7 +220,6 @@ class Search {
   HeadingSystem headings_;
   std::vector<Start> starts_;
   std::size_t drawn_ = 0;  ///< the first so many starts came from headings
-  bool found_ = false;
   Descent best_;
   std::string best_start_;
   std::vector<int> best_windings_;
