@@ -242,7 +242,9 @@ const Eigen::VectorXd& PoseGraphSystem::solve_step(double damping) {
   if (normal_.unknowns() == 0) return step_;
   if (damping > 0.0) {
     const Eigen::VectorXd diagonal = normal_.diagonal();
-    normal_.set_diagonal((1.0 + damping) * diagonal);
+    // What has no stiffness at all cannot be damped by a share of it.
+    const double floor = 1e-9 * diagonal.maxCoeff();
+    normal_.set_diagonal(diagonal + damping * diagonal.cwiseMax(floor));
     try {
       normal_.factorise();
     } catch (...) {

@@ -37,8 +37,8 @@ class PoseGraphSystem {
   double linearise(const std::vector<Pose>& estimates, bool hold_headings = false);
   [[nodiscard]] double chi_squared(const std::vector<Pose>& estimates);
 
-  /// Solves (H + damping diag H) dX = -g. Throws NotPositiveDefinite. May be called again with
-  /// another damping for the same linearisation.
+  /// Solves (H + damping diag H) dX = -g (a diagonal of at least 1e-9 of its largest). Throws
+  /// NotPositiveDefinite. May be called again with another damping for the same linearisation.
   const Eigen::VectorXd& solve_step(double damping = 0.0);
 
   /// Twice the energy that a small displacement of all unknowns would store, to first order:
