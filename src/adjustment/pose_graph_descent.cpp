@@ -109,14 +109,14 @@ std::vector<int> find_loose_vertices(PoseGraphSystem& system, const std::vector<
     if (H.reciprocal_condition() > kSafeCondition) return {};
   } catch (const NotPositiveDefinite&) {
     const Eigen::VectorXd diagonal = H.diagonal();
-    const double floor = 1e-15 * diagonal.maxCoeff();
+    const double floor = 1e-30 * diagonal.maxCoeff();
     H.set_diagonal((1.0 + 1e-13) * diagonal + Eigen::VectorXd::Constant(diagonal.size(), floor));
     H.factorise();
     H.set_diagonal(diagonal);
   }
   // Inverse iteration towards the softest mode, each unknown measured by its own stiffness.
   const Eigen::VectorXd diagonal = H.diagonal();
-  const Eigen::VectorXd stiffness = diagonal.cwiseMax(1e-300 + 1e-15 * diagonal.maxCoeff());
+  const Eigen::VectorXd stiffness = diagonal.cwiseMax(1e-9 * diagonal.maxCoeff());
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Eigen::VectorXd mode(H.unknowns());
