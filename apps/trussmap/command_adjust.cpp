@@ -6,6 +6,7 @@
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/g2o.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -72,6 +73,12 @@ nlohmann::ordered_json json(const Run& run) {
 
 void run_adjust(const AdjustOptions& options) {
   PoseGraph graph = read_g2o(options.graph);
+  const auto has_estimate = [](const GraphVertex& vertex) { return vertex.estimate.has_value(); };
+  if (options.start == StartFrom::file &&
+      !std::all_of(graph.vertices.begin(), graph.vertices.end(), has_estimate)) {
+    throw UsageError(options.graph + " has no VERTEX lines to start from, expected --start " +
+                     "odometry or best");
+  }
   AdjustmentOptions adjustment;
   adjustment.start = options.start;
   const auto begin = std::chrono::steady_clock::now();

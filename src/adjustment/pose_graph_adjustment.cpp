@@ -97,7 +97,7 @@ class Search {
   void collect_starts() {
     const bool from_file = options_.start != StartFrom::odometry && has_all_estimates(graph_);
     if (options_.start == StartFrom::file && !from_file) {
-      throw SolveError("the file gives no estimate for some vertices, start from odometry instead");
+      throw std::invalid_argument("starting from the file needs an estimate of every vertex");
     }
     const std::vector<Pose> odometry = chain_measurements(graph_, held_, Tree::odometry);
     if (graph_.pose_edges.empty()) {
