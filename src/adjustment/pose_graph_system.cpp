@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace trussmap {
 namespace {
@@ -66,9 +67,26 @@ PoseGraphSystem::PoseGraphSystem(const PoseGraph& graph, const std::vector<std::
     vector_bars_.push_back({edge.from, edge.to, false, edge.measured.x(), edge.measured.y(),
                             I(0, 0), I(0, 1), I(1, 1)});
   }
+  full_pose_bars_ = pose_bars_;
+  full_vector_bars_ = vector_bars_;
   vertex_of_.resize(idx(normal_.unknowns()));
   for (int v = 0; v < static_cast<int>(graph.vertices.size()); ++v) {
     for (int k = 0; k < normal_.size(v); ++k) vertex_of_[idx(normal_.offset(v) + k)] = v;
+  }
+}
+
+void PoseGraphSystem::set_weights(const std::vector<double>& weights) {
+  if (weights.size() != pairs_.size()) throw std::invalid_argument("one weight per edge is needed");
+  const auto scale = [](double factor, auto&... entries) { ((entries *= factor), ...); };
+  pose_bars_ = full_pose_bars_;
+  vector_bars_ = full_vector_bars_;
+  for (std::size_t k = 0; k < pose_bars_.size(); ++k) {
+    Bar3& bar = pose_bars_[k];
+    scale(weights[k], bar.xx, bar.xy, bar.xt, bar.yy, bar.yt, bar.tt);
+  }
+  for (std::size_t k = 0; k < vector_bars_.size(); ++k) {
+    Bar2& bar = vector_bars_[k];
+    scale(weights[pose_bars_.size() + k], bar.xx, bar.xy, bar.yy);
   }
 }
 

@@ -37,6 +37,9 @@ class PoseGraphSystem {
   double linearise(const std::vector<Pose>& estimates, bool hold_headings = false);
   [[nodiscard]] double chi_squared(const std::vector<Pose>& estimates);
 
+  /// Multiplies the information of every edge, in the order of pairs(), from now on.
+  void set_weights(const std::vector<double>& weights);
+
   /// Solves (H + damping diag H) dX = -g (a diagonal of at least 1e-9 of its largest). Throws
   /// NotPositiveDefinite. May be called again with another damping for the same linearisation.
   const Eigen::VectorXd& solve_step(double damping = 0.0);
@@ -93,6 +96,8 @@ class PoseGraphSystem {
   std::vector<std::uint8_t> pinned_;  ///< of the vertices in the system: what must not move now
   std::vector<Bar3> pose_bars_;
   std::vector<Bar2> vector_bars_;
+  std::vector<Bar3> full_pose_bars_;  ///< the same with all weights 1
+  std::vector<Bar2> full_vector_bars_;
   std::vector<Direction> directions_;  ///< of each pose's heading, at the present estimates
   std::vector<NodePair> pairs_;        ///< pose, point, then displacement edges
   std::vector<int> order_;
