@@ -37,7 +37,7 @@ std::vector<std::int64_t> ids_of(const LandmarkGraph& map) {
 
 Matrix2 covariance_of(const Matrix2& information, const PoseGraph& graph,
                       const DisplacementEdge& edge) {
-  const Matrix2 covariance = information.inverse();
+  Matrix2 covariance = information.inverse();
   if (!(information(0, 0) > 0.0 && information.determinant() > 0.0) || !covariance.allFinite()) {
     throw std::invalid_argument(
         "the edge from vertex " + std::to_string(graph.vertices[idx(edge.from)].id) + " to " +

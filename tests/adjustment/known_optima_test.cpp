@@ -28,6 +28,10 @@ struct Known {
   bool has_estimates;
 };
 
+void PrintTo(const Known& test, std::ostream* out) {
+  *out << test.file;
+}
+
 class KnownOptimum : public ::testing::TestWithParam<Known> {};
 
 void expect_optimum(const PoseGraph& graph, StartFrom start, double chi2) {

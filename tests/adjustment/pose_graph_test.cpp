@@ -75,6 +75,10 @@ struct Faulty {
   std::string expected;
 };
 
+void PrintTo(const Faulty& test, std::ostream* out) {
+  *out << test.name;
+}
+
 class GraphFault : public ::testing::TestWithParam<Faulty> {};
 
 TEST_P(GraphFault, IsNamed) {

@@ -105,6 +105,10 @@ struct Bad {
   std::string message;
 };
 
+void PrintTo(const Bad& test, std::ostream* out) {
+  *out << test.name;
+}
+
 class BadG2o : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadG2o, IsRefusedInOneLineThatSaysWhere) {

@@ -86,6 +86,7 @@ class PoseGraphSystem {
   double add_bar(const Bar3& bar, int pair, const std::vector<Pose>& estimates);
   template <bool kEquations>
   double add_bar(const Bar2& bar, int pair, const std::vector<Pose>& estimates);
+  void add_stiffness(const Bar3& bar, int pair, Matrix3& B, double dx, double dy);
   void add_force(int vertex, const Eigen::Vector3d& force);
   void add_force(int vertex, const Vector2& force);
   void hold_pinned();
