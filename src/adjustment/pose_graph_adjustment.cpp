@@ -22,6 +22,7 @@ namespace {
 constexpr double kSame = 1e-6;        // relative difference of chi^2 below which minima are one
 constexpr double kImplausible = 4.0;  // standard deviations of chi^2 above its expectation
 constexpr std::uint64_t kLiftingSeed = 1;
+constexpr int kLooksAlike = 3;
 constexpr DescentOptions kTrial{40, 1e-8};  // a descent that only looks for a better minimum
 
 struct Start {
@@ -161,17 +162,31 @@ class Search {
       const bool wanted = options_.start == StartFrom::file && k + 1 == starts_.size();
       if (drawn || wanted || is_implausible() || start.chi2 < best_.chi2) try_start(start, kTrial);
     }
-    // Where the information is honest and chi^2 is as it should be, there is nothing to look for.
-    const bool doubtful = !others_.empty() && excess_of(best_.chi2, dof_) < -kImplausible;
-    if (!graph_.pose_edges.empty() && (is_implausible() || doubtful)) {
-      const std::vector<Pose> lifted = solve_lifted(graph_, held_, system_.order(), kLiftingSeed);
-      Start start{"the lifted problem", fit_positions(system_, lifted)};
-      try_start(start, kTrial);
-    }
+    // A chi^2 that looks right proves little where there are few loops: starts that disagree are
+    // reason enough to look further.
+    const bool doubtful = is_implausible() || !others_.empty();
+    if (doubtful && !graph_.pose_edges.empty()) try_lifted_start();
     if (best_.converged) return;
     const int before = best_.iterations;
     best_ = descend(system_, best_.estimates, final_descent());
     best_.iterations += before;
+  }
+
+  void try_lifted_start() {
+    // Windings tell everything of poses, but not of poses that hang on points.
+    const auto nothing_new = [this](const std::vector<Pose>& estimates) {
+      return graph_.point_edges.empty() && headings_.windings(estimates) == best_windings_;
+    };
+    int in_a_row = 0;  // the search may pass by on its way to something better
+    const auto enough = [&](const std::vector<Pose>& estimates) {
+      in_a_row = nothing_new(estimates) ? in_a_row + 1 : 0;
+      return in_a_row == kLooksAlike;
+    };
+    const std::vector<Pose> lifted =
+        solve_lifted(graph_, held_, system_.order(), kLiftingSeed, enough);
+    if (nothing_new(lifted)) return;
+    Start start{"the lifted problem", fit_positions(system_, lifted)};
+    try_start(start, kTrial);
   }
 
   [[nodiscard]] bool is_implausible() const { return excess_of(best_.chi2, dof_) > kImplausible; }

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kRank = 3;
 constexpr int kMostSteps = 1000;
+constexpr int kLook = 25;               // steps between two looks at whether the search may end
 constexpr double kLeastGain = 1e-9;     // relative decrease per step at which to stop
 constexpr double kHoldingWeight = 1e4;  // of a half-held pose, relative to its own stiffness
 constexpr double kFirstSpread = 0.5;    // of the random part at the beginning
@@ -54,7 +55,8 @@ class Lifting {
     system_.set_diagonal(diagonal);
   }
 
-  std::vector<Pose> solve(std::uint64_t seed) {
+  std::vector<Pose> solve(std::uint64_t seed,
+                          const std::function<bool(const std::vector<Pose>&)>& enough) {
     Lifted Y = begin(seed);
     Lifted gradient = riemannian_gradient(Y);
     Lifted direction;
@@ -76,6 +78,7 @@ class Lifting {
       const double before = cost;
       if (!advance(Y, direction, cost)) break;
       if (before - cost <= kLeastGain * (std::abs(cost) + 1e-12)) break;
+      if ((step + 1) % kLook == 0 && enough(round(Y))) break;
       gradient_before = gradient;
       slope_before = slope;
       gradient = riemannian_gradient(Y);
@@ -282,8 +285,9 @@ class Lifting {
 }  // namespace
 
 std::vector<Pose> solve_lifted(const PoseGraph& graph, const std::vector<std::uint8_t>& held,
-                               const std::vector<int>& order, std::uint64_t seed) {
-  return Lifting(graph, held, order).solve(seed);
+                               const std::vector<int>& order, std::uint64_t seed,
+                               const std::function<bool(const std::vector<Pose>&)>& enough) {
+  return Lifting(graph, held, order).solve(seed, enough);
 }
 
 }  // namespace trussmap

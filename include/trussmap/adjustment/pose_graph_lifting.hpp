@@ -22,14 +22,16 @@
 #include "trussmap/adjustment/pose_graph.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace trussmap {
 
 /// Estimates with headings and positions of the lifted minimum; held parts stand as they are held.
-/// `order`: of elimination, of all vertices. Deterministic; `seed` varies where the search begins.
-[[nodiscard]] std::vector<Pose> solve_lifted(const PoseGraph& graph,
-                                             const std::vector<std::uint8_t>& held,
-                                             const std::vector<int>& order, std::uint64_t seed);
+/// `order`: of elimination, of all vertices. Every now and then `enough` is shown what the search
+/// would return so far and may end it. Deterministic; `seed` varies where the search begins.
+[[nodiscard]] std::vector<Pose> solve_lifted(
+    const PoseGraph& graph, const std::vector<std::uint8_t>& held, const std::vector<int>& order,
+    std::uint64_t seed, const std::function<bool(const std::vector<Pose>&)>& enough);
 
 }  // namespace trussmap
