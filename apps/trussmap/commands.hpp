@@ -5,18 +5,23 @@
 // setup_NAME, which registers it, and the function that runs it.
 #pragma once
 
+#include <stdexcept>
+
 #include <CLI/CLI.hpp>
 
 namespace trussmap::app {
 
 // A command's callback throws: InputError and UsageError end with status 2, anything else with 1.
 
-void setup_adjust(CLI::App& app);
-
 /// Options that fit each other badly, or a value out of range: one line, status 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+void setup_adjust(CLI::App& app);
+void setup_build(CLI::App& app);
+void setup_convert(CLI::App& app);
+void setup_simulate(CLI::App& app);
 
 }  // namespace trussmap::app

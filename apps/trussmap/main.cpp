@@ -22,11 +22,14 @@ int complain(const std::exception& error, int status) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
   app.require_subcommand(1);
-  app.set_version_flag("--version", "trussmap 0.1.0");
+  app.set_version_flag("--version", "trussmap " TRUSSMAP_VERSION);
   trussmap::app::setup_adjust(app);
+  trussmap::app::setup_build(app);
+  trussmap::app::setup_convert(app);
+  trussmap::app::setup_simulate(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
@@ -41,4 +44,6 @@ int main(int argc, char** argv) {
     return complain(error, kFailed);
   }
   return 0;
+} catch (const std::exception& error) {  // while setting up, or while printing help
+  return complain(error, kFailed);
 }

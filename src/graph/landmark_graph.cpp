@@ -31,7 +31,7 @@ int LandmarkGraph::add_route(int source, int target) {
   route.source = source;
   route.target = target;
   const int number = routes();
-  boost::add_edge(idx(source), idx(target), number, graph_);
+  boost::add_edge(idx(source), idx(target), RouteNumber{number}, graph_);
   routes_.push_back(route);
   return number;
 }
@@ -44,14 +44,27 @@ int LandmarkGraph::add_traversal(int from, int to, const Traversal& traversal) {
   return number;
 }
 
+void LandmarkGraph::set_route(int number, const Route& route) {
+  Route& present = routes_[idx(number)];
+  if (present.source != route.source || present.target != route.target) {
+    throw std::invalid_argument("a route keeps its ends");
+  }
+  present = route;
+}
+
+void LandmarkGraph::set_position(int landmark, const Vector2& position) {
+  graph_[idx(landmark)].position = position;
+}
+
+void LandmarkGraph::set_covariance(int landmark, const Matrix2& covariance) {
+  graph_[idx(landmark)].covariance = covariance;
+}
+
 int LandmarkGraph::landmarks() const {
   return static_cast<int>(boost::num_vertices(graph_));
 }
 
 const Landmark& LandmarkGraph::landmark(int number) const {
-  return graph_[idx(number)];
-}
-Landmark& LandmarkGraph::landmark(int number) {
   return graph_[idx(number)];
 }
 const Route& LandmarkGraph::route(int number) const {
@@ -70,13 +83,13 @@ std::optional<int> LandmarkGraph::find(const std::string& name) const {
 std::optional<int> LandmarkGraph::route_between(int a, int b) const {
   const auto [edge, exists] = boost::edge(idx(a), idx(b), graph_);
   if (!exists) return std::nullopt;
-  return graph_[edge];
+  return graph_[edge].route;
 }
 
 std::vector<int> LandmarkGraph::routes_at(int landmark) const {
   std::vector<int> result;
   const auto [first, last] = boost::out_edges(idx(landmark), graph_);
-  for (auto edge = first; edge != last; ++edge) result.push_back(graph_[*edge]);
+  for (auto edge = first; edge != last; ++edge) result.push_back(graph_[*edge].route);
   return result;
 }
 

@@ -4,60 +4,107 @@
 
 #include "trussmap/core/error.hpp"
 
+#include <array>
+#include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <filesystem>
+#include <cstring>
 #include <fstream>
-#include <limits>
+#include <system_error>
+#include <unistd.h>
 
 #include <lzma.h>
 
 namespace trussmap {
 namespace {
 
-std::string decompressed(const std::string& packed, const std::string& path) {
+namespace fs = std::filesystem;
+
+std::string decompressed(const std::string& bytes, const fs::path& path) {
   lzma_stream stream = LZMA_STREAM_INIT;
-  if (lzma_stream_decoder(&stream, std::numeric_limits<std::uint64_t>::max(), LZMA_CONCATENATED) !=
-      LZMA_OK) {
-    throw std::bad_alloc();
+  const auto fail = [&](const char* what) -> InputError {
+    lzma_end(&stream);
+    return InputError(path.string(), 0, what);
+  };
+  if (lzma_stream_decoder(&stream, UINT64_MAX, LZMA_CONCATENATED) != LZMA_OK) {
+    throw fail("cannot be decompressed, expected an xz file");
   }
-  std::string text(packed.size() * 8 + 4096, '\0');
-  std::size_t filled = 0;
-  stream.next_in = reinterpret_cast<const std::uint8_t*>(packed.data());
-  stream.avail_in = packed.size();
+  stream.next_in = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  stream.avail_in = bytes.size();
+  std::string text;
+  std::array<std::uint8_t, 1U << 16U> buffer{};
   lzma_ret status = LZMA_OK;
   while (status == LZMA_OK) {
-    if (filled == text.size()) text.resize(2 * text.size());
-    stream.next_out = reinterpret_cast<std::uint8_t*>(text.data() + filled);
-    stream.avail_out = text.size() - filled;
+    stream.next_out = buffer.data();
+    stream.avail_out = buffer.size();
     status = lzma_code(&stream, LZMA_FINISH);
-    filled = text.size() - stream.avail_out;
+    text.append(reinterpret_cast<const char*>(buffer.data()), buffer.size() - stream.avail_out);
   }
+  if (status != LZMA_STREAM_END) throw fail("the xz data are damaged or cut off");
   lzma_end(&stream);
-  if (status != LZMA_STREAM_END) throw InputError(path, 0, "is not a whole .xz file");
-  text.resize(filled);
   return text;
+}
+
+fs::path temporary_for(const fs::path& path) {
+  fs::path temporary = path;
+  temporary += ".part" + std::to_string(::getpid());
+  return temporary;
+}
+
+void write_temporary(const fs::path& temporary, const fs::path& path, std::string_view content) {
+  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  if (!stream) {
+    const int reason = errno;
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw InputError(path.string(), 0, std::string("cannot be written: ") + std::strerror(reason));
+  }
 }
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    throw InputError(path, 0, "cannot be read, a file was expected");
+std::string read_file(const fs::path& path) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    throw InputError(path.string(), 0, "is a folder, expected a file");
   }
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  return path.ends_with(".xz") ? decompressed(text, path) : text;
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  if (!stream) throw InputError(path.string(), 0, "cannot be opened, expected a readable file");
+  std::string bytes(static_cast<std::size_t>(stream.tellg()), '\0');
+  stream.seekg(0);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!stream) throw InputError(path.string(), 0, "cannot be read to its end");
+  return path.extension() == ".xz" ? decompressed(bytes, path) : bytes;
 }
 
-void write_file(const std::string& path, const std::string& content) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << content << std::flush;
-    if (!stream) throw InputError(path, 0, "cannot be written");
+void write_file(const fs::path& path, std::string_view content) {
+  write_files({{path, std::string(content)}});
+}
+
+void write_files(const std::vector<std::pair<fs::path, std::string>>& files) {
+  std::vector<fs::path> temporaries;
+  const auto clean_up = [&temporaries] {
+    std::error_code ignored;
+    for (const fs::path& temporary : temporaries) fs::remove(temporary, ignored);
+  };
+  for (const auto& [path, content] : files) {
+    try {
+      write_temporary(temporary_for(path), path, content);
+    } catch (...) {
+      clean_up();
+      throw;
+    }
+    temporaries.push_back(temporary_for(path));
   }
-  std::filesystem::rename(temporary, path);
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    std::error_code failed;
+    fs::rename(temporaries[k], files[k].first, failed);
+    if (failed) {
+      clean_up();
+      throw InputError(files[k].first.string(), 0, "cannot be written: " + failed.message());
+    }
+  }
 }
 
 }  // namespace trussmap

@@ -46,33 +46,53 @@ Pose arc_displacement(const WheelTravel& travel, double wheelbase) {
   return {chord * std::cos(0.5 * turn), chord * std::sin(0.5 * turn), turn};
 }
 
-Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
+ArcNoise wheel_arc_noise(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
   if (!(wheelbase > 0.0)) throw std::invalid_argument("the wheelbase must be positive");
-  const double B = wheelbase;
-  const double D = 0.5 * (travel.left + travel.right);
-  const double a = (travel.right - travel.left) / B;
   const double from_left = noise.left * noise.left * std::abs(travel.left);
   const double from_right = noise.right * noise.right * std::abs(travel.right);
   const double c2 = from_right + from_left;
   const double d = from_right - from_left;
+  return {c2 / 4.0, c2 / (wheelbase * wheelbase), d / (2.0 * wheelbase)};
+}
 
+Matrix3 arc_covariance(double path, double turn, const ArcNoise& noise) {
+  // A unit of noise where u of the arc remains moves the end by e (along) and b (heading), in the
+  // frame of the final heading: e = (cos ua, -sin ua, 0), b = (D (1 - cos ua)/a, D sin(ua)/a, 1).
+  // Below: the integrals over u from 0 to 1 of e e', b b' and e b' + b e'.
+  const double D = path;
+  const double a = turn;
   const double h = 0.5 * sinc(0.5 * a) * sinc(0.5 * a);
-  const double r = D / B;
-  // In the frame of the final heading.
-  const double q11 = c2 * ((1.0 - 2.0 * a * a * g1(2.0 * a)) / 4.0 +
-                           r * r * 2.0 * a * a * (4.0 * g2(2.0 * a) - g2(a))) +
-                     d * r * a * (2.0 * g1(2.0 * a) - g1(a));
-  const double q22 =
-      c2 * (a * a * g1(2.0 * a) / 2.0 + r * r * 2.0 * g1(2.0 * a)) - d * r * 2.0 * a * g1(2.0 * a);
-  const double q12 = c2 * (-a * sinc(a) * sinc(a) / 8.0 + r * r * a * h * h / 2.0) +
-                     d * r / 2.0 * (sinc(a) * sinc(a) / 2.0 - a * a * h * h / 2.0);
-  const double q13 = c2 * D * a * g1(a) / (B * B) + d * sinc(a) / (2.0 * B);
-  const double q23 = c2 * D * h / (B * B) - d * a * h / (2.0 * B);
-  const double q33 = c2 / (B * B);
+  const double s2 = sinc(a) * sinc(a);
+  const double g1_a = g1(a);
+  const double g1_2a = g1(2.0 * a);
+  Matrix3 along = Matrix3::Zero();
+  along(0, 0) = 1.0 - 2.0 * a * a * g1_2a;
+  along(1, 1) = 2.0 * a * a * g1_2a;
+  along(0, 1) = -0.5 * a * s2;
+  Matrix3 heading;
+  heading(0, 0) = D * D * 2.0 * a * a * (4.0 * g2(2.0 * a) - g2(a));
+  heading(1, 1) = D * D * 2.0 * g1_2a;
+  heading(0, 1) = D * D * 0.5 * a * h * h;
+  heading(0, 2) = D * a * g1_a;
+  heading(1, 2) = D * h;
+  heading(2, 2) = 1.0;
+  Matrix3 shared = Matrix3::Zero();
+  shared(0, 0) = 2.0 * D * a * (2.0 * g1_2a - g1_a);
+  shared(1, 1) = -4.0 * D * a * g1_2a;
+  shared(0, 1) = 0.5 * D * (s2 - a * a * h * h);
+  shared(0, 2) = sinc(a);
+  shared(1, 2) = -a * h;
 
-  const Matrix3 Q = (Matrix3() << q11, q12, q13, q12, q22, q23, q13, q23, q33).finished();
+  Matrix3 Q = noise.along * along + noise.heading * heading + noise.shared * shared;
+  Q.triangularView<Eigen::StrictlyLower>() = Q.transpose();
   const Matrix3 T = pose_rotation(a);
   return symmetrised(T * Q * T.transpose());
+}
+
+Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
+  return arc_covariance(0.5 * (travel.left + travel.right),
+                        (travel.right - travel.left) / wheelbase,
+                        wheel_arc_noise(travel, wheelbase, noise));
 }
 
 Motion arc_motion(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {

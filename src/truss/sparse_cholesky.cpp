@@ -107,7 +107,7 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
   cholmod_dense rhs = view_of(b.data(), b.rows(), b.cols());
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, cholmod_->factor, &rhs, &cholmod_->common);
   cholmod_->check("solve");
-  const Eigen::MatrixXd result =
+  Eigen::MatrixXd result =
       Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), b.rows(), b.cols());
   cholmod_free_dense(&x, &cholmod_->common);
   return result;

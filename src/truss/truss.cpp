@@ -150,7 +150,8 @@ SparseMatrix assemble(const std::vector<Bar>& bars, const std::vector<int>& unkn
     if (j >= 0) add_block(j, j, bar.stiffness);
     if (i >= 0 && j >= 0) add_block(std::max(i, j), std::min(i, j), -bar.stiffness);
   }
-  SparseMatrix K(2 * free_joints, 2 * free_joints);
+  const Eigen::Index unknowns = 2 * static_cast<Eigen::Index>(free_joints);
+  SparseMatrix K(unknowns, unknowns);
   K.setFromTriplets(entries.begin(), entries.end());
   return K;
 }

@@ -40,10 +40,10 @@ Matrix3 in_map(const Matrix3& covariance, double heading) {
   return T * covariance * T.transpose();
 }
 
-class ChongKleeman : public ::testing::TestWithParam<json> {};
+class ChongKleeman : public ::testing::TestWithParam<testing::Case> {};
 
 TEST_P(ChongKleeman, ClosedFormEqualsQuadrature) {
-  const json& c = GetParam();
+  const json& c = GetParam().content;
   const Motion motion = arc_motion({c["L"], c["R"]}, c["B"], {c["kL"], c["kR"]});
   expect_covariance(in_map(motion.covariance, c["theta0"]), matrix3(c["cov"]), 1e-12);
   const Vector2 step = rotation(c["theta0"]) * motion.displacement.position();
@@ -54,19 +54,18 @@ TEST_P(ChongKleeman, ClosedFormEqualsQuadrature) {
               1e-13 * (1.0 + std::abs(c["dtheta"].get<double>())));
 }
 
-std::string category(const ::testing::TestParamInfo<json>& info) {
-  return info.param["category"].get<std::string>() + "_" + std::to_string(info.index);
+std::string category(const ::testing::TestParamInfo<testing::Case>& info) {
+  return info.param.content["category"].get<std::string>() + "_" + std::to_string(info.index);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    EveryCase, ChongKleeman,
-    ::testing::ValuesIn(testing::reference("chong_kleeman.json")["cases"].get<std::vector<json>>()),
-    category);
+INSTANTIATE_TEST_SUITE_P(EveryCase, ChongKleeman,
+                         ::testing::ValuesIn(testing::cases("chong_kleeman.json", "cases")),
+                         category);
 
-class ChongKleemanPath : public ::testing::TestWithParam<json> {};
+class ChongKleemanPath : public ::testing::TestWithParam<testing::Case> {};
 
 TEST_P(ChongKleemanPath, PiecesComposeToTheQuadrature) {
-  const json& c = GetParam();
+  const json& c = GetParam().content;
   Motion path;
   for (const json& piece : c["segments_LR"]) {
     path = then(path, arc_motion({piece[0], piece[1]}, c["B"], {c["kL"], c["kR"]}));
@@ -79,10 +78,8 @@ TEST_P(ChongKleemanPath, PiecesComposeToTheQuadrature) {
   EXPECT_NEAR(theta0 + path.displacement.heading, c["theta"].get<double>(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    EveryCase, ChongKleemanPath,
-    ::testing::ValuesIn(
-        testing::reference("chong_kleeman.json")["compositions"].get<std::vector<json>>()));
+INSTANTIATE_TEST_SUITE_P(EveryCase, ChongKleemanPath,
+                         ::testing::ValuesIn(testing::cases("chong_kleeman.json", "compositions")));
 
 }  // namespace
 }  // namespace trussmap

@@ -28,9 +28,11 @@ struct Landmark {
 
 class LandmarkGraph {
  public:
-  /// Vertex property: Landmark. Edge property: the route's number.
+  struct RouteNumber {
+    int route = -1;
+  };
   using BoostGraph =
-      boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, Landmark, int>;
+      boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, Landmark, RouteNumber>;
 
   /// Throws std::invalid_argument if the name is empty or taken.
   int add_landmark(const std::string& name, const Vector2& position);
@@ -43,10 +45,15 @@ class LandmarkGraph {
   /// there is none (its direction is then from -> to). Returns the route.
   int add_traversal(int from, int to, const Traversal& traversal);
 
+  /// Replaces a route's averages. Throws std::invalid_argument if its ends differ.
+  void set_route(int number, const Route& route);
+
+  void set_position(int landmark, const Vector2& position);
+  void set_covariance(int landmark, const Matrix2& covariance);
+
   [[nodiscard]] int landmarks() const;
   [[nodiscard]] int routes() const { return static_cast<int>(routes_.size()); }
   [[nodiscard]] const Landmark& landmark(int number) const;
-  [[nodiscard]] Landmark& landmark(int number);
   [[nodiscard]] const Route& route(int number) const;
   [[nodiscard]] Route& route(int number);
 

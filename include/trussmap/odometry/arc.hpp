@@ -43,6 +43,22 @@ struct Motion {
 [[nodiscard]] Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase,
                                      const WheelNoise& noise);
 
+/// Where the uncertainty of an arc comes from. Chong & Kleeman's wheels give along = c2/4,
+/// heading = c2/B^2, shared = d/(2B), with c2, d = k_R^2|R| +- k_L^2|L|; other sources add to it.
+struct ArcNoise {
+  double along = 0.0;    ///< variance of the path length, m^2
+  double heading = 0.0;  ///< variance of the turn, rad^2
+  double shared = 0.0;   ///< their covariance, m rad
+};
+
+/// ArcNoise of the two wheels.
+[[nodiscard]] ArcNoise wheel_arc_noise(const WheelTravel& travel, double wheelbase,
+                                       const WheelNoise& noise);
+
+/// Covariance in the axes of the arc's start, of an arc of signed length `path` (m) that turns by
+/// `turn` (rad), when the noise arises evenly along it.
+[[nodiscard]] Matrix3 arc_covariance(double path, double turn, const ArcNoise& noise);
+
 /// Displacement and covariance of one arc.
 [[nodiscard]] Motion arc_motion(const WheelTravel& travel, double wheelbase,
                                 const WheelNoise& noise);

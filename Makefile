@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+#
+# A short way to the usual things; CMake does the work (see CMakePresets.json).
+#   make               configure and build into build/
+#   make demo          install what is missing (Debian), build the command, run the worked examples
+#   make test          install what is missing (Debian), build everything, run all tests
+#   make install-deps  install the Debian packages that the build needs
+#   make clean         remove the build trees
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+
+# A tree keeps the generator that it was first configured with.
+ifeq ($(wildcard build/CMakeCache.txt),)
+GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
+endif
+
+.PHONY: all demo test install-deps configure build command clean
+.NOTPARALLEL:
+
+all: build
+
+configure:
+	@command -v cmake >/dev/null || { echo "cmake is missing: run 'make install-deps'" >&2; exit 1; }
+	@cmake --preset default $(GENERATOR) >/dev/null
+
+build: configure
+	@cmake --build build --parallel $(JOBS)
+
+command: configure
+	@cmake --build build --parallel $(JOBS) --target trussmap_command
+
+demo: install-deps command
+	@maps/demo.sh
+
+test: install-deps build
+	@.ci/test build --parallel $(JOBS)
+
+install-deps:
+	@.ci/install-deps
+
+clean:
+	rm -rf build build-*

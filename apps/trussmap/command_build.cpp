@@ -1,0 +1,255 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap build: a landmark map from recordings.
+#include "trussmap/adjustment/linear_truss.hpp"
+#include "trussmap/core/error.hpp"
+#include "trussmap/correction/recording_map.hpp"
+#include "trussmap/graph/survey_comparison.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/map_graphml.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/io/recording_csv.hpp"
+#include "trussmap/report/map_picture.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "option_checks.hpp"
+
+namespace trussmap::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+struct BuildOptions {
+  std::vector<std::string> recordings;
+  std::string model;
+  std::string method = "elastic";
+  std::string eta = "50";
+  double min_drive = kDefaultMinDrive;  // m
+  double gate = RecordingMapOptions{}.gate;
+  std::string out;
+  std::string json_file;
+  std::string svg;
+};
+
+constexpr std::size_t kRejectedShown = 10;
+
+Eta parse_eta(const std::string& text) {
+  Eta eta;
+  eta.hold_first = false;
+  if (text == "all") {
+    eta.kind = Eta::Kind::all;
+  } else if (text == "auto") {
+    eta.kind = Eta::Kind::estimated;
+  } else {
+    eta.count = std::stoi(text);
+  }
+  return eta;
+}
+
+/// How the map is made: "adjustment" is the elastic builder's legs, everything at once.
+RecordingMapOptions map_options(const BuildOptions& options) {
+  RecordingMapOptions result;
+  result.builder.method = options.method == "elastic-printed" ? Method::elastic_printed
+                          : options.method == "gauss-markov"  ? Method::gauss_markov
+                          : options.method == "adjustment"    ? Method::gauss_markov
+                                                              : Method::elastic;
+  result.builder.eta = parse_eta(options.eta);
+  result.min_drive = options.min_drive;
+  result.gate = options.gate;
+  return result;
+}
+
+std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
+  std::map<std::string, SurveyPoint> survey;
+  for (const Recording& recording : recordings) {
+    for (const SurveyPoint& point : recording.survey) survey.try_emplace(point.landmark, point);
+  }
+  std::vector<SurveyPoint> result;
+  result.reserve(survey.size());
+  for (const auto& [name, point] : survey) result.push_back(point);
+  return result;
+}
+
+struct Judged {
+  SurveyComparison map;
+  double rms_dead_reckoning = 0.0;  // m
+};
+
+json survey_json(const Judged& judged) {
+  json exchanged = json::array();
+  for (const auto& [a, b] : judged.map.exchanged) exchanged.push_back({a, b});
+  return {{"landmarks", judged.map.landmarks},
+          {"rms_m", judged.map.rigid.rms},
+          {"rms_dead_reckoning_m", judged.rms_dead_reckoning},
+          {"rms_similarity_m", judged.map.similarity.rms},
+          {"scale", judged.map.similarity.scale},
+          {"rms_with_contradicting_m", judged.map.rms_all},
+          {"contradicting", judged.map.contradicting},
+          {"exchanged", exchanged}};
+}
+
+json result_json(const RecordingMap& built, const std::string& method) {
+  json rejected = json::array();
+  for (const RejectedSighting& one : built.rejected) {
+    rejected.push_back({{"recording", one.recording},
+                        {"t", one.t},
+                        {"landmark", one.landmark},
+                        {"misfit_m", one.misfit}});
+  }
+  return {{"method", method},
+          {"legs", built.legs},
+          {"landmarks", built.map.landmarks()},
+          {"routes", built.map.routes()},
+          {"first_sight", built.first_sight},
+          {"refinements", built.refinements},
+          {"side_sightings", built.side_sightings},
+          {"rejected", rejected},
+          {"unconfirmed", built.unconfirmed}};
+}
+
+void print_survey(const Judged& judged) {
+  const SurveyComparison& map = judged.map;
+  fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
+             map.landmarks);
+  fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the map", map.rigid.rms);
+  fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", judged.rms_dead_reckoning);
+  fmt::print("  {:<28} {:>8.3f} m  (the map is {:.1f} % too {})\n", "rms with a scale as well",
+             map.similarity.rms, 100.0 * std::abs(1.0 / map.similarity.scale - 1.0),
+             map.similarity.scale < 1.0 ? "large" : "small");
+  if (map.contradicting.empty()) return;
+  fmt::print(
+      "\n  These landmarks contradict the survey and do not count above (with them the rms "
+      "is {:.3f} m):\n",
+      map.rms_all);
+  for (const std::string& name : map.contradicting) fmt::print("    landmark {}\n", name);
+  for (const auto& [a, b] : map.exchanged) {
+    fmt::print(
+        "    landmarks {} and {} each lie where the survey has the other: are their labels "
+        "exchanged?\n",
+        a, b);
+  }
+}
+
+void print_result(const RecordingMap& built, const BuildOptions& options, bool judged_too,
+                  const Judged& judged) {
+  fmt::print("map of {} landmarks and {} routes, method {}\n\n", built.map.landmarks(),
+             built.map.routes(), options.method);
+  const auto line = [](const char* what, std::size_t number) {
+    fmt::print("  {:<28} {:>8}\n", what, number);
+  };
+  line("legs", static_cast<std::size_t>(built.legs));
+  line("loops closed at first sight", static_cast<std::size_t>(built.first_sight));
+  line("known routes driven again", static_cast<std::size_t>(built.refinements));
+  line("sightings beside a leg's end", static_cast<std::size_t>(built.side_sightings));
+  line("sightings kept out", built.rejected.size());
+  for (std::size_t k = 0; k < std::min(built.rejected.size(), kRejectedShown); ++k) {
+    const RejectedSighting& one = built.rejected[k];
+    fmt::print("    t = {:.3f} s: landmark {} seen {:.2f} m from where the map has it\n", one.t,
+               one.landmark, one.misfit);
+  }
+  if (built.rejected.size() > kRejectedShown) {
+    fmt::print("    and {} more (--json lists all)\n", built.rejected.size() - kRejectedShown);
+  }
+  for (const std::string& name : built.unconfirmed) {
+    fmt::print("  landmark {} was sighted too seldom to be placed\n", name);
+  }
+  if (judged_too) print_survey(judged);
+  if (!options.out.empty()) fmt::print("\n  map written to {}\n", options.out);
+}
+
+MapPicture picture_of(const RecordingMap& built, const std::vector<SurveyPoint>& survey,
+                      const Judged& judged, const std::string& method) {
+  MapPicture picture;
+  picture.title = "Landmark map, method " + method;
+  picture.map = built.map;
+  picture.before = built.dead_reckoned;
+  if (judged.map.landmarks >= 3) {
+    picture.map_onto_truth = judged.map.rigid;
+    for (const SurveyPoint& point : survey) picture.truth[point.landmark] = {point.x, point.y};
+  }
+  return picture;
+}
+
+void run_build(const BuildOptions& options) {
+  std::vector<Recording> recordings;
+  for (const std::string& folder : options.recordings) {
+    recordings.push_back(read_recording(folder));
+  }
+  const Model model = read_model(options.model);
+  if (!model.effects.empty()) {
+    throw InputError(options.model, 0,
+                     "has effects, which build cannot apply yet; expected a model without any");
+  }
+  RecordingMap built = map_recordings(recordings, model, map_options(options));
+  if (options.method == "adjustment") built.map = adjust_linear(built.map);
+
+  const std::vector<SurveyPoint> survey = survey_of(recordings);
+  Judged judged;
+  judged.map = compare_with_survey(positions_of(built.map), survey);
+  judged.rms_dead_reckoning = survey_rms(built.dead_reckoned, survey, judged.map.contradicting);
+  const bool judged_too = judged.map.landmarks >= 3;
+
+  std::vector<std::pair<fs::path, std::string>> files;
+  if (!options.out.empty()) files.emplace_back(options.out, format_map_graphml(built.map));
+  if (!options.json_file.empty()) {
+    json result = result_json(built, options.method);
+    if (judged_too) result["survey"] = survey_json(judged);
+    files.emplace_back(options.json_file, result.dump(2) + "\n");
+  }
+  if (!options.svg.empty()) {
+    files.emplace_back(options.svg, draw_map(picture_of(built, survey, judged, options.method)));
+  }
+  write_files(files);
+  print_result(built, options, judged_too, judged);
+}
+
+}  // namespace
+
+void setup_build(CLI::App& app) {
+  auto options = std::make_shared<BuildOptions>();
+  CLI::App* command = app.add_subcommand(
+      "build", "Build a landmark map from recordings (several folders: several sessions)");
+  command->add_option("RECORDING", options->recordings, "Folders of CSV streams")->required();
+  command->add_option("--model", options->model, "The robot and its noise (TOML)")->required();
+  command->add_option("--method", options->method, "How the map is made")
+      ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "The map (GraphML)");
+  command->add_option("--json", options->json_file, "The figures, complete (JSON)");
+  command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
+  command
+      ->add_option("--eta", options->eta,
+                   "How many landmarks a refinement may move: a number, all, or auto")
+      ->check([](const std::string& text) {
+        const bool word = text == "all" || text == "auto";
+        return word || whole_number(2)(*std::make_unique<std::string>(text)).empty()
+                   ? std::string()
+                   : "'" + text + "' is no whole number from 2, all or auto";
+      })
+      ->capture_default_str();
+  command
+      ->add_option("--min-drive", options->min_drive,
+                   "Shortest driven path between a leg's ends [m]")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--gate", options->gate,
+                   "Keep out sightings that contradict the map by more standard deviations")
+      ->check(above_zero())
+      ->capture_default_str();
+  command->callback([options] { run_build(*options); });
+}
+
+}  // namespace trussmap::app

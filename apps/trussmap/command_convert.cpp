@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap convert: maps between formats, and foreign recordings to recordings.
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/map_formats.hpp"
+#include "trussmap/io/map_graphml.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/io/mrclam.hpp"
+#include "trussmap/io/recording_csv.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+namespace trussmap::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  std::string in;
+  std::string out;
+};
+
+void count(int number, const char* what) {
+  if (number > 0) fmt::print("  {:>7} {}\n", number, what);
+}
+
+void convert_mrclam(const fs::path& in, const fs::path& out) {
+  const MrclamRecording foreign = read_mrclam(in);
+  std::error_code failed;
+  fs::create_directories(out, failed);
+  if (failed) throw InputError(out.string(), 0, "cannot be made: " + failed.message());
+  write_recording(out, foreign.recording,
+                  fmt::format("t = 0 is {:.0f} s, Unix time", foreign.epoch));
+  write_model(out / "model.toml", foreign.model);
+  const Recording& recording = foreign.recording;
+  fmt::print("converted: MRCLAM {} to the recording {}\n\n", in.string(), out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows");
+  count(static_cast<int>(recording.sightings.size()), "sightings");
+  count(static_cast<int>(recording.survey.size()), "surveyed landmarks");
+  count(static_cast<int>(recording.truth.size()), "truth rows");
+  count(foreign.merged_times, "odometry rows merged: their time repeats or runs backwards");
+  count(foreign.robots_seen, "sightings of other robots dropped");
+  count(foreign.unknown_barcodes, "sightings of unknown barcodes dropped");
+  count(foreign.outside_drive, "sightings outside of the drive dropped");
+  count(foreign.unordered_sightings, "sightings were out of order in time");
+  count(foreign.same_frame, "sightings set to the time of their camera frame (within 5 ms)");
+}
+
+LandmarkGraph read_map(const fs::path& in) {
+  if (in.extension() == ".graphml") return read_map_graphml(in);
+  throw UsageError("cannot tell what " + in.string() +
+                   " is: expected a map (.graphml), or DIR/RobotN of an MRCLAM data set");
+}
+
+std::string format_map(const LandmarkGraph& map, const fs::path& out) {
+  if (out.extension() == ".graphml") return format_map_graphml(map);
+  if (out.extension() == ".geojson") return format_geojson(map);
+  if (out.extension() == ".dot") return format_dot(map);
+  throw UsageError("cannot write " + out.string() + ": expected .graphml, .geojson or .dot");
+}
+
+void run_convert(const ConvertOptions& options) {
+  const fs::path in = options.in;
+  const fs::path out = options.out;
+  if (is_mrclam(in)) {
+    convert_mrclam(in, out);
+    return;
+  }
+  const LandmarkGraph map = read_map(in);
+  write_file(out, format_map(map, out));
+  fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
+             out.string());
+}
+
+}  // namespace
+
+void setup_convert(CLI::App& app) {
+  auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = app.add_subcommand(
+      "convert", "Convert maps between formats, and foreign recordings to recordings");
+  command
+      ->add_option("IN", options->in,
+                   "A map (.graphml), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
+      ->required();
+  command
+      ->add_option("OUT", options->out,
+                   "A map (.graphml, .geojson, .dot), or the recording's folder")
+      ->required();
+  command->callback([options] { run_convert(*options); });
+}
+
+}  // namespace trussmap::app

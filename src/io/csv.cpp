@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/csv.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/core/index.hpp"
+#include "trussmap/recording/recording.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace trussmap {
+namespace {
+
+/// Place of the first byte that is not part of valid UTF-8, or npos.
+std::size_t invalid_utf8(std::string_view text) {
+  for (std::size_t k = 0; k < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    if (byte < 0x80U) {
+      ++k;
+      continue;
+    }
+    const std::size_t length = byte >= 0xF0U ? 4 : byte >= 0xE0U ? 3 : 2;
+    if (byte < 0xC2U || byte > 0xF4U || k + length > text.size()) return k;
+    for (std::size_t n = 1; n < length; ++n) {
+      if ((static_cast<unsigned char>(text[k + n]) & 0xC0U) != 0x80U) return k;
+    }
+    k += length;
+  }
+  return std::string_view::npos;
+}
+
+std::string shown(std::string_view field) {
+  constexpr std::size_t kLongest = 40;
+  return "\"" + std::string(field.substr(0, kLongest)) + (field.size() > kLongest ? "...\"" : "\"");
+}
+
+}  // namespace
+
+CsvReader::CsvReader(std::string_view text, std::string file)
+    : text_(text), file_(std::move(file)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text_.substr(0, kByteOrderMark.size()) == kByteOrderMark) at_ = kByteOrderMark.size();
+  if (const std::size_t bad = invalid_utf8(text_); bad != std::string_view::npos) {
+    const auto line = std::count(text_.begin(), text_.begin() + static_cast<long>(bad), '\n');
+    throw InputError(file_, static_cast<std::size_t>(line) + 1,
+                     "a byte that is no UTF-8 text, expected UTF-8");
+  }
+  if (!read_record()) {
+    throw InputError(file_, 0, "the file is empty, expected a header row");
+  }
+  for (const std::string_view name : fields_) {
+    if (std::find(columns_.begin(), columns_.end(), name) != columns_.end()) {
+      fail("column " + shown(name) + " stands twice in the header, expected each name once");
+    }
+    columns_.emplace_back(name);
+  }
+}
+
+int CsvReader::find(std::string_view column) const {
+  const auto place = std::find(columns_.begin(), columns_.end(), column);
+  return place == columns_.end() ? -1 : static_cast<int>(place - columns_.begin());
+}
+
+int CsvReader::require(std::string_view column) const {
+  const int place = find(column);
+  if (place < 0) {
+    std::string found;
+    for (const std::string& name : columns_) found += (found.empty() ? "" : ",") + name;
+    throw InputError(file_, line_,
+                     "column \"" + std::string(column) + "\" is missing, found \"" + found + "\"");
+  }
+  return place;
+}
+
+bool CsvReader::next() {
+  if (!read_record()) return false;
+  if (fields_.size() == columns_.size()) return true;
+  const bool at_end = at_ >= text_.size();
+  const bool line_open = text_.back() != '\n';
+  if (at_end && line_open && fields_.size() < columns_.size()) {
+    fail("the file is cut off in the middle of a row, expected " + std::to_string(columns_.size()) +
+         " fields");
+  }
+  fail(std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
+       ", expected " + std::to_string(columns_.size()) + " as in the header");
+}
+
+bool CsvReader::read_record() {
+  while (at_ < text_.size()) {  // over blank lines and comments
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const char first = text_[at_];
+    if (first != '#' && first != '\n' && !(first == '\r' && at_ + 1 == end)) break;
+    at_ = std::min(end + 1, text_.size());
+    ++next_line_;
+  }
+  if (at_ >= text_.size()) return false;
+  line_ = next_line_;
+  fields_.clear();
+  used_unquoted_ = 0;
+  unquoted_.resize(std::max<std::size_t>(unquoted_.size(), columns_.size() + 1));
+  for (bool end_of_record = false; !end_of_record;) read_field(end_of_record);
+  return true;
+}
+
+void CsvReader::read_field(bool& end_of_record) {
+  const auto ends_field = [this](std::size_t k) {
+    return k >= text_.size() || text_[k] == ',' || text_[k] == '\n' ||
+           (text_[k] == '\r' && (k + 1 >= text_.size() || text_[k + 1] == '\n'));
+  };
+  if (at_ < text_.size() && text_[at_] == '"') {
+    if (used_unquoted_ == unquoted_.size()) fail("more fields than the header has columns");
+    std::string& value = unquoted_[used_unquoted_++];
+    value.clear();
+    std::size_t k = at_ + 1;
+    for (;; ++k) {
+      if (k >= text_.size()) fail("a quoted field is not closed, expected a second \"");
+      if (text_[k] == '\n') ++next_line_;
+      if (text_[k] != '"') {
+        value += text_[k];
+      } else if (k + 1 < text_.size() && text_[k + 1] == '"') {
+        value += text_[k++];
+      } else {
+        break;
+      }
+    }
+    at_ = k + 1;
+    if (!ends_field(at_)) fail("text after a closing quote, expected a comma or the line's end");
+    fields_.emplace_back(value);
+  } else {
+    std::size_t k = at_;
+    while (!ends_field(k)) {
+      if (text_[k] == '"') fail("a quote within an unquoted field, expected \"...\" around it");
+      ++k;
+    }
+    fields_.push_back(text_.substr(at_, k - at_));
+    at_ = k;
+  }
+  if (at_ < text_.size() && text_[at_] == ',') {
+    ++at_;
+    return;
+  }
+  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+  if (at_ < text_.size()) {
+    ++at_;
+    ++next_line_;
+  }
+  end_of_record = true;
+}
+
+std::string_view CsvReader::field(int column) const {
+  return fields_[idx(column)];
+}
+
+double CsvReader::number(int column) const {
+  const std::string_view text = field(column);
+  const std::string& name = columns_[idx(column)];
+  if (text.empty()) fail("column " + name + " is empty, expected a number");
+  double value = 0.0;
+  const char* first = text.data() + (text.front() == '+' ? 1 : 0);
+  const char* last = text.data() + text.size();
+  const auto [end, status] = std::from_chars(first, last, value);
+  if (status == std::errc::result_out_of_range) {
+    fail("column " + name + " is " + shown(text) + ", expected a number within double's range");
+  }
+  if (status != std::errc() || end != last) {
+    fail("column " + name + " is " + shown(text) + ", expected a number");
+  }
+  if (!std::isfinite(value)) {
+    fail("column " + name + " is " + shown(text) + ", expected a finite number");
+  }
+  return value;
+}
+
+double CsvReader::number_or_absent(int column) const {
+  return field(column).empty() ? kAbsent : number(column);
+}
+
+void CsvReader::fail(const std::string& what) const {
+  throw InputError(file_, line_, what);
+}
+
+std::string csv_field(std::string_view text) {
+  const bool plain = text.find_first_of(",\"\r\n") == std::string_view::npos &&
+                     (text.empty() || text.front() != '#');
+  if (plain) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string csv_number(double value) {
+  if (std::isnan(value)) return "";
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+}  // namespace trussmap

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/map_formats.hpp"
+
+#include "trussmap/io/csv.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+
+json coordinates(const Vector2& position) {
+  return {position.x(), position.y()};
+}
+
+void add_covariance(json& properties, const Matrix2& covariance) {
+  properties["c_xx"] = covariance(0, 0);
+  properties["c_xy"] = covariance(0, 1);
+  properties["c_yy"] = covariance(1, 1);
+}
+
+std::string dot_text(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+std::string format_geojson(const LandmarkGraph& map) {
+  json features = json::array();
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& landmark = map.landmark(k);
+    json properties = {{"landmark", landmark.name}};
+    if (landmark.covariance) add_covariance(properties, *landmark.covariance);
+    features.push_back(
+        {{"type", "Feature"},
+         {"geometry", {{"type", "Point"}, {"coordinates", coordinates(landmark.position)}}},
+         {"properties", properties}});
+  }
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    const Landmark& source = map.landmark(route.source);
+    const Landmark& target = map.landmark(route.target);
+    json properties = {{"from", source.name},
+                       {"to", target.name},
+                       {"traversals", route.traversals},
+                       {"stretch", route.stretch},
+                       {"orientation", route.orientation},
+                       {"dx", route.displacement.x()},
+                       {"dy", route.displacement.y()}};
+    add_covariance(properties, route.covariance);
+    features.push_back(
+        {{"type", "Feature"},
+         {"geometry",
+          {{"type", "LineString"},
+           {"coordinates", {coordinates(source.position), coordinates(target.position)}}}},
+         {"properties", properties}});
+  }
+  return json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
+}
+
+std::string format_dot(const LandmarkGraph& map) {
+  std::string text = "graph map {\n  node [shape=point];\n";
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& landmark = map.landmark(k);
+    text += "  " + dot_text(landmark.name) + " [xlabel=" + dot_text(landmark.name) + ", pos=\"" +
+            csv_number(landmark.position.x()) + "," + csv_number(landmark.position.y()) + "!\"];\n";
+  }
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    text += "  " + dot_text(map.landmark(route.source).name) + " -- " +
+            dot_text(map.landmark(route.target).name) + " [len=" + csv_number(route.stretch) +
+            ", weight=" + std::to_string(route.traversals) + "];\n";
+  }
+  return text + "}\n";
+}
+
+}  // namespace trussmap

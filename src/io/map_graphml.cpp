@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/map_graphml.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/csv.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+
+namespace trussmap {
+namespace {
+
+using boost::property_tree::ptree;
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+void write_data(std::string& text, const char* key, double value) {
+  text += std::string("      <data key=\"") + key + "\">" + csv_number(value) + "</data>\n";
+}
+
+void write_covariance(std::string& text, const std::string& prefix, const Matrix2& covariance) {
+  write_data(text, (prefix + "c_xx").c_str(), covariance(0, 0));
+  write_data(text, (prefix + "c_xy").c_str(), covariance(0, 1));
+  write_data(text, (prefix + "c_yy").c_str(), covariance(1, 1));
+}
+
+/// The data of one node or edge, by attribute name.
+class Attributes {
+ public:
+  Attributes(const ptree& element, const std::map<std::string, std::string>& names,
+             std::string file, std::string what)
+      : file_(std::move(file)), what_(std::move(what)) {
+    for (const auto& [tag, child] : element) {
+      if (tag != "data") continue;
+      const std::string key = child.get("<xmlattr>.key", "");
+      const auto name = names.find(key);
+      values_[name == names.end() ? key : name->second] = child.data();
+    }
+  }
+
+  [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) > 0; }
+
+  [[nodiscard]] double number(const std::string& name) const {
+    const auto found = values_.find(name);
+    if (found == values_.end()) fail("has no " + name + ", expected a number");
+    const std::string& text = found->second;
+    double value = 0.0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+      fail(name + " is \"" + text + "\", expected a finite number");
+    }
+    return value;
+  }
+
+  [[nodiscard]] Matrix2 covariance() const {
+    const double xy = number("c_xy");
+    return (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    throw InputError(file_, 0, what_ + ": " + why);
+  }
+
+ private:
+  std::string file_;
+  std::string what_;
+  std::map<std::string, std::string> values_;
+};
+
+/// Attribute names of the declared keys, for nodes or for edges. (ptree splits paths at dots, and
+/// "attr.name" has one.)
+std::map<std::string, std::string> declared_keys(const ptree& graphml, const std::string& domain) {
+  std::map<std::string, std::string> names;
+  for (const auto& [tag, child] : graphml) {
+    if (tag != "key") continue;
+    const auto attributes = child.get_child_optional("<xmlattr>");
+    if (!attributes) continue;
+    std::map<std::string, std::string> values;
+    for (const auto& [name, value] : *attributes) values[name] = value.data();
+    const std::string of = values.count("for") > 0 ? values["for"] : "all";
+    if (of == domain || of == "all") names[values["id"]] = values["attr.name"];
+  }
+  return names;
+}
+
+void read_node(const ptree& element, const std::map<std::string, std::string>& names,
+               const std::string& file, LandmarkGraph& map) {
+  const std::string name = element.get("<xmlattr>.id", "");
+  if (name.empty()) throw InputError(file, 0, "a node has no id, expected a landmark's name");
+  const Attributes data(element, names, file, "landmark " + name);
+  if (map.find(name)) data.fail("stands twice, expected each landmark once");
+  const int landmark = map.add_landmark(name, {data.number("x"), data.number("y")});
+  if (data.has("c_xx")) map.set_covariance(landmark, data.covariance());
+}
+
+void read_edge(const ptree& element, const std::map<std::string, std::string>& names,
+               const std::string& file, LandmarkGraph& map) {
+  const std::string source = element.get("<xmlattr>.source", "");
+  const std::string target = element.get("<xmlattr>.target", "");
+  const Attributes data(element, names, file, "route " + source + " - " + target);
+  const std::optional<int> i = map.find(source);
+  const std::optional<int> j = map.find(target);
+  if (!i || !j) data.fail("landmark " + (i ? target : source) + " is unknown, expected a node");
+  if (*i == *j) data.fail("joins a landmark to itself, expected two landmarks");
+  if (map.route_between(*i, *j)) data.fail("stands twice, expected one edge between two nodes");
+  Route route;
+  route.source = *i;
+  route.target = *j;
+  const double traversals = data.number("traversals");
+  if (traversals < 1.0 || traversals != std::floor(traversals) || traversals > 1e9) {
+    data.fail("traversals is " + csv_number(traversals) + ", expected a whole number from 1");
+  }
+  route.traversals = static_cast<int>(traversals);
+  route.stretch = data.number("stretch");
+  route.orientation = data.number("orientation");
+  route.displacement = {data.number("dx"), data.number("dy")};
+  route.covariance = data.covariance();
+  map.set_route(map.add_route(*i, *j), route);
+}
+
+}  // namespace
+
+LandmarkGraph read_map_graphml(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::istringstream stream(read_file(file));
+  ptree root;
+  try {
+    boost::property_tree::read_xml(stream, root);
+  } catch (const boost::property_tree::xml_parser_error& error) {
+    throw InputError(name, error.line(), "no XML: " + error.message());
+  }
+  const auto graphml = root.get_child_optional("graphml");
+  const auto graph = graphml ? graphml->get_child_optional("graph") : boost::none;
+  if (!graph) throw InputError(name, 0, "no GraphML, expected a graphml element with a graph");
+  if (graph->get("<xmlattr>.edgedefault", "undirected") != "undirected") {
+    throw InputError(name, 0, "the graph is directed, expected edgedefault=\"undirected\"");
+  }
+  LandmarkGraph map;
+  const auto node_keys = declared_keys(*graphml, "node");
+  const auto edge_keys = declared_keys(*graphml, "edge");
+  for (const auto& [tag, child] : *graph) {
+    if (tag == "node") read_node(child, node_keys, name, map);
+  }
+  for (const auto& [tag, child] : *graph) {
+    if (tag == "edge") read_edge(child, edge_keys, name, map);
+  }
+  return map;
+}
+
+std::string format_map_graphml(const LandmarkGraph& map) {
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
+  const auto declare = [&text](const char* domain, const char* prefix, const char* attribute) {
+    const bool count = std::string(attribute) == "traversals";
+    text += std::string("  <key id=\"") + prefix + attribute + "\" for=\"" + domain +
+            "\" attr.name=\"" + attribute + "\" attr.type=\"" + (count ? "int" : "double") +
+            "\"/>\n";
+  };
+  for (const char* name : {"x", "y", "c_xx", "c_xy", "c_yy"}) declare("node", "n_", name);
+  for (const char* name :
+       {"traversals", "stretch", "orientation", "dx", "dy", "c_xx", "c_xy", "c_yy"}) {
+    declare("edge", "e_", name);
+  }
+  text += "  <graph id=\"map\" edgedefault=\"undirected\">\n";
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& landmark = map.landmark(k);
+    text += "    <node id=\"" + escaped(landmark.name) + "\">\n";
+    write_data(text, "n_x", landmark.position.x());
+    write_data(text, "n_y", landmark.position.y());
+    if (landmark.covariance) write_covariance(text, "n_", *landmark.covariance);
+    text += "    </node>\n";
+  }
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    text += "    <edge source=\"" + escaped(map.landmark(route.source).name) + "\" target=\"" +
+            escaped(map.landmark(route.target).name) + "\">\n";
+    write_data(text, "e_traversals", route.traversals);
+    write_data(text, "e_stretch", route.stretch);
+    write_data(text, "e_orientation", route.orientation);
+    write_data(text, "e_dx", route.displacement.x());
+    write_data(text, "e_dy", route.displacement.y());
+    write_covariance(text, "e_", route.covariance);
+    text += "    </edge>\n";
+  }
+  return text + "  </graph>\n</graphml>\n";
+}
+
+}  // namespace trussmap

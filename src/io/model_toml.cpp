@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/model_toml.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/csv.hpp"
+
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+namespace trussmap {
+namespace {
+
+struct NoiseKey {
+  const char* name;
+  double Noise::*value;
+  const char* unit;
+};
+
+constexpr NoiseKey kNoise[] = {
+    {"left", &Noise::left, "m^1/2: variance of a wheel's travel = left^2 * |travel|"},
+    {"right", &Noise::right, "m^1/2"},
+    {"compass", &Noise::compass, "rad per reading"},
+    {"sighting", &Noise::sighting, "m: how exactly the robot stands on a landmark"},
+    {"range", &Noise::range, "m, per range reading"},
+    {"bearing", &Noise::bearing, "rad, per bearing reading"},
+    {"survey", &Noise::survey, "m, where survey.csv has no sd"},
+    {"truth", &Noise::truth, "m"},
+    {"truth_heading", &Noise::truth_heading, "rad, per row of truth.csv"},
+    {"range_relative", &Noise::range_relative, "fraction of the range"},
+    {"heading_per_s", &Noise::heading_per_s, "rad/s^1/2"},
+    {"heading_per_rad", &Noise::heading_per_rad, "rad/rad^1/2 turned"},
+    {"travel_per_s", &Noise::travel_per_s, "m/s^1/2"},
+};
+
+/// Reads from one file, with its name for the errors.
+class ModelReader {
+ public:
+  explicit ModelReader(std::string file) : file_(std::move(file)) {}
+
+  [[nodiscard]] Model read(const toml::table& root) const {
+    Model model;
+    for (const auto& [key, node] : root) {
+      if (key == "robot") {
+        read_robot(table(node, "robot"), model.robot);
+      } else if (key == "noise") {
+        read_noise(table(node, "noise"), model.noise);
+      } else if (key == "effect") {
+        read_effects(node, model);
+      } else {
+        fail(key.source(),
+             "key \"" + std::string(key.str()) + "\" is unknown, expected robot, noise or effect");
+      }
+    }
+    return model;
+  }
+
+ private:
+  [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
+    throw InputError(file_, where.begin.line, what);
+  }
+
+  [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& name) const {
+    if (!node.is_table()) fail(node.source(), name + " is no table, expected [" + name + "]");
+    return *node.as_table();
+  }
+
+  [[nodiscard]] double number(const toml::node& node, const std::string& name) const {
+    const auto value = node.value<double>();
+    if (!node.is_number() || !value) fail(node.source(), name + " is no number, expected one");
+    if (!std::isfinite(*value)) fail(node.source(), name + " is not finite, expected a number");
+    return *value;
+  }
+
+  [[nodiscard]] std::string text(const toml::node& node, const std::string& name) const {
+    if (!node.is_string()) fail(node.source(), name + " is no text, expected \"...\"");
+    return *node.value<std::string>();
+  }
+
+  void read_robot(const toml::table& robot, Robot& result) const {
+    for (const auto& [key, node] : robot) {
+      if (key != "wheelbase") {
+        fail(key.source(),
+             "key \"" + std::string(key.str()) + "\" in [robot] is unknown, expected wheelbase");
+      }
+      result.wheelbase = number(node, "wheelbase");
+      if (result.wheelbase <= 0.0) {
+        fail(node.source(),
+             "wheelbase is " + csv_number(result.wheelbase) + ", expected more than 0 (m)");
+      }
+    }
+  }
+
+  void read_noise(const toml::table& noise, Noise& result) const {
+    for (const auto& [key, node] : noise) {
+      const NoiseKey* known = nullptr;
+      std::string names;
+      for (const NoiseKey& one : kNoise) {
+        if (key.str() == one.name) known = &one;
+        names += std::string(names.empty() ? "" : ", ") + one.name;
+      }
+      const std::string name(key.str());
+      if (known == nullptr) {
+        fail(key.source(), "key \"" + name + "\" in [noise] is unknown, expected one of " + names);
+      }
+      const double value = number(node, name);
+      if (value < 0.0) fail(node.source(), name + " is negative, expected 0 or more");
+      result.*(known->value) = value;
+    }
+  }
+
+  void read_effects(const toml::node& node, Model& model) const {
+    const toml::array* effects = node.as_array();
+    if (effects == nullptr || !effects->is_array_of_tables()) {
+      fail(node.source(), "effect is no list of tables, expected [[effect]]");
+    }
+    for (const toml::node& one : *effects) model.effects.push_back(read_effect(*one.as_table()));
+  }
+
+  [[nodiscard]] Effect read_effect(const toml::table& table) const {
+    Effect effect;
+    for (const auto& [key, node] : table) {
+      if (key == "name") {
+        effect.name = text(node, "name");
+      } else if (key == "channel") {
+        effect.channel = text(node, "channel");
+      } else if (key == "shape") {
+        for (const toml::node& shape : list(node, "shape")) {
+          effect.shape.push_back(text(shape, "a shape"));
+        }
+      } else if (key == "coefficients") {
+        for (const toml::node& value : list(node, "coefficients")) {
+          effect.coefficients.push_back(number(value, "a coefficient"));
+        }
+      } else if (key == "per") {
+        if (text(node, "per") != "session") {
+          fail(node.source(), "per is \"" + text(node, "per") + "\", expected \"session\"");
+        }
+        effect.per_session = true;
+      } else {
+        fail(key.source(), "key \"" + std::string(key.str()) +
+                               "\" in [[effect]] is unknown, expected name, channel, shape, "
+                               "coefficients or per");
+      }
+    }
+    check(effect, table);
+    return effect;
+  }
+
+  [[nodiscard]] const toml::array& list(const toml::node& node, const std::string& name) const {
+    if (!node.is_array()) fail(node.source(), name + " is no list, expected [ ... ]");
+    return *node.as_array();
+  }
+
+  void check(const Effect& effect, const toml::table& table) const {
+    if (effect.name.empty()) fail(table.source(), "an effect has no name, expected name = \"...\"");
+    if (effect.channel.empty() != effect.shape.empty()) {
+      fail(table.source(),
+           "effect \"" + effect.name + "\" has a " +
+               (effect.shape.empty() ? "channel but no shape" : "shape but no channel") +
+               ", expected both or neither");
+    }
+    if (!effect.coefficients.empty() && !effect.per_session && !effect.shape.empty() &&
+        effect.coefficients.size() != effect.shape.size()) {
+      fail(table.source(), "effect \"" + effect.name + "\" has " +
+                               std::to_string(effect.coefficients.size()) +
+                               " coefficients, expected " + std::to_string(effect.shape.size()) +
+                               ", one per shape");
+    }
+  }
+
+  std::string file_;
+};
+
+/// A TOML basic string.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (byte < 0x20U || byte == 0x7FU) {
+      constexpr const char* kHex = "0123456789ABCDEF";
+      result += "\\u00";
+      result += kHex[byte >> 4U];
+      result += kHex[byte & 15U];
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  try {
+    return ModelReader(file.string()).read(toml::parse(text));
+  } catch (const toml::parse_error& error) {
+    throw InputError(file.string(), error.source().begin.line,
+                     "no TOML: " + std::string(error.description()));
+  }
+}
+
+std::string format_model(const Model& model) {
+  std::string text = "[robot]\nwheelbase = " + csv_number(model.robot.wheelbase) + "  # m\n\n";
+  text += "[noise]\n";
+  const Noise defaults;
+  for (const NoiseKey& key : kNoise) {
+    const double value = model.noise.*(key.value);
+    if (value == 0.0 && defaults.*(key.value) == 0.0) continue;  // an optional law that is off
+    text += std::string(key.name) + " = " + csv_number(value) + "  # " + key.unit + "\n";
+  }
+  for (const Effect& effect : model.effects) {
+    text += "\n[[effect]]\nname = " + quoted(effect.name) + "\n";
+    if (!effect.channel.empty()) {
+      text += "channel = " + quoted(effect.channel) + "\nshape = [";
+      for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+        text += (k == 0 ? "" : ", ") + quoted(effect.shape[k]);
+      }
+      text += "]\n";
+    }
+    if (!effect.coefficients.empty()) {
+      text += "coefficients = [";
+      for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+        text += (k == 0 ? "" : ", ") + csv_number(effect.coefficients[k]);
+      }
+      text += "]\n";
+    }
+    if (effect.per_session) text += "per = \"session\"\n";
+  }
+  return text;
+}
+
+void write_model(const std::filesystem::path& file, const Model& model) {
+  write_file(file, format_model(model));
+}
+
+}  // namespace trussmap

@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/recording_csv.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/core/index.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/csv.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// clang-format off
+constexpr std::string_view kReserved[] = {
+    "speed", "turn_rate", "acceleration", "heading", "x", "y", "t", "distance", "session",
+    "starts", "spins", "reverses_left", "reverses_right",
+    "left", "right",
+    "sin", "cos", "tan", "abs", "sign", "min", "max", "exp", "log", "sqrt"};
+// clang-format on
+
+bool is_name(std::string_view text) {
+  const auto word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+         std::all_of(text.begin(), text.end(), word);
+}
+
+/// Columns beyond the known ones are an error: a misspelt one must not be ignored in silence.
+void refuse_other_columns(const CsvReader& csv, const std::vector<std::string_view>& known) {
+  for (const std::string& name : csv.columns()) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    std::string expected;
+    for (const std::string_view one : known) {
+      expected += (expected.empty() ? "" : ",") + std::string(one);
+    }
+    csv.fail("column \"" + name + "\" is unknown, expected " + expected);
+  }
+}
+
+std::string landmark_name(const CsvReader& csv, int column) {
+  const std::string_view name = csv.field(column);
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; };
+  if (name.empty()) csv.fail("column landmark is empty, expected a landmark's name");
+  if (std::any_of(name.begin(), name.end(), control)) {
+    csv.fail("a landmark's name holds a control character, expected printable text");
+  }
+  return std::string(name);
+}
+
+void require_forward(const CsvReader& csv, double before, double now, bool may_repeat) {
+  if (now > before || (may_repeat && now == before)) return;
+  csv.fail(now == before
+               ? "time " + csv_number(now) + " is repeated, expected a later time"
+               : "time runs backwards from " + csv_number(before) + " to " + csv_number(now) +
+                     ", expected " + (may_repeat ? "no earlier time" : "a later time"));
+}
+
+Drive read_drive(const fs::path& file) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int t = csv.require("t");
+  const int left = csv.require("left");
+  const int right = csv.require("right");
+  const int heading = csv.find("heading");
+  Drive drive;
+  std::vector<int> covariate_columns;
+  for (int column = 0; column < static_cast<int>(csv.columns().size()); ++column) {
+    if (column == t || column == left || column == right || column == heading) continue;
+    const std::string& name = csv.columns()[idx(column)];
+    if (!is_name(name)) {
+      csv.fail("column \"" + name +
+               "\" cannot be a covariate, expected a letter, then letters, digits or _");
+    }
+    if (std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved)) {
+      csv.fail("column \"" + name + "\" is a reserved name, expected another for a covariate");
+    }
+    drive.covariates.push_back({name, {}});
+    covariate_columns.push_back(column);
+  }
+  while (csv.next()) {
+    const double now = csv.number(t);
+    if (!drive.t.empty()) require_forward(csv, drive.t.back(), now, false);
+    drive.t.push_back(now);
+    drive.left.push_back(csv.number(left));
+    drive.right.push_back(csv.number(right));
+    if (heading >= 0) drive.heading.push_back(csv.number_or_absent(heading));
+    for (std::size_t k = 0; k < covariate_columns.size(); ++k) {
+      drive.covariates[k].values.push_back(csv.number(covariate_columns[k]));
+    }
+  }
+  if (drive.rows() < 2) {
+    throw InputError(file.string(), csv.line(),
+                     std::to_string(drive.rows()) + (drive.rows() == 1 ? " row" : " rows") +
+                         ", expected two at least (the first interval is as long as the second)");
+  }
+  return drive;
+}
+
+std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int t = csv.require("t");
+  const int landmark = csv.require("landmark");
+  const int range = csv.find("range");
+  const int bearing = csv.find("bearing");
+  refuse_other_columns(csv, {"t", "landmark", "range", "bearing"});
+  if ((range < 0) != (bearing < 0)) {
+    csv.fail(std::string("column \"") + (range < 0 ? "bearing" : "range") + "\" without \"" +
+             (range < 0 ? "range" : "bearing") + "\", expected both or neither");
+  }
+  // Times are written in decimals: t1 - (t2 - t1) may miss the start by a rounding error.
+  const double slack = 1e-9 * std::max(1.0, std::abs(drive.t.back()));
+  std::vector<Sighting> sightings;
+  while (csv.next()) {
+    Sighting sighting;
+    sighting.t = csv.number(t);
+    sighting.landmark = landmark_name(csv, landmark);
+    if (range >= 0) {
+      sighting.range = csv.number_or_absent(range);
+      sighting.bearing = csv.number_or_absent(bearing);
+    }
+    if (std::isnan(sighting.range) != std::isnan(sighting.bearing)) {
+      csv.fail(std::isnan(sighting.range) ? "a bearing without a range, expected both or neither"
+                                          : "a range without a bearing, expected both or neither");
+    }
+    if (sighting.range < 0.0) csv.fail("the range is negative, expected 0 or more");
+    if (sighting.t < drive.start() - slack || sighting.t > drive.t.back() + slack) {
+      csv.fail("time " + csv_number(sighting.t) + " is outside the drive, expected " +
+               csv_number(drive.start()) + " to " + csv_number(drive.t.back()));
+    }
+    if (!sightings.empty()) require_forward(csv, sightings.back().t, sighting.t, true);
+    sightings.push_back(std::move(sighting));
+  }
+  if (sightings.empty()) {
+    throw InputError(file.string(), csv.line(), "no sighting, expected one row at least");
+  }
+  return sightings;
+}
+
+std::vector<SurveyPoint> read_survey(const fs::path& file) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int landmark = csv.require("landmark");
+  const int x = csv.require("x");
+  const int y = csv.require("y");
+  const int sd = csv.find("sd");
+  refuse_other_columns(csv, {"landmark", "x", "y", "sd"});
+  std::vector<SurveyPoint> survey;
+  std::set<std::string> names;
+  while (csv.next()) {
+    SurveyPoint point;
+    point.landmark = landmark_name(csv, landmark);
+    point.x = csv.number(x);
+    point.y = csv.number(y);
+    if (sd >= 0) point.sd = csv.number_or_absent(sd);
+    if (point.sd <= 0.0) csv.fail("sd is " + csv_number(point.sd) + ", expected more than 0");
+    if (!names.insert(point.landmark).second) {
+      csv.fail("landmark " + point.landmark + " is surveyed twice, expected each once");
+    }
+    survey.push_back(std::move(point));
+  }
+  if (survey.empty()) {
+    throw InputError(file.string(), csv.line(), "no landmark, expected one row at least");
+  }
+  return survey;
+}
+
+std::vector<TruthRow> read_truth(const fs::path& file) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int t = csv.require("t");
+  const int x = csv.require("x");
+  const int y = csv.require("y");
+  const int heading = csv.require("heading");
+  refuse_other_columns(csv, {"t", "x", "y", "heading"});
+  std::vector<TruthRow> truth;
+  while (csv.next()) {
+    const TruthRow row{csv.number(t), csv.number(x), csv.number(y), csv.number(heading)};
+    if (!truth.empty()) require_forward(csv, truth.back().t, row.t, false);
+    truth.push_back(row);
+  }
+  if (truth.empty()) {
+    throw InputError(file.string(), csv.line(), "no pose, expected one row at least");
+  }
+  return truth;
+}
+
+std::string drive_text(const Drive& drive, const std::string& comment) {
+  std::string text;
+  for (std::size_t at = 0; at < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', at), comment.size());
+    text += "# " + comment.substr(at, end - at) + '\n';
+    at = end + 1;
+  }
+  text += "t,left,right";
+  if (drive.has_compass()) text += ",heading";
+  for (const Covariate& covariate : drive.covariates) text += ',' + covariate.name;
+  text += '\n';
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    text += csv_number(drive.t[row]) + ',' + csv_number(drive.left[row]) + ',' +
+            csv_number(drive.right[row]);
+    if (drive.has_compass()) text += ',' + csv_number(drive.heading[row]);
+    for (const Covariate& covariate : drive.covariates) {
+      text += ',' + csv_number(covariate.values[row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string sightings_text(const std::vector<Sighting>& sightings) {
+  const bool ranges = std::any_of(sightings.begin(), sightings.end(),
+                                  [](const Sighting& one) { return !one.standing(); });
+  std::string text = ranges ? "t,landmark,range,bearing\n" : "t,landmark\n";
+  for (const Sighting& sighting : sightings) {
+    text += csv_number(sighting.t) + ',' + csv_field(sighting.landmark);
+    if (ranges) text += ',' + csv_number(sighting.range) + ',' + csv_number(sighting.bearing);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string survey_text(const std::vector<SurveyPoint>& survey) {
+  const bool sds = std::any_of(survey.begin(), survey.end(),
+                               [](const SurveyPoint& point) { return !std::isnan(point.sd); });
+  std::string text = sds ? "landmark,x,y,sd\n" : "landmark,x,y\n";
+  for (const SurveyPoint& point : survey) {
+    text += csv_field(point.landmark) + ',' + csv_number(point.x) + ',' + csv_number(point.y);
+    if (sds) text += ',' + csv_number(point.sd);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string truth_text(const std::vector<TruthRow>& truth) {
+  std::string text = "t,x,y,heading\n";
+  for (const TruthRow& row : truth) {
+    text += csv_number(row.t) + ',' + csv_number(row.x) + ',' + csv_number(row.y) + ',' +
+            csv_number(row.heading) + '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+Recording read_recording(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored)) {
+    throw InputError(folder.string(), 0, "there is no such folder, expected a recording");
+  }
+  if (!fs::is_directory(folder, ignored)) {
+    throw InputError(folder.string(), 0, "is a file, expected a recording's folder");
+  }
+  const auto has = [&](const char* name) { return fs::exists(folder / name, ignored); };
+  if (!has("drive.csv")) {
+    throw InputError((folder / "drive.csv").string(), 0, "is missing, a recording needs it");
+  }
+  if (!has("sightings.csv") && !has("truth.csv")) {
+    throw InputError((folder / "sightings.csv").string(), 0,
+                     "is missing, a recording without truth.csv needs it");
+  }
+  Recording recording;
+  recording.name = folder.string();
+  recording.drive = read_drive(folder / "drive.csv");
+  if (has("sightings.csv")) {
+    recording.sightings = read_sightings(folder / "sightings.csv", recording.drive);
+  }
+  if (has("survey.csv")) recording.survey = read_survey(folder / "survey.csv");
+  if (has("truth.csv")) recording.truth = read_truth(folder / "truth.csv");
+  return recording;
+}
+
+void write_recording(const fs::path& folder, const Recording& recording,
+                     const std::string& comment) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw InputError(folder.string(), 0, "cannot be made: " + failed.message());
+  std::vector<std::pair<fs::path, std::string>> files;
+  files.emplace_back(folder / "drive.csv", drive_text(recording.drive, comment));
+  if (!recording.sightings.empty() || recording.truth.empty()) {
+    files.emplace_back(folder / "sightings.csv", sightings_text(recording.sightings));
+  }
+  if (!recording.survey.empty()) {
+    files.emplace_back(folder / "survey.csv", survey_text(recording.survey));
+  }
+  if (!recording.truth.empty()) {
+    files.emplace_back(folder / "truth.csv", truth_text(recording.truth));
+  }
+  write_files(files);
+}
+
+}  // namespace trussmap

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/odometry/dead_reckoning.hpp"
+
+#include "trussmap/odometry/merge.hpp"
+
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+/// Moves the estimate by a motion given in the robot's frame.
+PoseEstimate moved(const PoseEstimate& start, const Pose& displacement, const Matrix3& covariance) {
+  const Motion end = then({start.pose, start.covariance}, {displacement, covariance});
+  return {end.displacement, end.covariance};
+}
+
+void correct_heading(PoseEstimate& estimate, double reading, double variance) {
+  const double innovation = wrap_angle(reading - estimate.pose.heading);
+  const double total = estimate.covariance(2, 2) + variance;
+  const Eigen::Vector3d gain = estimate.covariance.col(2) / total;
+  estimate.pose.x += gain(0) * innovation;
+  estimate.pose.y += gain(1) * innovation;
+  estimate.pose.heading += gain(2) * innovation;
+  estimate.covariance = symmetrised(estimate.covariance - gain * estimate.covariance.row(2));
+}
+
+}  // namespace
+
+Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
+                       const Noise& noise) {
+  ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
+  const double turn = (travel.right - travel.left) / robot.wheelbase;
+  sources.along += noise.travel_per_s * noise.travel_per_s * duration;
+  sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
+                     noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
+  return arc_covariance(0.5 * (travel.left + travel.right), turn, sources);
+}
+
+LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
+  if (sighting.standing()) {
+    return {Vector2::Zero(), noise.sighting * noise.sighting * Matrix2::Identity()};
+  }
+  const Matrix2 R = rotation(sighting.bearing);
+  const double along =
+      noise.range * noise.range + std::pow(noise.range_relative * sighting.range, 2);
+  const double across = std::pow(noise.bearing * sighting.range, 2);
+  return {sighting.range * R.col(0), R * Vector2(along, across).asDiagonal() * R.transpose()};
+}
+
+HeadingEstimate initial_heading(const Drive& drive, double t, const Robot& robot,
+                                const Noise& noise) {
+  double turn = 0.0;
+  for (const DriveRow& row : rows_between(drive, t, drive.t.back())) {
+    if (!drive.has_compass()) break;
+    const WheelTravel travel = travel_of(drive, row);
+    turn += (travel.right - travel.left) / robot.wheelbase;
+    const double reading = drive.heading[row.row];
+    if (!std::isnan(reading)) {
+      const Matrix3 covariance = arc_covariance(travel, row.duration, robot, noise);
+      return {wrap_angle(reading - turn), noise.compass * noise.compass + covariance(2, 2)};
+    }
+  }
+  return {};
+}
+
+PoseEstimate pose_from_landmark(const HeadingEstimate& heading, const LandmarkOffset& landmark) {
+  const Matrix2 R = rotation(heading.heading);
+  const Vector2 offset = R * landmark.offset_robot;
+  const Vector2 swing = -quarter_turn(offset);  // d(position)/d(heading)
+  PoseEstimate robot;
+  robot.pose = {-offset.x(), -offset.y(), heading.heading};
+  robot.covariance.topLeftCorner<2, 2>() =
+      R * landmark.covariance_robot * R.transpose() + heading.variance * swing * swing.transpose();
+  robot.covariance.topRightCorner<2, 1>() = heading.variance * swing;
+  robot.covariance.bottomLeftCorner<1, 2>() = heading.variance * swing.transpose();
+  robot.covariance(2, 2) = heading.variance;
+  return robot;
+}
+
+PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from, double to,
+                         const Robot& robot, const Noise& noise) {
+  const std::vector<DriveRow> rows = rows_between(drive, from, to);
+  PoseEstimate estimate = start;
+  if (drive.has_compass()) {
+    for (const DriveRow& row : rows) {
+      const WheelTravel travel = travel_of(drive, row);
+      estimate = moved(estimate, arc_displacement(travel, robot.wheelbase),
+                       arc_covariance(travel, row.duration, robot, noise));
+      const double reading = drive.heading[row.row];
+      if (row.ends && !std::isnan(reading)) {
+        correct_heading(estimate, reading, noise.compass * noise.compass);
+      }
+    }
+    return estimate;
+  }
+  for (const DriveArc& arc : merge_rows(drive, rows, {noise.left, noise.right})) {
+    estimate = moved(estimate, arc_displacement(arc.travel, robot.wheelbase),
+                     arc_covariance(arc.travel, arc.duration, robot, noise));
+  }
+  Pose exact = start.pose;
+  for (const DriveRow& row : rows) {
+    exact = compose(exact, arc_displacement(travel_of(drive, row), robot.wheelbase));
+  }
+  estimate.pose = exact;
+  return estimate;
+}
+
+PositionEstimate landmark_from_pose(const PoseEstimate& pose, const LandmarkOffset& landmark) {
+  const Matrix2 R = rotation(pose.pose.heading);
+  const Vector2 offset = R * landmark.offset_robot;
+  Eigen::Matrix<double, 2, 3> J = Eigen::Matrix<double, 2, 3>::Zero();
+  J.leftCols<2>().setIdentity();
+  J.col(2) = quarter_turn(offset);
+  return {pose.pose.position() + offset,
+          J * pose.covariance * J.transpose() + R * landmark.covariance_robot * R.transpose()};
+}
+
+}  // namespace trussmap

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/odometry/merge.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kSameCurvature = 0.1;  // of q
+constexpr double kNoiseLimit = 3.0;     // standard deviations of q
+constexpr double kStanding = 1e-6;      // m per row
+
+enum class Kind { standing, forward, backward, spin_left, spin_right };
+
+Kind kind_of(const WheelTravel& travel) {
+  if (std::abs(travel.left) + std::abs(travel.right) < kStanding) return Kind::standing;
+  if (travel.left * travel.right < 0.0) {
+    return travel.right > 0.0 ? Kind::spin_left : Kind::spin_right;
+  }
+  return travel.left + travel.right > 0.0 ? Kind::forward : Kind::backward;
+}
+
+double curvature_of(const WheelTravel& travel) {
+  const double sum = std::abs(travel.left) + std::abs(travel.right);
+  return sum > 0.0 ? (travel.right - travel.left) / sum : 0.0;
+}
+
+/// Standard deviation of q that wheel noise gives.
+double curvature_noise(const WheelTravel& travel, const WheelNoise& noise) {
+  const double sum = std::abs(travel.left) + std::abs(travel.right);
+  return std::sqrt(noise.left * noise.left * std::abs(travel.left) +
+                   noise.right * noise.right * std::abs(travel.right)) /
+         sum;
+}
+
+bool same_arc(const DriveArc& arc, const WheelTravel& row, const WheelNoise& noise) {
+  const Kind kind = kind_of(row);
+  if (kind_of(arc.travel) != kind) return false;
+  if (kind == Kind::standing) return true;
+  const double tolerance = std::max(kSameCurvature, kNoiseLimit * curvature_noise(row, noise));
+  return std::abs(curvature_of(arc.travel) - curvature_of(row)) <= tolerance;
+}
+
+}  // namespace
+
+std::vector<DriveRow> rows_between(const Drive& drive, double from, double to) {
+  std::vector<DriveRow> rows;
+  const auto first = std::upper_bound(drive.t.begin(), drive.t.end(), from) - drive.t.begin();
+  for (auto row = static_cast<std::size_t>(first); row < drive.rows(); ++row) {
+    const double begin = row == 0 ? drive.start() : drive.t[row - 1];
+    const double end = drive.t[row];
+    if (begin >= to) break;
+    const double duration = std::min(end, to) - std::max(begin, from);
+    rows.push_back({row, duration / (end - begin), duration, end <= to});
+  }
+  return rows;
+}
+
+WheelTravel travel_of(const Drive& drive, const DriveRow& row) {
+  return {row.part * drive.left[row.row], row.part * drive.right[row.row]};
+}
+
+std::vector<DriveArc> merge_rows(const Drive& drive, const std::vector<DriveRow>& rows,
+                                 const WheelNoise& noise) {
+  std::vector<DriveArc> arcs;
+  for (const DriveRow& row : rows) {
+    const WheelTravel travel = travel_of(drive, row);
+    if (arcs.empty() || !same_arc(arcs.back(), travel, noise)) arcs.emplace_back();
+    DriveArc& arc = arcs.back();
+    arc.travel.left += travel.left;
+    arc.travel.right += travel.right;
+    arc.duration += row.duration;
+  }
+  return arcs;
+}
+
+}  // namespace trussmap

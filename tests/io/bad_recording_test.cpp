@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// One small recording, spoilt in one way per case; each way has its own message.
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/recording_csv.hpp"
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "scratch_folder.hpp"
+
+namespace trussmap {
+namespace {
+
+using testing::ScratchFolder;
+
+constexpr const char* kDrive =
+    "t,left,right,heading,payload_kg\n"
+    "0.1,0.01,0.011,0.5,2\n"
+    "0.2,0.01,0.010,,2\n"
+    "0.3,0.01,0.012,0.51,2.5\n";
+constexpr const char* kSightings = "t,landmark\n0,A\n0.3,B\n";
+
+struct Spoilt {
+  const char* name;
+  const char* file;     // below the recording
+  const char* content;  // instead of the good one; nullptr: the file is absent
+  const char* message;  // what the error must say, after the folder and a slash
+};
+
+void PrintTo(const Spoilt& spoilt, std::ostream* stream) {
+  *stream << spoilt.name;
+}
+
+class BadRecording : public ::testing::TestWithParam<Spoilt> {};
+
+std::string message_of(const std::filesystem::path& folder) {
+  try {
+    (void)read_recording(folder);
+  } catch (const InputError& error) {
+    std::string text = error.what();
+    const std::string prefix = folder.string() + "/";
+    if (text.rfind(prefix, 0) == 0) text.erase(0, prefix.size());
+    return text;
+  }
+  return "read without complaint";
+}
+
+TEST_P(BadRecording, IsRefusedInOneClearLine) {
+  const ScratchFolder scratch;
+  scratch.write("r/drive.csv", kDrive);
+  scratch.write("r/sightings.csv", kSightings);
+  const std::string file = std::string("r/") + GetParam().file;
+  if (GetParam().content == nullptr) {
+    std::filesystem::remove(scratch.path() / file);
+  } else {
+    scratch.write(file, GetParam().content);
+  }
+  EXPECT_EQ(message_of(scratch.path() / "r"), GetParam().message);
+}
+
+const Spoilt kSpoilt[] = {
+    {"NoDrive", "drive.csv", nullptr, "drive.csv: is missing, a recording needs it"},
+    {"NoSightings", "sightings.csv", nullptr,
+     "sightings.csv: is missing, a recording without truth.csv needs it"},
+    {"EmptyFile", "drive.csv", "", "drive.csv: the file is empty, expected a header row"},
+    {"OnlyComments", "drive.csv", "# nothing\n\n",
+     "drive.csv: the file is empty, expected a header row"},
+    {"HeaderOnly", "drive.csv", "t,left,right\n",
+     "drive.csv:1: 0 rows, expected two at least (the first interval is as long as the second)"},
+    {"OneRow", "drive.csv", "t,left,right\n0.1,0,0\n",
+     "drive.csv:2: 1 row, expected two at least (the first interval is as long as the second)"},
+    {"MissingColumn", "drive.csv", "t,left\n0.1,0\n0.2,0\n",
+     "drive.csv:1: column \"right\" is missing, found \"t,left\""},
+    {"ColumnTwice", "drive.csv", "t,left,right,left\n0.1,0,0,0\n",
+     "drive.csv:1: column \"left\" stands twice in the header, expected each name once"},
+    {"ReservedCovariate", "drive.csv", "t,left,right,speed\n0.1,0,0,0\n",
+     "drive.csv:1: column \"speed\" is a reserved name, expected another for a covariate"},
+    {"BadCovariateName", "drive.csv", "t,left,right,pay load\n0.1,0,0,0\n",
+     "drive.csv:1: column \"pay load\" cannot be a covariate, expected a letter, then letters, "
+     "digits or _"},
+    {"TextForNumber", "drive.csv", "t,left,right\n0.1,0,0\n0.2,fast,0\n",
+     "drive.csv:3: column left is \"fast\", expected a number"},
+    {"NumberWithUnit", "drive.csv", "t,left,right\n0.1,0,0\n0.2,0.1m,0\n",
+     "drive.csv:3: column left is \"0.1m\", expected a number"},
+    {"NaN", "drive.csv", "t,left,right\n0.1,0,nan\n",
+     "drive.csv:2: column right is \"nan\", expected a finite number"},
+    {"Infinity", "drive.csv", "t,left,right\n0.1,0,-inf\n",
+     "drive.csv:2: column right is \"-inf\", expected a finite number"},
+    {"OutOfRange", "drive.csv", "t,left,right\n0.1,0,1e999\n",
+     "drive.csv:2: column right is \"1e999\", expected a number within double's range"},
+    {"EmptyField", "drive.csv", "t,left,right\n0.1,,0\n",
+     "drive.csv:2: column left is empty, expected a number"},
+    {"EmptyCovariate", "drive.csv", "t,left,right,load\n0.1,0,0,\n",
+     "drive.csv:2: column load is empty, expected a number"},
+    {"TimeBackwards", "drive.csv", "t,left,right\n0.1,0,0\n0.3,0,0\n0.2,0,0\n",
+     "drive.csv:4: time runs backwards from 0.3 to 0.2, expected a later time"},
+    {"TimeRepeated", "drive.csv", "t,left,right\n0.1,0,0\n# a comment counts\n0.1,0,0\n",
+     "drive.csv:4: time 0.1 is repeated, expected a later time"},
+    {"TooFewFields", "drive.csv", "t,left,right\n0.1,0\n0.2,0,0\n",
+     "drive.csv:2: 2 fields, expected 3 as in the header"},
+    {"TooManyFields", "drive.csv", "t,left,right\n0.1,0,0,0\n",
+     "drive.csv:2: 4 fields, expected 3 as in the header"},
+    {"CutOff", "drive.csv", "t,left,right\n0.1,0,0\n0.2,0.0",
+     "drive.csv:3: the file is cut off in the middle of a row, expected 3 fields"},
+    {"OpenQuote", "sightings.csv", "t,landmark\n0,\"A\n0.3,B\n",
+     "sightings.csv:2: a quoted field is not closed, expected a second \""},
+    {"TextAfterQuote", "sightings.csv", "t,landmark\n0,\"A\"x\n",
+     "sightings.csv:2: text after a closing quote, expected a comma or the line's end"},
+    {"QuoteInside", "sightings.csv", "t,landmark\n0,A\"B\n",
+     "sightings.csv:2: a quote within an unquoted field, expected \"...\" around it"},
+    {"InvalidUtf8", "sightings.csv", "t,landmark\n0,A\n0.3,B\xFF\n",
+     "sightings.csv:3: a byte that is no UTF-8 text, expected UTF-8"},
+    {"NoSighting", "sightings.csv", "t,landmark\n",
+     "sightings.csv:1: no sighting, expected one row at least"},
+    {"UnknownColumn", "sightings.csv", "t,landmark,rnage,bearing\n0,A,,\n",
+     "sightings.csv:1: column \"rnage\" is unknown, expected t,landmark,range,bearing"},
+    {"RangeColumnAlone", "sightings.csv", "t,landmark,range\n0,A,1\n",
+     "sightings.csv:1: column \"range\" without \"bearing\", expected both or neither"},
+    {"RangeAlone", "sightings.csv", "t,landmark,range,bearing\n0,A,1,\n",
+     "sightings.csv:2: a range without a bearing, expected both or neither"},
+    {"BearingAlone", "sightings.csv", "t,landmark,range,bearing\n0,A,,1\n",
+     "sightings.csv:2: a bearing without a range, expected both or neither"},
+    {"NegativeRange", "sightings.csv", "t,landmark,range,bearing\n0,A,-1,0\n",
+     "sightings.csv:2: the range is negative, expected 0 or more"},
+    {"SightingAfterTheDrive", "sightings.csv", "t,landmark\n0,A\n0.4,B\n",
+     "sightings.csv:3: time 0.4 is outside the drive, expected 0 to 0.3"},
+    {"SightingBeforeTheDrive", "sightings.csv", "t,landmark\n-0.05,A\n",
+     "sightings.csv:2: time -0.05 is outside the drive, expected 0 to 0.3"},
+    {"SightingsBackwards", "sightings.csv", "t,landmark\n0.2,A\n0.1,B\n",
+     "sightings.csv:3: time runs backwards from 0.2 to 0.1, expected no earlier time"},
+    {"NamelessLandmark", "sightings.csv", "t,landmark\n0,\n",
+     "sightings.csv:2: column landmark is empty, expected a landmark's name"},
+    {"ControlCharacter", "sightings.csv", "t,landmark\n0,A\x01\n",
+     "sightings.csv:2: a landmark's name holds a control character, expected printable text"},
+    {"SurveyedTwice", "survey.csv", "landmark,x,y\nA,0,0\nA,1,0\n",
+     "survey.csv:3: landmark A is surveyed twice, expected each once"},
+    {"SurveySd", "survey.csv", "landmark,x,y,sd\nA,0,0,0\n",
+     "survey.csv:2: sd is 0, expected more than 0"},
+    {"SurveyMissingY", "survey.csv", "landmark,x\nA,0\n",
+     "survey.csv:1: column \"y\" is missing, found \"landmark,x\""},
+    {"EmptySurvey", "survey.csv", "landmark,x,y\n",
+     "survey.csv:1: no landmark, expected one row at least"},
+    {"TruthBackwards", "truth.csv", "t,x,y,heading\n0.1,0,0,0\n0.1,0,0,0\n",
+     "truth.csv:3: time 0.1 is repeated, expected a later time"},
+    {"EmptyTruth", "truth.csv", "t,x,y,heading\n",
+     "truth.csv:1: no pose, expected one row at least"},
+};
+
+INSTANTIATE_TEST_SUITE_P(EveryWay, BadRecording, ::testing::ValuesIn(kSpoilt),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+TEST(BadRecordingFolder, AbsentOrAFile) {
+  const ScratchFolder scratch;
+  EXPECT_EQ(message_of(scratch.path() / "none"),
+            (scratch.path() / "none").string() + ": there is no such folder, expected a recording");
+  const auto file = scratch.write("file", "");
+  EXPECT_EQ(message_of(file), file.string() + ": is a file, expected a recording's folder");
+}
+
+TEST(BadRecordingFolder, EveryPrefixOfADriveIsReadOrRefusedNeverWorse) {
+  const ScratchFolder scratch;
+  scratch.write("r/sightings.csv", "t,landmark\n0,A\n");
+  const std::string whole = kDrive;
+  int read = 0;
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    scratch.write("r/drive.csv", whole.substr(0, length));
+    try {
+      read += read_recording(scratch.path() / "r").drive.rows() > 0 ? 1 : 0;
+    } catch (const InputError&) {
+    }
+  }
+  EXPECT_GT(read, 2);  // with and without the last line's end, and where a number is shorter
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Models (TOML) and maps (GraphML, GeoJSON, DOT) out and in, and what is refused.
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/map_formats.hpp"
+#include "trussmap/io/map_graphml.hpp"
+#include "trussmap/io/model_toml.hpp"
+
+#include <cmath>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch_folder.hpp"
+
+namespace trussmap {
+namespace {
+
+using testing::ScratchFolder;
+
+struct Refused {
+  const char* name;
+  const char* content;
+  const char* message;  // after the file's name
+};
+
+void PrintTo(const Refused& refused, std::ostream* stream) {
+  *stream << refused.name;
+}
+
+template <class Read>
+std::string message_of(const Read& read, const std::filesystem::path& file) {
+  try {
+    (void)read(file);
+  } catch (const InputError& error) {
+    return std::string(error.what()).substr(file.string().size());
+  }
+  return "read without complaint";
+}
+
+class BadModel : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(BadModel, IsRefusedWithItsLine) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("m.toml", GetParam().content);
+  const std::string message = message_of(read_model, file);
+  EXPECT_EQ(message.rfind(GetParam().message, 0), 0U) << message;
+}
+
+const Refused kBadModels[] = {
+    {"NoToml", "[robot\n", ":1: no TOML: "},
+    {"UnknownTable", "[robto]\n", ":1: key \"robto\" is unknown, expected robot, noise or effect"},
+    {"UnknownKey", "[robot]\nbase = 1\n",
+     ":2: key \"base\" in [robot] is unknown, expected wheelbase"},
+    {"Wheelbase", "[robot]\nwheelbase = 0\n", ":2: wheelbase is 0, expected more than 0 (m)"},
+    {"TextWheelbase", "[robot]\nwheelbase = \"wide\"\n",
+     ":2: wheelbase is no number, expected one"},
+    {"NegativeNoise", "\n[noise]\nleft = -1\n", ":3: left is negative, expected 0 or more"},
+    {"NaNNoise", "[noise]\nleft = nan\n", ":2: left is not finite, expected a number"},
+    {"UnknownNoise", "[noise]\nlefft = 1\n",
+     ":2: key \"lefft\" in [noise] is unknown, expected one of left, right, compass"},
+    {"EffectTable", "[effect]\nname = \"x\"\n",
+     ":1: effect is no list of tables, expected [[effect]]"},
+    {"NamelessEffect", "[[effect]]\nchannel = \"turn\"\nshape = [\"1\"]\n",
+     ":1: an effect has no name, expected name = \"...\""},
+    {"HalfEffect", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\n",
+     ":1: effect \"x\" has a channel but no shape, expected both or neither"},
+    {"Coefficients",
+     "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"1\", \"t\"]\ncoefficients = [1]\n",
+     ":1: effect \"x\" has 1 coefficients, expected 2, one per shape"},
+    {"Per", "[[effect]]\nname = \"x\"\nper = \"day\"\n",
+     ":3: per is \"day\", expected \"session\""},
+    {"ShapeText", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = \"1\"\n",
+     ":4: shape is no list, expected [ ... ]"},
+};
+
+INSTANTIATE_TEST_SUITE_P(EveryWay, BadModel, ::testing::ValuesIn(kBadModels),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+TEST(ModelToml, ReadsBackExactlyWhatItWrote) {
+  const ScratchFolder scratch;
+  Model out;
+  out.robot.wheelbase = 1.0 / 3.0;
+  out.noise.left = 0.1 + 0.2;
+  out.noise.heading_per_rad = 1e-7;
+  out.effects = {
+      {"wheelbase", "", {}, {}, false},
+      {"magnet \"in\" the \\ lights", "compass", {"lights", "sin(heading)"}, {0.25, -1e-9}, false},
+      {"delay", "delay", {"1"}, {0.1, 0.2}, true}};
+  write_model(scratch.path() / "m.toml", out);
+  const Model in = read_model(scratch.path() / "m.toml");
+  EXPECT_EQ(in.robot.wheelbase, out.robot.wheelbase);
+  EXPECT_EQ(in.noise.left, out.noise.left);
+  EXPECT_EQ(in.noise.heading_per_rad, out.noise.heading_per_rad);
+  EXPECT_EQ(in.noise.travel_per_s, 0.0);
+  ASSERT_EQ(in.effects.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(in.effects[k].name, out.effects[k].name);
+    EXPECT_EQ(in.effects[k].channel, out.effects[k].channel);
+    EXPECT_EQ(in.effects[k].shape, out.effects[k].shape);
+    EXPECT_EQ(in.effects[k].coefficients, out.effects[k].coefficients);
+    EXPECT_EQ(in.effects[k].per_session, out.effects[k].per_session);
+  }
+}
+
+/// A ring of landmarks with hostile names, numbers of all digits, seed 3.
+LandmarkGraph hostile_map() {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  LandmarkGraph map;
+  for (const char* name : {"<script>alert(1)</script>", "a \"b\" & 'c'", "Tür ✓", "plain"}) {
+    map.add_landmark(name, {normal(random), normal(random)});
+  }
+  map.set_covariance(2, (Matrix2() << 0.1, 1.0 / 3.0 * 0.1, 1.0 / 3.0 * 0.1, 0.2).finished());
+  for (int k = 0; k < 4; ++k) {
+    for (int t = 0; t <= k; ++t) {
+      map.add_traversal(k, (k + 1) % 4,
+                        {{normal(random) - 3.0, normal(random)},
+                         (Matrix2() << 0.3, 0.1 / 3.0, 0.1 / 3.0, 0.7).finished()});
+    }
+  }
+  return map;
+}
+
+TEST(MapGraphml, ReadsBackExactlyWhatItWrote) {
+  const ScratchFolder scratch;
+  const LandmarkGraph out = hostile_map();
+  const LandmarkGraph in = read_map_graphml(scratch.write("m.graphml", format_map_graphml(out)));
+  ASSERT_EQ(in.landmarks(), 4);
+  ASSERT_EQ(in.routes(), 4);
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(in.landmark(k).name, out.landmark(k).name);
+    EXPECT_EQ(in.landmark(k).position, out.landmark(k).position);
+    EXPECT_EQ(in.landmark(k).covariance, out.landmark(k).covariance);
+    EXPECT_EQ(in.route(k).source, out.route(k).source);
+    EXPECT_EQ(in.route(k).target, out.route(k).target);
+    EXPECT_EQ(in.route(k).traversals, out.route(k).traversals);
+    EXPECT_EQ(in.route(k).stretch, out.route(k).stretch);
+    EXPECT_EQ(in.route(k).orientation, out.route(k).orientation);
+    EXPECT_EQ(in.route(k).displacement, out.route(k).displacement);
+    EXPECT_EQ(in.route(k).covariance, out.route(k).covariance);
+  }
+}
+
+TEST(MapFormats, GeoJsonHoldsEveryLandmarkAndRoute) {
+  const auto geojson = nlohmann::json::parse(format_geojson(hostile_map()));
+  EXPECT_EQ(geojson["type"], "FeatureCollection");
+  ASSERT_EQ(geojson["features"].size(), 8U);
+  EXPECT_EQ(geojson["features"][0]["properties"]["landmark"], "<script>alert(1)</script>");
+  EXPECT_EQ(geojson["features"][4]["geometry"]["type"], "LineString");
+}
+
+TEST(MapFormats, DotEscapesQuotes) {
+  const std::string dot = format_dot(hostile_map());
+  EXPECT_NE(dot.find("\"a \\\"b\\\" & 'c'\""), std::string::npos);
+}
+
+class BadMap : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(BadMap, IsRefused) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("m.graphml", GetParam().content);
+  const std::string message = message_of(read_map_graphml, file);
+  EXPECT_EQ(message.rfind(GetParam().message, 0), 0U) << message;
+}
+
+const Refused kBadMaps[] = {
+    {"NoXml", "landmarks\n", ":1: no XML: "},
+    {"NoGraph", "<graphml/>", ": no GraphML, expected a graphml element with a graph"},
+    {"Directed", "<graphml><graph edgedefault=\"directed\"/></graphml>",
+     ": the graph is directed, expected edgedefault=\"undirected\""},
+    {"NoPosition", "<graphml><graph><node id=\"A\"/></graph></graphml>",
+     ": landmark A: has no x, expected a number"},
+    {"TextPosition",
+     "<graphml><graph><node id=\"A\"><data key=\"x\">far</data><data key=\"y\">0</data></node>"
+     "</graph></graphml>",
+     ": landmark A: x is \"far\", expected a finite number"},
+    {"UnknownEnd", "<graphml><graph><edge source=\"A\" target=\"B\"/></graph></graphml>",
+     ": route A - B: landmark A is unknown, expected a node"},
+};
+
+INSTANTIATE_TEST_SUITE_P(EveryWay, BadMap, ::testing::ValuesIn(kBadMaps),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace trussmap
