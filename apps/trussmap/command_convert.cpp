@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap convert: maps between formats, and foreign recordings to recordings.
+#include "trussmap/adjustment/landmark_conversion.hpp"
 #include "trussmap/core/error.hpp"
 #include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/g2o.hpp"
 #include "trussmap/io/map_formats.hpp"
 #include "trussmap/io/map_graphml.hpp"
 #include "trussmap/io/model_toml.hpp"
@@ -57,15 +59,17 @@ void convert_mrclam(const fs::path& in, const fs::path& out) {
 
 LandmarkGraph read_map(const fs::path& in) {
   if (in.extension() == ".graphml") return read_map_graphml(in);
+  if (in.extension() == ".g2o") return to_landmark_graph(read_g2o(in.string()));
   throw UsageError("cannot tell what " + in.string() +
-                   " is: expected a map (.graphml), or DIR/RobotN of an MRCLAM data set");
+                   " is: expected a map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set");
 }
 
 std::string format_map(const LandmarkGraph& map, const fs::path& out) {
   if (out.extension() == ".graphml") return format_map_graphml(map);
+  if (out.extension() == ".g2o") return format_g2o(to_pose_graph(map));
   if (out.extension() == ".geojson") return format_geojson(map);
   if (out.extension() == ".dot") return format_dot(map);
-  throw UsageError("cannot write " + out.string() + ": expected .graphml, .geojson or .dot");
+  throw UsageError("cannot write " + out.string() + ": expected .graphml, .g2o, .geojson or .dot");
 }
 
 void run_convert(const ConvertOptions& options) {
@@ -89,11 +93,11 @@ void setup_convert(CLI::App& app) {
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
       ->add_option("IN", options->in,
-                   "A map (.graphml), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
+                   "A map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
       ->required();
   command
       ->add_option("OUT", options->out,
-                   "A map (.graphml, .geojson, .dot), or the recording's folder")
+                   "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
       ->required();
   command->callback([options] { run_convert(*options); });
 }

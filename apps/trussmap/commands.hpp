@@ -19,6 +19,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void setup_adjust(CLI::App& app);
 void setup_build(CLI::App& app);
 void setup_convert(CLI::App& app);
 void setup_simulate(CLI::App& app);

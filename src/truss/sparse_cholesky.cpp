@@ -29,6 +29,18 @@ cholmod_sparse view_of(const SparseMatrix& matrix, int stype) {
   return view;
 }
 
+cholmod_dense view_of(const double* values, Eigen::Index rows, Eigen::Index columns) {
+  cholmod_dense view{};
+  view.nrow = static_cast<size_t>(rows);
+  view.ncol = static_cast<size_t>(columns);
+  view.nzmax = view.nrow * view.ncol;
+  view.d = view.nrow;
+  view.x = const_cast<double*>(values);
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  return view;
+}
+
 }  // namespace
 
 struct SparseCholesky::Cholmod {
@@ -43,6 +55,9 @@ struct SparseCholesky::Cholmod {
                                                               : CHOLMOD_NATURAL;
   }
   ~Cholmod() {
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&forward, &common);
+    cholmod_free_dense(&backward, &common);
     cholmod_free_factor(&factor, &common);
     cholmod_finish(&common);
   }
@@ -59,6 +74,9 @@ struct SparseCholesky::Cholmod {
 
   mutable cholmod_common common{};
   cholmod_factor* factor = nullptr;
+  cholmod_dense* solution = nullptr;  // kept between calls of solve_in_place
+  cholmod_dense* forward = nullptr;
+  cholmod_dense* backward = nullptr;
 };
 
 SparseCholesky::SparseCholesky(Ordering ordering) : cholmod_(std::make_unique<Cholmod>(ordering)) {}
@@ -86,14 +104,7 @@ void SparseCholesky::factorise(const SparseMatrix& lower) {
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
-  cholmod_dense rhs{};
-  rhs.nrow = static_cast<size_t>(b.rows());
-  rhs.ncol = static_cast<size_t>(b.cols());
-  rhs.nzmax = static_cast<size_t>(b.size());
-  rhs.d = rhs.nrow;
-  rhs.x = const_cast<double*>(b.data());
-  rhs.xtype = CHOLMOD_REAL;
-  rhs.dtype = CHOLMOD_DOUBLE;
+  cholmod_dense rhs = view_of(b.data(), b.rows(), b.cols());
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, cholmod_->factor, &rhs, &cholmod_->common);
   cholmod_->check("solve");
   Eigen::MatrixXd result =
@@ -104,6 +115,20 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
 
 Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) const {
   return solve(static_cast<const Eigen::MatrixXd&>(Eigen::MatrixXd(b))).col(0);
+}
+
+void SparseCholesky::solve_in_place(Eigen::VectorXd& x) {
+  Cholmod& c = *cholmod_;
+  cholmod_dense rhs = view_of(x.data(), x.rows(), 1);
+  cholmod_solve2(CHOLMOD_A, c.factor, &rhs, nullptr, &c.solution, nullptr, &c.forward, &c.backward,
+                 &c.common);
+  c.check("solve");
+  x = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(c.solution->x), x.rows());
+}
+
+std::vector<int> SparseCholesky::order() const {
+  const auto* permutation = static_cast<const int*>(cholmod_->factor->Perm);
+  return {permutation, permutation + cholmod_->factor->n};
 }
 
 void SparseCholesky::update(const SparseMatrix& w) {

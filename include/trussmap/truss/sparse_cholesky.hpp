@@ -14,6 +14,7 @@
 
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include <Eigen/SparseCore>
 
@@ -52,6 +53,12 @@ class SparseCholesky {
   /// A x = b for each column of b. Call after factorise.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+
+  /// The same without allocating: `x` holds b before and the solution after.
+  void solve_in_place(Eigen::VectorXd& x);
+
+  /// The fill-reducing order of the structure analysed: place k of the factor is column [k] of A.
+  [[nodiscard]] std::vector<int> order() const;
 
   /// Makes the factor that of A + W W' (n x k, few columns). The factor becomes simplicial LDL'.
   void update(const SparseMatrix& w);

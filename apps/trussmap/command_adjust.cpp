@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap adjust: the best fit of a plain pose graph.
+#include "trussmap/adjustment/pose_graph_robust.hpp"
+#include "trussmap/core/index.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/g2o.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+
+namespace trussmap::app {
+namespace {
+
+struct AdjustOptions {
+  std::string graph;
+  std::string out;
+  std::string json;
+  std::string start = "best";
+  bool robust = false;
+  double gate = RobustOptions{}.gate;
+};
+
+/// Everything that the table and the JSON file say.
+struct Run {
+  PoseGraphAdjustment result;
+  int poses = 0;
+  int landmarks = 0;
+  std::size_t edges = 0;
+  bool robust = false;
+  nlohmann::ordered_json left_out = nlohmann::ordered_json::array();  ///< edges, by ids
+  double seconds = 0.0;
+};
+
+std::string table(const Run& run) {
+  const PoseGraphAdjustment& r = run.result;
+  std::string text = r.converged ? "adjusted: converged to a minimum\n" : "NOT CONVERGED\n";
+  const auto row = [&text](std::string_view name, const std::string& value) {
+    text += fmt::format("  {:<18}{}\n", name, value);
+  };
+  row("chi2", fmt::format("{:.10g}", r.chi2));
+  row("dof", fmt::format("{}", r.dof));
+  if (r.dof > 0) row("chi2/dof", fmt::format("{:.6g}", r.chi2 / r.dof));
+  row("poses", fmt::format("{}", run.poses));
+  row("landmarks", fmt::format("{}", run.landmarks));
+  row("edges", fmt::format("{}", run.edges));
+  if (run.robust) row("edges left out", fmt::format("{}", run.left_out.size()));
+  row("iterations", fmt::format("{}", r.iterations));
+  row("gradient norm", fmt::format("{:.3g}", r.gradient_norm));
+  row("started from", r.start);
+  row("time", fmt::format("{:.3f} s", run.seconds));
+  for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+nlohmann::ordered_json json(const Run& run) {
+  const PoseGraphAdjustment& r = run.result;
+  nlohmann::ordered_json out{{"chi2", r.chi2},
+                             {"dof", r.dof},
+                             {"iterations", r.iterations},
+                             {"gradient_norm", r.gradient_norm},
+                             {"poses", run.poses},
+                             {"landmarks", run.landmarks},
+                             {"edges", run.edges},
+                             {"converged", r.converged},
+                             {"start", r.start},
+                             {"seconds", run.seconds},
+                             {"warnings", r.warnings}};
+  if (run.robust) out["left_out"] = run.left_out;
+  return out;
+}
+
+AdjustmentOptions adjustment_options(const AdjustOptions& options, const PoseGraph& graph) {
+  const auto has_estimate = [](const GraphVertex& vertex) { return vertex.estimate.has_value(); };
+  if (options.start == "file" &&
+      !std::all_of(graph.vertices.begin(), graph.vertices.end(), has_estimate)) {
+    throw UsageError(options.graph + " has no VERTEX lines to start from, expected --start " +
+                     "odometry or best");
+  }
+  AdjustmentOptions result;
+  if (options.start == "file") result.start = StartFrom::file;
+  if (options.start == "odometry") result.start = StartFrom::odometry;
+  return result;
+}
+
+Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
+  const AdjustmentOptions how = adjustment_options(options, graph);
+  Run run;
+  run.poses = count_poses(graph);
+  run.landmarks = count_points(graph);
+  run.edges = graph.edges();
+  run.robust = options.robust;
+  const auto begin = std::chrono::steady_clock::now();
+  if (options.robust) {
+    RobustAdjustment robust = adjust_robustly(graph, {how, options.gate});
+    run.result = std::move(robust.adjustment);
+    for (const int k : robust.left_out) {
+      const PoseEdge& edge = graph.pose_edges[idx(k)];
+      run.left_out.push_back({graph.vertices[idx(edge.from)].id, graph.vertices[idx(edge.to)].id});
+    }
+  } else {
+    run.result = adjust(graph, how);
+  }
+  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return run;
+}
+
+void run_adjust(const AdjustOptions& options) {
+  PoseGraph graph = read_g2o(options.graph);
+  const Run run = adjust_graph(options, graph);
+  if (!options.out.empty()) {
+    for (std::size_t v = 0; v < graph.vertices.size(); ++v) {
+      graph.vertices[v].estimate = run.result.estimates[v];
+    }
+    write_g2o(graph, options.out);
+  }
+  if (!options.json.empty()) write_file(options.json, json(run).dump(2) + "\n");
+  fmt::print("{}", table(run));
+}
+
+}  // namespace
+
+void setup_adjust(CLI::App& app) {
+  auto options = std::make_shared<AdjustOptions>();
+  CLI::App* command = app.add_subcommand(
+      "adjust", "Adjust a pose graph: find the poses and landmarks of least chi2");
+  command->add_option("GRAPH", options->graph, "pose graph to adjust, m and rad")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--out", options->out, "write the adjusted graph as g2o")->type_name("FILE");
+  command->add_option("--json", options->json, "write the result as JSON")->type_name("FILE");
+  command
+      ->add_option("--start", options->start,
+                   "estimates to start from: the file's, those that odometry gives (the file's "
+                   "are ignored), or the best of both; in each case other starts, drawn from the "
+                   "measurements, are tried as well and the lowest chi2 is kept")
+      ->check(CLI::IsMember({"best", "file", "odometry"}))
+      ->capture_default_str();
+  command->add_flag("--robust", options->robust,
+                    "leave out loop closures that contradict the rest, and say which");
+  command
+      ->add_option("--gate", options->gate,
+                   "with --robust: largest e'Omega e of an edge that is still believed")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->footer(
+      "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
+      "(VERTEX2, EDGE2), plain or .xz. Without FIX the first vertex stays where it is.");
+  command->callback([options] { run_adjust(*options); });
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Pose graphs as text: g2o's format, of which the plane's part, and TORO's.
+//
+//   VERTEX_SE2   id x y theta                                pose                     m, rad
+//   VERTEX_XY    id x y                                      point                    m
+//   FIX          id id ...                                   these stay where they are
+//   EDGE_SE2     i j  dx dy dtheta  I11 I12 I13 I22 I23 I33  pose to pose
+//   EDGE_SE2_XY  i j  dx dy  I11 I12 I22                     pose to point, robot's frame
+//   EDGE_POINTXY i j  dx dy  I11 I12 I22                     point to point, map frame
+//   VERTEX2      id x y theta                                TORO: pose
+//   EDGE2        i j  dx dy dtheta  I11 I12 I22 I33 I13 I23  TORO: pose to pose, j seen from i
+//
+// One element a line, in any order; blank lines and what follows a # are skipped. A file may have
+// no vertex lines at all: its vertices are then those that its edges name, without estimates. If
+// there are vertex lines, every vertex needs one. Files whose name ends in .xz are decompressed.
+#pragma once
+
+#include "trussmap/adjustment/pose_graph.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace trussmap {
+
+/// Throws InputError with file and line: a tag that is not in the table, too few or too many
+/// values, a value that is no finite number, a vertex defined twice or not at all, an edge between
+/// the wrong kinds of vertices, information that is not positive semidefinite.
+[[nodiscard]] PoseGraph read_g2o(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+[[nodiscard]] PoseGraph parse_g2o(std::string_view text, const std::string& name);
+
+/// Vertices that have an estimate, fixed ones, and all edges; numbers read back without loss.
+[[nodiscard]] std::string format_g2o(const PoseGraph& graph);
+
+/// Written whole or not at all. Throws InputError where the path cannot be written.
+void write_g2o(const PoseGraph& graph, const std::string& path);
+
+}  // namespace trussmap
