@@ -1,6 +1,5 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
-include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
