@@ -47,7 +47,9 @@ TEST(Command, BadUsageEndsWithStatus2AndOneLine) {
 TEST(Command, SimulateBuildAndConvertGoTogether) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string();
-  ASSERT_EQ(run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --seed 5 --out " + at + "/r").status, 0);
+  ASSERT_EQ(
+      run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --seed 5 --out " + at + "/r").status,
+      0);
   const Ran built = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
                                  "/m.graphml --json " + at + "/m.json --svg " + at + "/m.svg");
   ASSERT_EQ(built.status, 0) << built.output;
