@@ -190,7 +190,10 @@ void run_build(const BuildOptions& options) {
   const bool judged_too = judged.map.landmarks >= 3;
 
   std::vector<std::pair<fs::path, std::string>> files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_map_graphml(built.map));
+  if (!options.out.empty()) {
+    files.emplace_back(options.out,
+                       format_map_graphml(built.map, "trussmap build, method " + options.method));
+  }
   if (!options.json_file.empty()) {
     json result = result_json(built, options.method);
     if (judged_too) result["survey"] = survey_json(judged);

@@ -92,8 +92,9 @@ void setup_convert(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      ->add_option("IN", options->in,
-                   "A map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
+      ->add_option(
+          "IN", options->in,
+          "A map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
       ->required();
   command
       ->add_option("OUT", options->out,

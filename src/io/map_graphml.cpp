@@ -176,10 +176,10 @@ LandmarkGraph read_map_graphml(const std::filesystem::path& file) {
   return map;
 }
 
-std::string format_map_graphml(const LandmarkGraph& map) {
-  std::string text =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
+std::string format_map_graphml(const LandmarkGraph& map, const std::string& comment) {
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  if (!comment.empty()) text += "<!-- " + comment + " -->\n";
+  text += "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
   const auto declare = [&text](const char* domain, const char* prefix, const char* attribute) {
     const bool count = std::string(attribute) == "traversals";
     text += std::string("  <key id=\"") + prefix + attribute + "\" for=\"" + domain +

@@ -20,6 +20,8 @@ namespace trussmap {
 /// two edges between the same landmarks, a count below 1.
 [[nodiscard]] LandmarkGraph read_map_graphml(const std::filesystem::path& file);
 
-[[nodiscard]] std::string format_map_graphml(const LandmarkGraph& map);
+/// `comment`, if any, is written as an XML comment (which method made the map, say).
+[[nodiscard]] std::string format_map_graphml(const LandmarkGraph& map,
+                                             const std::string& comment = "");
 
 }  // namespace trussmap
