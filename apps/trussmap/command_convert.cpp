@@ -3,7 +3,6 @@
 //
 // trussmap convert: maps between formats, and foreign recordings to recordings.
 #include "trussmap/adjustment/landmark_conversion.hpp"
-#include "trussmap/core/error.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/g2o.hpp"
 #include "trussmap/io/map_formats.hpp"
@@ -15,7 +14,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -37,12 +35,9 @@ void count(int number, const char* what) {
 
 void convert_mrclam(const fs::path& in, const fs::path& out) {
   const MrclamRecording foreign = read_mrclam(in);
-  std::error_code failed;
-  fs::create_directories(out, failed);
-  if (failed) throw InputError(out.string(), 0, "cannot be made: " + failed.message());
   write_recording(out, foreign.recording,
-                  fmt::format("t = 0 is {:.0f} s, Unix time", foreign.epoch));
-  write_model(out / "model.toml", foreign.model);
+                  fmt::format("t = 0 is {:.0f} s, Unix time", foreign.epoch),
+                  {{"model.toml", format_model(foreign.model)}});
   const Recording& recording = foreign.recording;
   fmt::print("converted: MRCLAM {} to the recording {}\n\n", in.string(), out.string());
   count(static_cast<int>(recording.drive.rows()), "drive rows");

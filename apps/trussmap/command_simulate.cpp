@@ -119,13 +119,8 @@ SimulatedDrive simulate(const SimulateOptions& options, Mesh& mesh) {
   }
 }
 
-/// An earlier recording's survey or truth in the same folder would be taken for this one's.
 void write_folder(const fs::path& folder, const SimulatedDrive& drive, const Model& model) {
-  fs::create_directories(folder);
-  write_recording(folder, drive.recording);
-  write_model(folder / "model.toml", model);
-  if (drive.recording.survey.empty()) fs::remove(folder / "survey.csv");
-  fs::remove(folder / "truth.csv");
+  write_recording(folder, drive.recording, "", {{"model.toml", format_model(model)}});
 }
 
 nlohmann::json summary(const SimulateOptions& options, const Mesh& mesh,

@@ -50,16 +50,42 @@ fs::path temporary_for(const fs::path& path) {
   return temporary;
 }
 
-void write_temporary(const fs::path& temporary, const fs::path& path, std::string_view content) {
-  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+/// Where a file really goes.
+struct Target {
+  fs::path place;       // links followed
+  bool stream = false;  // a terminal, pipe or device: written to as it is, never replaced
+};
+
+Target target_of(const fs::path& path, const std::vector<Target>& others) {
+  std::error_code ignored;
+  Target target{path, false};
+  if (fs::is_symlink(path, ignored)) {
+    const fs::path followed = fs::weakly_canonical(path, ignored);
+    if (!ignored) target.place = followed;
+  }
+  if (fs::is_directory(target.place, ignored)) {
+    throw InputError(path.string(), 0, "is a folder, expected a file to write");
+  }
+  target.stream = fs::exists(target.place, ignored) && !fs::is_regular_file(target.place, ignored);
+  for (const Target& other : others) {
+    if (!target.stream &&
+        fs::weakly_canonical(other.place, ignored) == fs::weakly_canonical(target.place, ignored)) {
+      throw InputError(path.string(), 0, "is to be written twice, expected different files");
+    }
+  }
+  return target;
+}
+
+void write_whole(const fs::path& place, const fs::path& named, std::string_view content,
+                 bool temporary) {
+  std::ofstream stream(place, std::ios::binary | std::ios::trunc);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
-  if (!stream) {
-    const int reason = errno;
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw InputError(path.string(), 0, std::string("cannot be written: ") + std::strerror(reason));
-  }
+  if (stream) return;
+  const int reason = errno;
+  std::error_code ignored;
+  if (temporary) fs::remove(place, ignored);
+  throw InputError(named.string(), 0, std::string("cannot be written: ") + std::strerror(reason));
 }
 
 }  // namespace
@@ -83,23 +109,30 @@ void write_file(const fs::path& path, std::string_view content) {
 }
 
 void write_files(const std::vector<std::pair<fs::path, std::string>>& files) {
+  std::vector<Target> targets;
+  for (const auto& [path, content] : files) targets.push_back(target_of(path, targets));
   std::vector<fs::path> temporaries;
   const auto clean_up = [&temporaries] {
     std::error_code ignored;
     for (const fs::path& temporary : temporaries) fs::remove(temporary, ignored);
   };
-  for (const auto& [path, content] : files) {
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    if (targets[k].stream) continue;
     try {
-      write_temporary(temporary_for(path), path, content);
+      write_whole(temporary_for(targets[k].place), files[k].first, files[k].second, true);
     } catch (...) {
       clean_up();
       throw;
     }
-    temporaries.push_back(temporary_for(path));
+    temporaries.push_back(temporary_for(targets[k].place));
   }
   for (std::size_t k = 0; k < files.size(); ++k) {
+    if (targets[k].stream) {
+      write_whole(targets[k].place, files[k].first, files[k].second, false);
+      continue;
+    }
     std::error_code failed;
-    fs::rename(temporaries[k], files[k].first, failed);
+    fs::rename(temporary_for(targets[k].place), targets[k].place, failed);
     if (failed) {
       clean_up();
       throw InputError(files[k].first.string(), 0, "cannot be written: " + failed.message());

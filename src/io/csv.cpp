@@ -25,6 +25,10 @@ std::size_t invalid_utf8(std::string_view text) {
     }
     const std::size_t length = byte >= 0xF0U ? 4 : byte >= 0xE0U ? 3 : 2;
     if (byte < 0xC2U || byte > 0xF4U || k + length > text.size()) return k;
+    const auto second = static_cast<unsigned char>(text[k + 1]);
+    const bool overlong = (byte == 0xE0U && second < 0xA0U) || (byte == 0xF0U && second < 0x90U);
+    const bool beyond = (byte == 0xEDU && second > 0x9FU) || (byte == 0xF4U && second > 0x8FU);
+    if (overlong || beyond) return k;
     for (std::size_t n = 1; n < length; ++n) {
       if ((static_cast<unsigned char>(text[k + n]) & 0xC0U) != 0x80U) return k;
     }
@@ -35,7 +39,9 @@ std::size_t invalid_utf8(std::string_view text) {
 
 std::string shown(std::string_view field) {
   constexpr std::size_t kLongest = 40;
-  return "\"" + std::string(field.substr(0, kLongest)) + (field.size() > kLongest ? "...\"" : "\"");
+  std::string text(field.substr(0, kLongest));
+  for (char& c : text) c = static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
+  return "\"" + text + (field.size() > kLongest ? "...\"" : "\"");
 }
 
 }  // namespace
@@ -50,7 +56,7 @@ CsvReader::CsvReader(std::string_view text, std::string file)
                      "a byte that is no UTF-8 text, expected UTF-8");
   }
   if (!read_record()) {
-    throw InputError(file_, 0, "the file is empty, expected a header row");
+    throw InputError(file_, 1, "the file is empty, expected a header row");
   }
   for (const std::string_view name : fields_) {
     if (std::find(columns_.begin(), columns_.end(), name) != columns_.end()) {
@@ -101,7 +107,6 @@ bool CsvReader::read_record() {
   line_ = next_line_;
   fields_.clear();
   used_unquoted_ = 0;
-  unquoted_.resize(std::max<std::size_t>(unquoted_.size(), columns_.size() + 1));
   for (bool end_of_record = false; !end_of_record;) read_field(end_of_record);
   return true;
 }
@@ -112,7 +117,7 @@ void CsvReader::read_field(bool& end_of_record) {
            (text_[k] == '\r' && (k + 1 >= text_.size() || text_[k + 1] == '\n'));
   };
   if (at_ < text_.size() && text_[at_] == '"') {
-    if (used_unquoted_ == unquoted_.size()) fail("more fields than the header has columns");
+    if (used_unquoted_ == unquoted_.size()) unquoted_.emplace_back();
     std::string& value = unquoted_[used_unquoted_++];
     value.clear();
     std::size_t k = at_ + 1;
@@ -160,7 +165,8 @@ double CsvReader::number(int column) const {
   const std::string& name = columns_[idx(column)];
   if (text.empty()) fail("column " + name + " is empty, expected a number");
   double value = 0.0;
-  const char* first = text.data() + (text.front() == '+' ? 1 : 0);
+  const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+  const char* first = text.data() + (plus ? 1 : 0);
   const char* last = text.data() + text.size();
   const auto [end, status] = std::from_chars(first, last, value);
   if (status == std::errc::result_out_of_range) {

@@ -144,6 +144,7 @@ void read_edge(const ptree& element, const std::map<std::string, std::string>& n
   route.orientation = data.number("orientation");
   route.displacement = {data.number("dx"), data.number("dy")};
   route.covariance = data.covariance();
+  if (route.stretch < 0.0) data.fail("stretch is negative, expected 0 or more");
   map.set_route(map.add_route(*i, *j), route);
 }
 

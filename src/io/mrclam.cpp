@@ -86,6 +86,12 @@ std::vector<Row> require_rows(const fs::path& path, std::size_t columns) {
   return read_rows(file, columns);
 }
 
+/// A subject or barcode; what is no small whole number belongs to nothing.
+int number_of(double value) {
+  constexpr double kLargest = 1e6;
+  return std::abs(value) <= kLargest && value == std::floor(value) ? static_cast<int>(value) : -1;
+}
+
 /// Milliseconds survive: the files' times have three decimals.
 double since(double epoch, double time) {
   return std::round((time - epoch) * 1e6) / 1e6;
@@ -121,7 +127,7 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
 void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   std::map<int, int> subjects;
   for (const Row& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
-    subjects[static_cast<int>(row[1])] = static_cast<int>(row[0]);
+    subjects[number_of(row[1])] = number_of(row[0]);
   }
   const fs::path file = found(beside(prefix, "_Measurement.dat"));
   if (file.empty()) {
@@ -131,10 +137,15 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   std::vector<Sighting>& sightings = result.recording.sightings;
   double before = -INFINITY;
   for (const Row& row : read_rows(file, 4)) {
+    if (row[2] < 0.0) {
+      throw InputError(
+          file.string(), 0,
+          "a negative range at time " + std::to_string(row[0]) + ", expected 0 or more");
+    }
     if (row[0] < before) ++result.unordered_sightings;
     before = std::max(before, row[0]);
     const double t = since(result.epoch, row[0]);
-    const auto subject = subjects.find(static_cast<int>(row[1]));
+    const auto subject = subjects.find(number_of(row[1]));
     if (subject == subjects.end()) {
       ++result.unknown_barcodes;
     } else if (subject->second <= kLastRobot) {
@@ -144,6 +155,9 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
     } else {
       sightings.push_back({t, std::to_string(subject->second), row[2], row[3]});
     }
+  }
+  if (sightings.empty()) {
+    throw InputError(file.string(), 0, "no sighting of a landmark within the drive, expected some");
   }
   std::stable_sort(sightings.begin(), sightings.end(),
                    [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
@@ -168,7 +182,8 @@ void read_survey(const fs::path& prefix, Recording& recording) {
 
 /// Truth rows within the drive. Times that do not increase are left out.
 void read_truth(const fs::path& prefix, MrclamRecording& result) {
-  const fs::path file = found(beside(prefix, "_Groundtruth.dat"));
+  fs::path file = found(beside(prefix, "_Groundtruth.dat"));
+  if (file.empty()) file = found(beside(prefix, "_Groundtruth_part.dat"));
   if (file.empty()) return;
   const Drive& drive = result.recording.drive;
   std::vector<TruthRow>& truth = result.recording.truth;

@@ -11,6 +11,7 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -120,7 +121,8 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive) {
              (range < 0 ? "range" : "bearing") + "\", expected both or neither");
   }
   // Times are written in decimals: t1 - (t2 - t1) may miss the start by a rounding error.
-  const double slack = 1e-9 * std::max(1.0, std::abs(drive.t.back()));
+  const double slack =
+      1e-9 + 8.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.t.back());
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
@@ -281,8 +283,8 @@ Recording read_recording(const fs::path& folder) {
   return recording;
 }
 
-void write_recording(const fs::path& folder, const Recording& recording,
-                     const std::string& comment) {
+void write_recording(const fs::path& folder, const Recording& recording, const std::string& comment,
+                     const std::vector<std::pair<std::string, std::string>>& beside) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) throw InputError(folder.string(), 0, "cannot be made: " + failed.message());
@@ -297,7 +299,14 @@ void write_recording(const fs::path& folder, const Recording& recording,
   if (!recording.truth.empty()) {
     files.emplace_back(folder / "truth.csv", truth_text(recording.truth));
   }
+  for (const auto& [name, content] : beside) files.emplace_back(folder / name, content);
   write_files(files);
+  // An earlier recording's stream in the same folder would be taken for this one's.
+  for (const char* name : {"sightings.csv", "survey.csv", "truth.csv"}) {
+    const bool written = std::any_of(files.begin(), files.end(),
+                                     [&](const auto& file) { return file.first == folder / name; });
+    if (!written) fs::remove(folder / name, failed);
+  }
 }
 
 }  // namespace trussmap

@@ -76,9 +76,10 @@ TEST(RecordingCsv, ReadsBackExactlyWhatItWrote) {
 
 TEST(RecordingCsv, TakesWhatRfc4180Takes) {
   const ScratchFolder scratch;
-  scratch.write("r/drive.csv",
-                "\xEF\xBB\xBF# a comment\r\nright,t,left\r\n\r\n\"1.5\",+0.1,-2e-3\r\n# more\r\n"
-                "2,0.2,3");
+  scratch.write(
+      "r/drive.csv",
+      "\xEF\xBB\xBF# a comment\r\n\"right\",\"t\",left\r\n\r\n\"1.5\",+0.1,-2e-3\r\n# more\r\n"
+      "2,0.2,3");
   scratch.write("r/sightings.csv", "landmark,t\n\"A, \"\"B\"\"\",0.2\n\"two\nlines\",0.2\n");
   try {
     (void)read_recording(scratch.path() / "r");
@@ -122,6 +123,33 @@ TEST(AtomicFile, AFailedWriteLeavesEverythingAsItWas) {
   EXPECT_EQ(scratch.contents(), before);
   write_files({{scratch.path() / "a", "new a"}, {scratch.path() / "b", "b"}});
   EXPECT_EQ(scratch.contents(), (std::map<std::string, std::string>{{"a", "new a"}, {"b", "b"}}));
+}
+
+TEST(AtomicFile, FollowsLinksWritesToDevicesAndRefusesFoldersAndTwins) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("file", "old");
+  std::filesystem::create_directory(scratch.path() / "folder");
+  std::filesystem::create_symlink("file", scratch.path() / "link");
+  EXPECT_THROW(write_files({{file, "new"}, {scratch.path() / "folder", "x"}}), InputError);
+  EXPECT_THROW(write_files({{file, "new"}, {scratch.path() / "link", "x"}}), InputError);
+  EXPECT_EQ(scratch.contents().at("file"), "old");
+  write_file(scratch.path() / "link", "through the link");
+  EXPECT_TRUE(std::filesystem::is_symlink(scratch.path() / "link"));
+  EXPECT_EQ(scratch.contents().at("file"), "through the link");
+  write_file("/dev/null", "nobody reads this");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(RecordingCsv, WritingIntoAUsedFolderLeavesNoStrangersStreams) {
+  const ScratchFolder scratch;
+  write_recording(scratch.path() / "r", random_recording());
+  Recording bare = random_recording();
+  bare.truth.clear();
+  bare.survey.clear();
+  write_recording(scratch.path() / "r", bare, "", {{"model.toml", "[robot]\n"}});
+  const auto files = scratch.contents();
+  EXPECT_EQ(files.count("r/truth.csv") + files.count("r/survey.csv"), 0U);
+  EXPECT_EQ(files.at("r/model.toml"), "[robot]\n");
 }
 
 TEST(AtomicFile, RefusesWhatIsNoXzFile) {

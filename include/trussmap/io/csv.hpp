@@ -8,6 +8,7 @@
 // UTF-8, with or without a byte order mark. Every error names the file and the line, from 1.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -58,7 +59,7 @@ class CsvReader {
   std::size_t next_line_ = 1;  // of text_[at_]
   std::vector<std::string> columns_;
   std::vector<std::string_view> fields_;
-  std::vector<std::string> unquoted_;  // fields whose text differs from the file's bytes
+  std::deque<std::string> unquoted_;  // fields whose text differs from the file's bytes
   std::size_t used_unquoted_ = 0;
 };
 

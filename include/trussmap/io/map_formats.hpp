@@ -14,7 +14,7 @@ namespace trussmap {
 /// properties. Coordinates are metres in the map frame, not degrees.
 [[nodiscard]] std::string format_geojson(const LandmarkGraph& map);
 
-/// An undirected graph with pinned positions in metres: `neato -n -Tsvg` draws it as it lies.
+/// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
 [[nodiscard]] std::string format_dot(const LandmarkGraph& map);
 
 }  // namespace trussmap

@@ -8,6 +8,9 @@
 #include "trussmap/recording/recording.hpp"
 
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace trussmap {
 
@@ -16,9 +19,11 @@ namespace trussmap {
 [[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
 
 /// Writes the streams that the recording has (a drive always; sightings unless there is truth and
-/// no sighting). `comment`, if any, becomes # lines at the top of drive.csv. The folder is made
-/// where it is missing. Numbers read back exactly.
+/// no sighting) and removes the others that an earlier recording left in the folder. `comment`, if
+/// any, becomes # lines at the top of drive.csv; `beside` are further files, by name and content,
+/// written with them. The folder is made where it is missing. Numbers read back exactly.
 void write_recording(const std::filesystem::path& folder, const Recording& recording,
-                     const std::string& comment = "");
+                     const std::string& comment = "",
+                     const std::vector<std::pair<std::string, std::string>>& beside = {});
 
 }  // namespace trussmap
