@@ -67,7 +67,7 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
 }
 
 /// Standing on the landmark first, then what the range sensor sees from there.
-std::vector<Sighting> sight(const Stop& stop, const Mesh& mesh, const WheeledRobot& robot,
+std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const WheeledRobot& robot,
                             Dice& dice) {
   std::vector<Sighting> sightings = {{stop.t, landmark_name(mesh, stop.landmark)}};
   if (!robot.range_sensor) return sightings;
@@ -109,7 +109,7 @@ Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot&
   Recording recording;
   recording.name = "simulation";
   recording.drive = record_drive(motion, robot, seed);
-  for (const Stop& stop : motion.stops) {
+  for (const TrueStop& stop : motion.stops) {
     for (const Sighting& sighting : sight(stop, mesh, robot, dice)) {
       recording.sightings.push_back(sighting);
     }

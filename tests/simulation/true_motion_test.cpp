@@ -41,7 +41,7 @@ TEST(TrueMotion, StopsNearEveryLandmarkOfTheWalk) {
   ASSERT_EQ(motion.stops.size(), f.walk.size());
   double squares = 0.0;
   for (std::size_t k = 0; k < f.walk.size(); ++k) {
-    const Stop& stop = motion.stops[k];
+    const TrueStop& stop = motion.stops[k];
     EXPECT_EQ(stop.landmark, f.walk[k]);
     const TrueRow* const last = stop.rows == 0 ? nullptr : &motion.rows[stop.rows - 1];
     EXPECT_EQ(stop.t, last == nullptr ? 0.0 : last->t);

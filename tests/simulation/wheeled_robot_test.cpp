@@ -151,7 +151,7 @@ TEST(WheeledRobot, RangeSensorSeesSomeOfWhatIsInReach) {
   double range_squares = 0.0;
   double bearing_squares = 0.0;
   double in_reach = 0.0;
-  for (const Stop& s : simulated.motion.stops) {
+  for (const TrueStop& s : simulated.motion.stops) {
     for (int k = 0; k < f.mesh.landmarks(); ++k) {
       const double away = (f.mesh.positions[idx(k)] - s.pose.position()).norm();
       in_reach += k != s.landmark && away <= f.robot.reach ? 1.0 : 0.0;

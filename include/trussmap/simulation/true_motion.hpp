@@ -46,7 +46,7 @@ struct TrueRow {
 };
 
 /// The robot at a landmark.
-struct Stop {
+struct TrueStop {
   double t = 0.0;        ///< s, the end of a row, or the start of the first
   int landmark = -1;     ///< of the mesh
   std::size_t rows = 0;  ///< rows driven until then
@@ -56,7 +56,7 @@ struct Stop {
 struct TrueMotion {
   Pose start;  ///< before the first row, at time 0
   std::vector<TrueRow> rows;
-  std::vector<Stop> stops;  ///< one per landmark of the walk
+  std::vector<TrueStop> stops;  ///< one per landmark of the walk
 };
 
 /// How the robot drives. Ranges are drawn from uniformly, anew for each leg or spin.
