@@ -9,8 +9,8 @@
 // out of the fit and of the figures, and named.
 //
 // Found by least median of squares over the alignments that each pair of landmarks gives; a
-// landmark contradicts if it is off by more than 10 times the others' median and 10 times their rms.
-// At most a third can: beyond that the map is simply bad, and all count.
+// landmark contradicts if it is off by more than 10 times the others' median and 10 times their
+// rms. At most a third can: beyond that the map is simply bad, and all count.
 #pragma once
 
 #include "trussmap/core/alignment.hpp"
