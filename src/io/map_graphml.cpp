@@ -3,6 +3,7 @@
 #include "trussmap/io/map_graphml.hpp"
 
 #include "trussmap/core/error.hpp"
+#include "trussmap/core/xml_text.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/csv.hpp"
 
@@ -19,29 +20,6 @@ namespace trussmap {
 namespace {
 
 using boost::property_tree::ptree;
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 void write_data(std::string& text, const char* key, double value) {
   text += std::string("      <data key=\"") + key + "\">" + csv_number(value) + "</data>\n";
@@ -195,7 +173,7 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
   text += "  <graph id=\"map\" edgedefault=\"undirected\">\n";
   for (int k = 0; k < map.landmarks(); ++k) {
     const Landmark& landmark = map.landmark(k);
-    text += "    <node id=\"" + escaped(landmark.name) + "\">\n";
+    text += "    <node id=\"" + xml_escaped(landmark.name) + "\">\n";
     write_data(text, "n_x", landmark.position.x());
     write_data(text, "n_y", landmark.position.y());
     if (landmark.covariance) write_covariance(text, "n_", *landmark.covariance);
@@ -203,8 +181,8 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
   }
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
-    text += "    <edge source=\"" + escaped(map.landmark(route.source).name) + "\" target=\"" +
-            escaped(map.landmark(route.target).name) + "\">\n";
+    text += "    <edge source=\"" + xml_escaped(map.landmark(route.source).name) + "\" target=\"" +
+            xml_escaped(map.landmark(route.target).name) + "\">\n";
     write_data(text, "e_traversals", route.traversals);
     write_data(text, "e_stretch", route.stretch);
     write_data(text, "e_orientation", route.orientation);

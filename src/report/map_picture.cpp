@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/report/map_picture.hpp"
 
+#include "trussmap/core/xml_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -107,29 +109,6 @@ constexpr const char* kStyle =
     ".scale{stroke:#222;fill:none}</style>\n";
 
 }  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string draw_map(const MapPicture& picture) {
   const Alignment& lay = picture.map_onto_truth;

@@ -27,7 +27,4 @@ struct MapPicture {
 /// The picture as SVG text; names are escaped. 800 pixels wide.
 [[nodiscard]] std::string draw_map(const MapPicture& picture);
 
-/// Text for XML content and attributes.
-[[nodiscard]] std::string xml_escaped(const std::string& text);
-
 }  // namespace trussmap
