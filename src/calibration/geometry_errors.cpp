@@ -66,15 +66,17 @@ GeometryErrors geometry_errors(const Model& model) {
     if (effect.name == kRatio) {
       const double g = coefficient(effect, "difference");
       if (std::abs(g) >= 2.0) {
-        throw std::invalid_argument("effect \"wheel diameter ratio\" has a coefficient of 2 or "
-                                    "more, expected one near 0");
+        throw std::invalid_argument(
+            "effect \"wheel diameter ratio\" has a coefficient of 2 or "
+            "more, expected one near 0");
       }
       errors.diameter_ratio = (1.0 + g / 2.0) / (1.0 - g / 2.0);
     } else if (effect.name == kWheelbase) {
       const double g = coefficient(effect, "turn");
       if (g <= -1.0) {
-        throw std::invalid_argument("effect \"wheelbase\" has a coefficient of -1 or less, "
-                                    "expected one near 0");
+        throw std::invalid_argument(
+            "effect \"wheelbase\" has a coefficient of -1 or less, "
+            "expected one near 0");
       }
       errors.wheelbase_ratio = 1.0 / (1.0 + g);
     }

@@ -62,7 +62,8 @@ TestPath parse_path(const std::string& text) {
     begin = comma + 1;
   }
   if (!moves) {
-    throw std::invalid_argument("the path \"" + text + "\" does not move, expected a distance or "
+    throw std::invalid_argument("the path \"" + text +
+                                "\" does not move, expected a distance or "
                                 "a turn other than 0");
   }
   return path;

@@ -8,9 +8,9 @@
 //   se^2 = v1 + v2,   dof = (v1 + v2)^2 / (v1^2/(n1 - 1) + v2^2/(n2 - 1))
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace trussmap {
 
