@@ -91,36 +91,59 @@ ExactFit exact_fit_at(const GeometryErrors& at, const SquareClusters& clusters,
   return fit;
 }
 
-/// Gauss-Newton from the nominal geometry; a step that makes things worse is halved.
-ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
+/// Gauss-Newton from a given geometry to the minimum nearby; a step that makes things worse is
+/// halved.
+ExactFit descend(const GeometryErrors& start, const SquareClusters& clusters,
+                 const SquareSetup& setup) {
   constexpr int kMostIterations = 200;
   constexpr double kSmallestStep = 1e-15;
   constexpr double kSmallestRatio = 0.1;
-  ExactFit fit = exact_fit_at({}, clusters, setup);
+  ExactFit fit = exact_fit_at(start, clusters, setup);
   double damping = 1.0;
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     const Vector2d step =
         damping *
         (fit.jacobian.transpose() * fit.jacobian).ldlt().solve(fit.jacobian.transpose() * fit.left);
-    if (step.cwiseAbs().maxCoeff() <= kSmallestStep) {
-      // Farther off than the nominal robot would be: not a solution but a dead end.
-      const double start = std::hypot(clusters.cw.mean.norm(), clusters.ccw.mean.norm());
-      if (fit.left.norm() > 0.99 * start && start > 0.5 * setup.side) break;
-      return fit;
-    }
+    if (step.cwiseAbs().maxCoeff() <= kSmallestStep) break;
     const GeometryErrors next{fit.at.diameter_ratio + step.x(), fit.at.wheelbase_ratio + step.y()};
     const bool sensible = std::min(next.diameter_ratio, next.wheelbase_ratio) > kSmallestRatio;
     ExactFit tried = sensible ? exact_fit_at(next, clusters, setup) : fit;
-    if (tried.left.squaredNorm() < fit.left.squaredNorm()) {
-      fit = std::move(tried);
-      damping = 1.0;
-    } else {
-      damping *= 0.5;
-    }
+    const bool better = tried.left.squaredNorm() < fit.left.squaredNorm();
+    damping = better ? 1.0 : 0.5 * damping;
+    if (better) fit = std::move(tried);
   }
-  throw SolveError(
-      "no wheelbase and wheel ratio near the nominal ones bring the robot to where the runs ended; "
-      "are the errors in metres, and absolute - calculated?");
+  return fit;
+}
+
+/// Errors as large as a tenth of a turn per leg have minima besides the true one: where the one
+/// next to the nominal geometry fits badly, others are looked for.
+ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
+  constexpr double kGoodShare = 0.05;    // of the measured errors, left over
+  constexpr double kLargestError = 0.7;  // rad, per leg or per turn
+  constexpr int kStarts = 4;             // on either side of 0
+  const double measured = std::hypot(clusters.cw.mean.norm(), clusters.ccw.mean.norm());
+  ExactFit best = descend({}, clusters, setup);
+  if (best.left.norm() > kGoodShare * measured) {
+    ExactFit elsewhere = best;
+    for (int i = -kStarts; i <= kStarts; ++i) {
+      for (int j = -kStarts; j <= kStarts; ++j) {
+        const double beta = kLargestError * i / kStarts;
+        const double alpha = kLargestError * j / kStarts;
+        ExactFit fit = descend(
+            {1.0 + beta * setup.wheelbase / setup.side, kQuarterTurn / (kQuarterTurn - alpha)},
+            clusters, setup);
+        if (fit.left.norm() < elsewhere.left.norm()) elsewhere = std::move(fit);
+      }
+    }
+    // Far from the nominal geometry only for a fit that leaves no doubt: scatter makes neither.
+    if (elsewhere.left.norm() < kGoodShare * best.left.norm()) best = std::move(elsewhere);
+  }
+  if (best.left.norm() > 0.5 * measured && measured > 0.5 * setup.side) {
+    throw SolveError(
+        "no wheelbase and wheel ratio near the nominal ones bring the robot to where the runs "
+        "ended; are the errors in metres, and absolute - calculated?");
+  }
+  return best;
 }
 
 void check(const SquareSetup& setup) {
