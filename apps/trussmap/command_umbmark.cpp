@@ -281,6 +281,11 @@ std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options
     out += "\n" + format_table(table);
   }
   const Round& last = rounds.back();
+  if (rounds.size() > 1 && last.clusters.sem > 0.0 && !last.clusters.second_round_worthwhile) {
+    out +=
+        "\n  The last round's own corrections are within its scatter; those of the rounds before\n"
+        "  would do as well.\n";
+  }
   out += corrections_text(last, options) + solutions_text(last) + clusters_text(last);
   if (last.clusters.second_round_worthwhile) out += one_way_text(last);
   std::vector<std::string> doubts;

@@ -3,6 +3,7 @@
 #include "trussmap/report/calibration_figures.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <stdexcept>
 
@@ -12,7 +13,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kMillimetres = 1000.0;
-constexpr const char* kOrdinals[] = {"First", "Second", "Third", "Fourth", "Fifth"};
 
 std::vector<Vector2> in_millimetres(const std::vector<Eigen::Vector2d>& metres) {
   std::vector<Vector2> result;
@@ -34,9 +34,8 @@ Panel square_panel(const SquareRuns& runs, std::size_t round, std::size_t rounds
   const SquareClusters clusters = square_clusters(runs);
   const double farthest = kMillimetres * clusters.largest_offset.value;
   Panel panel;
-  const std::string name = round < std::size(kOrdinals) ? kOrdinals[round] : "Another";
-  panel.title = fmt::format("{}largest systematic error {:.0f} mm",
-                            rounds > 1 ? name + " round: " : "", farthest);
+  panel.title = fmt::format("{}systematic error {:.0f} mm",
+                            rounds > 1 ? fmt::format("Round {}: ", round + 1) : "", farthest);
   panel.title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(panel.title[0])));
   panel.x_label = "x error [mm]";
   panel.y_label = "y error [mm]";
@@ -70,10 +69,12 @@ Range widest(const Panel& panel, int axis) {
 /// One plane of Chong & Kleeman's Figure 4.
 Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate, int across, int up) {
   constexpr const char* kLabels[] = {"x error [mm]", "y error [mm]", "heading error [mrad]"};
+  constexpr const char* kTitles[] = {"Along and across", "Along and heading", "Across and heading"};
   const std::vector<int> pick = {across, up};
   const double scale = kMillimetres * ellipse95_scale(2);
   const Vector2 centre = kMillimetres * Vector2(estimate.centre(pick));
   Panel panel;
+  panel.title = kTitles[across + up - 1];
   panel.x_label = kLabels[across];
   panel.y_label = kLabels[up];
   panel.zero_lines = true;

@@ -22,7 +22,7 @@ constexpr double kLeftAxis = 62.0;  // numbers and label of the y axis
 constexpr double kBottomAxis = 48.0;
 constexpr double kPanelTitle = 26.0;
 constexpr double kRightGap = 14.0;
-constexpr double kCharacter = 7.0;  // mean width of one at 13 px
+constexpr double kCharacter = 6.7;  // mean width of one at 13 px
 
 /// Pixels with two decimals, without a negative zero.
 std::string px(double value) {
@@ -166,7 +166,7 @@ std::string tick_text(double value, double step) {
 }
 
 std::string draw_axes(const Panel& panel, const View& view) {
-  constexpr double kPixelsPerTick = 62.0;
+  constexpr double kPixelsPerTick = 38.0;
   const double right = view.left + view.width;
   const double bottom = view.top + view.height;
   std::string grid;
