@@ -32,8 +32,9 @@ constexpr double kMillimetre = 1e-3;
 
 std::map<std::string, json> claims() {
   std::map<std::string, json> result;
-  for (const json& claim : testing::reference("paper_tables.json")["claims"]) {
-    result[claim["id"].get<std::string>()] = claim;
+  const json all = testing::reference("paper_tables.json");
+  for (const json& one : all["claims"]) {
+    result[one["id"].get<std::string>()] = one;
   }
   return result;
 }
@@ -100,7 +101,9 @@ TEST(PaperTables, EveryClaimIsTestedOrADatum) {
                                         "bf.3sem",
                                         "bf.order",
                                         "bf.xy_agree"};
-  for (const auto& [id, one] : claims()) {
+  const std::map<std::string, json> all = claims();
+  for (const std::string& id : tested) EXPECT_TRUE(all.contains(id)) << id;
+  for (const auto& [id, one] : all) {
     if (id.starts_with("el.") || tested.contains(id) || id.starts_with("bf.tableI.")) continue;
     const std::string said = one["reproduces"];
     EXPECT_TRUE(said == "input" || said == "data" || said == "measured data") << id << ": " << said;
@@ -172,7 +175,11 @@ TEST(PaperTables, ImprovementsOfTableIAreTheRatiosSaid) {
     const json printed = claim(id)["value"];
     const double ratio = printed["before"].get<double>() / printed["after"].back().get<double>();
     EXPECT_NEAR(ratio, numbers(verdict(id)).at(0), 0.05) << id;
-    EXPECT_NEAR(ratio, printed["improvement"].get<double>(), 0.51) << id;
+    // Rounded to a whole number, or truncated (experiment 6: 11.51 is printed as 11).
+    EXPECT_EQ(std::min(std::abs(std::floor(ratio) - printed["improvement"].get<double>()),
+                       std::abs(std::round(ratio) - printed["improvement"].get<double>())),
+              0.0)
+        << id;
   }
 }
 
@@ -192,7 +199,7 @@ TEST(PaperTables, Experiment1ForwardIsTwoPercentBelowTheMeasurement) {
   EXPECT_NEAR(small_angle(kMillimetre * value("bf.exp1.b_before")), 314.2, 0.05);
   EXPECT_NEAR(small_angle(kMillimetre * value("bf.exp1.b_after")), 315.5, 0.05);
   EXPECT_EQ(said.at(1), 314.2);
-  EXPECT_EQ(said.at(3), 315.5);
+  EXPECT_NE(verdict("bf.exp1.forward").find("315.5 (b=336.17)"), std::string::npos);
 }
 
 /// E_d between two bounds at which the robot of experiment 1 is off by so many millimetres.
@@ -221,7 +228,6 @@ TEST(PaperTables, TapedWheelsNeedTheRatiosSaid) {
 }
 
 TEST(PaperTables, ThreeStandardErrorsAreAsPrinted) {
-  // Two runs per cluster on a circle of 25 mm per coordinate: the scatter of five such runs.
   const double sem = value("bf.sd") / std::sqrt(value("bf.runs"));
   EXPECT_NEAR(sem, 11.18, 0.005);
   EXPECT_NE(verdict("bf.sem").find("11.18"), std::string::npos);
@@ -239,7 +245,9 @@ TEST(PaperTables, OneRoundImprovesByAnOrderOfMagnitude) {
   const SquareClusters before = simulated_clusters(robot, kSquare.side);
   const double left = largest_mm(simulated_clusters(corrected(before), kSquare.side));
   EXPECT_NE(verdict("bf.order").find("> 90-fold"), std::string::npos);
-  EXPECT_GT(largest_mm(before) / left, 89.0);
+  // The verdict's "> 90-fold" is the measured 317 mm over what is left; the exact 311 mm give 88.
+  EXPECT_GT(value("bf.exp1.forward") / left, 90.0);
+  EXPECT_NEAR(largest_mm(before) / left, 88.47, 0.01);
 
   // With the papers' scatter, measured with five runs each way again.
   TapeRobot scattered = robot;
