@@ -169,13 +169,18 @@ TEST(CalibrationCommands, BadInputNamesFileAndLineAndWritesNothing) {
 TEST(CalibrationCommands, BadUsageEndsWithStatus2AndOneLine) {
   const ScratchFolder scratch;
   const std::string runs = scratch.write("runs.csv", kRuns).string();
-  for (const std::string& arguments :
-       {std::string("umbmark"), "umbmark " + runs, "umbmark --simulate " + runs,
-        "umbmark --wheelbase 0.3 --runs 4 " + runs, "umbmark --wheelbase 0 " + runs,
-        "umbmark --wheelbase 0.3 --side -1 " + runs, "umbmark --simulate --true-E-d 0",
-        std::string("noise --simulate --path 10,x"), std::string("noise --simulate --path 0"),
-        std::string("noise --simulate --sensor-sd 1,2"),
-        std::string("noise --simulate --sensor-sd 1,2,-3")}) {
+  const std::vector<std::string> bad = {"umbmark",
+                                        "umbmark " + runs,
+                                        "umbmark --simulate " + runs,
+                                        "umbmark --wheelbase 0.3 --runs 4 " + runs,
+                                        "umbmark --wheelbase 0 " + runs,
+                                        "umbmark --wheelbase 0.3 --side -1 " + runs,
+                                        "umbmark --simulate --true-E-d 0",
+                                        "noise --simulate --path 10,x",
+                                        "noise --simulate --path 0",
+                                        "noise --simulate --sensor-sd 1,2",
+                                        "noise --simulate --sensor-sd 1,2,-3"};
+  for (const std::string& arguments : bad) {
     const Ran ran = run_trussmap(arguments);
     EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.output;
     EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
