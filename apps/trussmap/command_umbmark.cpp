@@ -204,7 +204,7 @@ std::string verdict(const Round& round, std::size_t number) {
                        size.value);
   }
   const std::string limit =
-      fmt::format("three standard errors of a centre, {:.2g} m", 3.0 * clusters.sem);
+      fmt::format("three standard errors of a centre, {:#.2g} m", 3.0 * clusters.sem);
   return clusters.second_round_worthwhile
              ? fmt::format("{}worth correcting: systematic error {} m, more than {}\n", again,
                            size.value, limit)
@@ -287,7 +287,7 @@ std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options
         "  would do as well.\n";
   }
   out += corrections_text(last, options) + solutions_text(last) + clusters_text(last);
-  if (last.clusters.second_round_worthwhile) out += one_way_text(last);
+  if (rounds.size() == 1 && last.clusters.second_round_worthwhile) out += one_way_text(last);
   std::vector<std::string> doubts;
   for (const Round& round : rounds) {
     for (const std::string& doubt : round.doubts) {

@@ -44,9 +44,9 @@ SquareRuns read_square_runs(const std::filesystem::path& file, double longest) {
     if (sense != "cw" && sense != "ccw") {
       table.fail("direction is \"" + std::string(sense) + "\", expected cw or ccw");
     }
-    const Eigen::Vector2d error(coordinate(table, x, "x", longest),
-                                coordinate(table, y, "y", longest));
-    (sense == "cw" ? runs.cw : runs.ccw).push_back(error);
+    const double ahead = coordinate(table, x, "x", longest);
+    const double left = coordinate(table, y, "y", longest);
+    (sense == "cw" ? runs.cw : runs.ccw).push_back({ahead, left});
   }
   for (const auto& [name, sample] : {std::pair("cw", &runs.cw), std::pair("ccw", &runs.ccw)}) {
     if (sample->size() >= 2) continue;
