@@ -351,7 +351,7 @@ void setup_umbmark(CLI::App& app) {
       "Calibrate wheel diameters and wheelbase with a tape measure: squares driven in both "
       "directions (UMBmark; Borenstein & Feng 1996), by the papers' formulas and exactly.");
   command->add_option("RUNS", options->files, "End errors of the runs (CSV), a file per round")
-      ->type_name("FILE ...");
+      ->type_name("FILE");
   command->add_option("--side", options->side, "Side of the square [m]")
       ->check(above_zero())
       ->capture_default_str();
