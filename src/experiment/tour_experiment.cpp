@@ -168,9 +168,9 @@ class SeedRun {
   Vector2 reckoned_ = Vector2::Zero();
 };
 
-Figure figure_of(const std::vector<double>& values) {
+SeedMean figure_of(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
-  Figure figure;
+  SeedMean figure;
   for (const double value : values) figure.mean += value / n;
   double squares = 0.0;
   for (const double value : values) squares += std::pow(value - figure.mean, 2);

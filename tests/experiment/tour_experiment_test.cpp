@@ -24,7 +24,8 @@ struct Curve {
   const char* reference;
 };
 
-void expect_close(const Figure& ours, const json& curve, const std::string& key, std::size_t tour) {
+void expect_close(const SeedMean& ours, const json& curve, const std::string& key,
+                  std::size_t tour) {
   const double reference = curve[key][tour];
   const double error = curve[key + "_se"][tour];
   EXPECT_LE(std::abs(ours.mean - reference), 4.0 * std::hypot(ours.standard_error, error))

@@ -46,15 +46,15 @@ struct TourOptions {
 };
 
 /// Mean over the seeds, and its standard error.
-struct Figure {
+struct SeedMean {
   double mean = 0.0;
   double standard_error = 0.0;
 };
 
 struct TourFigures {
-  Figure stretch_error;
-  Figure orientation_error;              ///< rad
-  std::optional<Figure> position_error;  ///< m, where the method has positions
+  SeedMean stretch_error;
+  SeedMean orientation_error;              ///< rad
+  std::optional<SeedMean> position_error;  ///< m, where the method has positions
 };
 
 using MethodFigures = std::map<std::string, TourFigures>;
