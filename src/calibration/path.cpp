@@ -43,6 +43,12 @@ std::optional<PathPiece> parse_piece(std::string_view text) {
   return PathPiece{*distance, *turn * kDegree};
 }
 
+[[noreturn]] void refuse(const std::string& piece, const std::string& path) {
+  throw std::invalid_argument("piece \"" + piece + "\" of the path \"" + path +
+                              "\" cannot be read, expected metres (10 or -10), a turn on the spot "
+                              "in degrees (a90) or an arc (3@45)");
+}
+
 }  // namespace
 
 TestPath parse_path(const std::string& text) {
@@ -52,11 +58,7 @@ TestPath parse_path(const std::string& text) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     const std::string piece(trimmed(std::string_view(text).substr(begin, comma - begin)));
     const std::optional<PathPiece> parsed = parse_piece(piece);
-    if (!parsed) {
-      throw std::invalid_argument("piece \"" + piece + "\" of the path \"" + text +
-                                  "\" cannot be read, expected metres (10 or -10), a turn on the "
-                                  "spot in degrees (a90) or an arc (3@45)");
-    }
+    if (!parsed) refuse(piece, text);
     path.push_back(*parsed);
     moves = moves || parsed->distance != 0.0 || parsed->turn != 0.0;
     begin = comma + 1;

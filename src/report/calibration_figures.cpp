@@ -16,6 +16,7 @@ constexpr double kMillimetres = 1000.0;
 
 std::vector<Vector2> in_millimetres(const std::vector<Eigen::Vector2d>& metres) {
   std::vector<Vector2> result;
+  result.reserve(metres.size());
   for (const Eigen::Vector2d& p : metres) result.push_back(kMillimetres * p);
   return result;
 }

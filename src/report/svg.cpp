@@ -209,9 +209,9 @@ std::vector<double> round_ticks(const Range& range, int count) {
     if (raw <= digit * power * (1.0 + 1e-9)) step = digit * power;
   }
   std::vector<double> ticks;
-  const double last = std::floor(range.high / step + 1e-9);
-  for (double k = std::ceil(range.low / step - 1e-9); k <= last; k += 1.0)
-    ticks.push_back(k * step);
+  const double first = std::ceil(range.low / step - 1e-9);
+  const int steps = static_cast<int>(std::floor(range.high / step + 1e-9) - first);
+  for (int k = 0; k <= steps; ++k) ticks.push_back((first + k) * step);
   return ticks;
 }
 

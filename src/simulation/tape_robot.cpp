@@ -76,6 +76,7 @@ Pose drive_once(const TapeRobot& robot, const TestPath& path, std::mt19937_64& r
 std::vector<Pose> drive_often(const TapeRobot& robot, const TestPath& path, int runs,
                               std::mt19937_64& random) {
   std::vector<Pose> ends;
+  ends.reserve(static_cast<std::size_t>(std::max(runs, 0)));
   for (int run = 0; run < runs; ++run) ends.push_back(drive_once(robot, path, random));
   return ends;
 }

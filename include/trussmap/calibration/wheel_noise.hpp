@@ -14,11 +14,12 @@
 // over k^2 = (k_L^2, k_R^2), by Fisher scoring. Standard errors are those of the Fisher information
 //   F_ab = n/2 trace(Sigma^-1 M_a Sigma^-1 M_b),        sd(k) = sd(k^2)/(2 k).
 //
-// k^2 is estimated without a bound at 0, so that it is right on average; that of k is some
-// sd^2/(2k) too small. Where sensor noise hides a wheel's own, k^2 may come out negative: k is then
-// 0, the other wheel is fitted again without it, and an upper limit says what could be hidden.
-// Sigma is of first order in the noise: the bend of long, noisy paths adds to it (0.6 to 0.9 % of
-// k^2 at 10 m out and back with the paper's constants, a tenth of the standard error of 60 runs).
+// k^2 is estimated without a bound at 0, so that it is right on average; k itself
+// is some sd(k)^2/(2k) too small. Where sensor noise hides a wheel's own, k^2 may come out
+// negative: k is then 0, the other wheel is fitted again without it, and an upper limit says what
+// could be hidden. Sigma is of first order in the noise: the bend of long, noisy paths adds to it
+// (0.3 to 0.9 % of k^2 at 10 m out and back with the paper's constants, a twentieth of the standard
+// error of 60 runs).
 #pragma once
 
 #include "trussmap/core/planar.hpp"
