@@ -43,7 +43,9 @@ struct NoiseOptions {
 struct Result {
   NoiseExperiment experiment;
   EndErrors errors;
-  NoiseEstimate estimate;
+  NoiseEstimate first_order;  // the paper's
+  NoiseEstimate exact;
+  NoiseEstimate estimate;  // the one in use: the paper's, unless the noise bends the path
   NoiseFit fit;
   std::vector<std::string> doubts;
 };
@@ -89,14 +91,39 @@ Result analyse(const NoiseOptions& options, const Model& model) {
   result.errors = options.tape.simulate
                       ? simulated_errors(options, result.experiment)
                       : read_end_errors(options.file, longest_error(result.experiment));
-  result.estimate = estimate_wheel_noise(result.errors, result.experiment);
+  result.first_order = estimate_wheel_noise(result.errors, result.experiment);
+  result.experiment.order = NoiseOrder::exact;
+  result.exact = estimate_wheel_noise(result.errors, result.experiment);
+  result.estimate = result.exact;
+  if (!check_noise(result.errors, result.experiment, result.exact).bends) {
+    result.estimate = result.first_order;
+    result.experiment.order = NoiseOrder::first;
+  }
   result.fit = check_noise(result.errors, result.experiment, result.estimate);
   result.doubts = noise_doubts(result.errors, result.experiment, result.estimate, result.fit);
   return result;
 }
 
+ordered_json constants_json(const NoiseEstimate& e) {
+  return {{"k_left", e.left.k},
+          {"k_right", e.right.k},
+          {"sd_k_left", number_or_null(e.left.standard_error)},
+          {"sd_k_right", number_or_null(e.right.standard_error)},
+          {"upper95_k_left", e.left.upper_limit},
+          {"upper95_k_right", e.right.upper_limit},
+          {"k_left_squared", e.squared[0]},
+          {"k_right_squared", e.squared[1]},
+          {"sd_k_left_squared", std::sqrt(e.squared_covariance(0, 0))},
+          {"sd_k_right_squared", std::sqrt(e.squared_covariance(1, 1))}};
+}
+
+/// The figures in use; both kinds under `first_order` and `exact`.
 ordered_json json(const Result& result, const NoiseOptions& options) {
   const NoiseEstimate& e = result.estimate;
+  ordered_json out = constants_json(e);
+  out["runs"] = e.runs;
+  out["first_order"] = constants_json(result.first_order);
+  out["exact"] = constants_json(result.exact);
   ordered_json ellipses = ordered_json::array();
   for (const EllipseCount& ellipse : result.fit.ellipses) {
     ellipses.push_back({{"coordinates", ellipse.coordinates},
@@ -104,28 +131,19 @@ ordered_json json(const Result& result, const NoiseOptions& options) {
                         {"runs", ellipse.runs},
                         {"p_value", ellipse.p_value}});
   }
-  return {{"k_left", e.left.k},
-          {"k_right", e.right.k},
-          {"sd_k_left", number_or_null(e.left.standard_error)},
-          {"sd_k_right", number_or_null(e.right.standard_error)},
-          {"runs", e.runs},
-          {"upper95_k_left", e.left.upper_limit},
-          {"upper95_k_right", e.right.upper_limit},
-          {"k_left_squared", e.squared[0]},
-          {"k_right_squared", e.squared[1]},
-          {"sd_k_left_squared", std::sqrt(e.squared_covariance(0, 0))},
-          {"sd_k_right_squared", std::sqrt(e.squared_covariance(1, 1))},
-          {"path", options.path},
-          {"wheelbase_m", result.experiment.wheelbase},
-          {"mean", {e.mean[0], e.mean[1], e.mean[2]}},
-          {"mean_p_value", number_or_null(e.mean_p_value)},
-          {"mean_subtracted", result.experiment.subtract_mean},
-          {"fit",
-           {{"good", result.fit.good},
-            {"distance_p_value", result.fit.distance_p_value},
-            {"shape_p_value", number_or_null(result.fit.shape_p_value)},
-            {"ellipses", ellipses}}},
-          {"warnings", result.doubts}};
+  out.update({{"path", options.path},
+              {"wheelbase_m", result.experiment.wheelbase},
+              {"mean", {e.mean[0], e.mean[1], e.mean[2]}},
+              {"mean_p_value", number_or_null(e.mean_p_value)},
+              {"mean_subtracted", result.experiment.subtract_mean},
+              {"fit",
+               {{"good", result.fit.good},
+                {"bends", result.fit.bends},
+                {"distance_p_value", number_or_null(result.fit.distance_p_value)},
+                {"shape_p_value", number_or_null(result.fit.shape_p_value)},
+                {"ellipses", ellipses}}},
+              {"warnings", result.doubts}});
+  return out;
 }
 
 std::string constants_text(const Result& result) {
@@ -142,6 +160,10 @@ std::string constants_text(const Result& result) {
   };
   row("left wheel, k", result.estimate.left);
   row("right wheel, k", result.estimate.right);
+  if (result.fit.bends) {
+    row("  left, first order", result.first_order.left);
+    row("  right, first order", result.first_order.right);
+  }
   return "\n" + format_table(table);
 }
 

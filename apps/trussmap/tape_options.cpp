@@ -53,7 +53,7 @@ void add_tape_options(CLI::App& command, TapeOptions& options) {
       "Error of a measured end position [m, standard deviation per coordinate]");
   add("--scatter-heading", options.scatter_heading, zero_or_more(),
       "Error of a measured end heading [rad, standard deviation]");
-  command.add_option("--runs", options.runs, "Number of runs (in each direction)")
+  command.add_option("--runs", options.runs, "Number of runs; of umbmark, in each direction")
       ->check(whole_number(2))
       ->capture_default_str()
       ->group(group);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/calibration/noise_checks.hpp"
 
+#include "trussmap/calibration/end_moments.hpp"
 #include "trussmap/core/error.hpp"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kConfidence = 0.95;
 constexpr double kBadFit = 0.01;
+constexpr double kBends = 0.2;  // some 2 x 0.2^2 = 8 % of k^2 by first-order figures
 
 /// Squared Mahalanobis distances in some of the coordinates.
 std::vector<double> squared_distances(const EndErrors& errors, const NoiseEstimate& estimate,
@@ -107,6 +109,19 @@ double ellipse95_scale(int dimensions) {
                                          kConfidence));
 }
 
+double bend_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate) {
+  const Vector2 squared(std::pow(estimate.left.k, 2), std::pow(estimate.right.k, 2));
+  const EndMoments exact = end_moments(experiment.path, experiment.wheelbase, squared);
+  const NoiseShape shape = noise_shape(experiment.path, experiment.wheelbase);
+  const Matrix3 first = squared[0] * shape.left + squared[1] * shape.right;
+  double share = 0.0;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    const double sd = std::sqrt(first(k, k));
+    if (sd > 0.0) share = std::max(share, std::abs(exact.mean[k]) / sd);
+  }
+  return share;
+}
+
 NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
                      const NoiseEstimate& estimate) {
   NoiseFit fit;
@@ -117,7 +132,11 @@ NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
   fit.distance_p_value = distance_p(squared_distances(errors, estimate, {0, 1, 2}));
   const double count = estimate.runs - (experiment.subtract_mean ? 1 : 0);
   fit.shape_p_value = shape_p(estimate, count);
-  double smallest = std::min(fit.distance_p_value, 1.0);
+  fit.bends = bend_share(experiment, estimate) > kBends;
+  if (fit.bends) {
+    fit.distance_p_value = fit.shape_p_value = std::numeric_limits<double>::quiet_NaN();
+  }
+  double smallest = std::isnan(fit.distance_p_value) ? 1.0 : fit.distance_p_value;
   if (!std::isnan(fit.shape_p_value)) smallest = std::min(smallest, fit.shape_p_value);
   for (const EllipseCount& ellipse : fit.ellipses) smallest = std::min(smallest, ellipse.p_value);
   fit.good = smallest >= kBadFit;
@@ -142,15 +161,26 @@ std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperi
         "in radians",
         std::max(estimate.left.k, estimate.right.k)));
   }
-  if (fit.shape_p_value < kSureMisfit) {
-    if (shape_p_scaled(errors, experiment, kDegree) > kBadFit) {
-      doubts.push_back("the headings fit if they are degrees, not as the radians expected");
-    } else {
-      doubts.push_back(fmt::format(
-          "noise of the two wheels alone does not spread the runs like this (p = {:.1g}); check "
-          "the path, the wheelbase, the units (m, rad) and the sensor's own noise (--sensor-sd)",
-          fit.shape_p_value));
-    }
+  const bool misfit = fit.shape_p_value < kSureMisfit;
+  const bool degrees =
+      (misfit || fit.bends) && shape_p_scaled(errors, experiment, kDegree) > kBadFit;
+  if (degrees) {
+    doubts.push_back("the headings fit if they are degrees, not as the radians expected");
+  } else if (misfit) {
+    doubts.push_back(fmt::format(
+        "noise of the two wheels alone does not spread the runs like this (p = {:.1g}); check "
+        "the path, the wheelbase, the units (m, rad) and the sensor's own noise (--sensor-sd)",
+        fit.shape_p_value));
+  }
+  if (fit.bends && !degrees) {
+    doubts.push_back(fmt::format(
+        "noise this large bends the path: its end lags by {:.2g} m on average, and the papers' "
+        "first-order figures are off; the exact ones hold, but drive a shorter path for sharper "
+        "ones, \"2,-2\" for instance",
+        end_moments(experiment.path, experiment.wheelbase,
+                    {std::pow(estimate.left.k, 2), std::pow(estimate.right.k, 2)})
+            .mean.head<2>()
+            .norm()));
   }
   for (const double k : {estimate.left.k, estimate.right.k}) {
     if (k > 0.0) continue;

@@ -152,6 +152,35 @@ TEST(WheelNoise, SixtyRunsGiveUnbiasedConstantsAndTrueStandardErrors) {
   EXPECT_NEAR(k.sd()[1] / c["ml_mc300_std"][1].get<double>(), 1.0, 0.2);
 }
 
+/// Noise that bends the path: the exact moments stay right where those of first order are off by
+/// half. Each mean of 300 is sure to its scatter/sqrt(300), the scatter itself to 4 %, of
+/// long-tailed bends to some 8.
+TEST(WheelNoise, ExactMomentsServeNoisyWheelsToo) {
+  std::mt19937_64 random(20240612);
+  const Eigen::Array2d truth(9e-6, 25e-6);
+  NoiseExperiment experiment;
+  experiment.order = NoiseOrder::exact;
+  TapeRobot robot = misbuilt_robot(experiment.wheelbase, 1.0, 1.0);
+  robot.left_noise = 0.003;
+  robot.right_noise = 0.005;
+  robot.step = 0.25;
+  for (const bool subtract : {false, true}) {
+    experiment.subtract_mean = subtract;
+    Moments squared;
+    Moments stated;
+    for (int trial = 0; trial < 300; ++trial) {
+      const NoiseEstimate found =
+          estimate_wheel_noise(rolled(robot, experiment.path, kRuns, random), experiment);
+      squared.add(found.squared.array());
+      stated.add(found.squared_covariance.diagonal().array().sqrt());
+    }
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_LT(std::abs(squared.mean()[k] - truth[k]), 4.0 * squared.sd()[k] / std::sqrt(300.0));
+      EXPECT_NEAR(stated.mean()[k] / squared.sd()[k], 1.0, 0.2);
+    }
+  }
+}
+
 TEST(WheelNoise, TheEstimatorItselfIsUnbiasedWithSensorNoiseAndASubtractedMean) {
   std::mt19937_64 random(7);
   NoiseExperiment experiment = out_and_back();
@@ -243,6 +272,25 @@ TEST(NoiseChecks, EllipsesHold95PercentAndTestsAreFair) {
   // 20 of 400 expected, +- 4.4.
   EXPECT_NEAR(shape_rejected, 20, 14);
   EXPECT_LE(distance_rejected, 34);
+}
+
+TEST(NoiseChecks, APathThatNoiseBendsIsNamed) {
+  std::mt19937_64 random(12);
+  NoiseExperiment experiment;
+  experiment.order = NoiseOrder::exact;
+  TapeRobot robot = misbuilt_robot(experiment.wheelbase, 1.0, 1.0);
+  robot.left_noise = 0.003;
+  robot.right_noise = 0.005;
+  for (const double reach : {10.0, 1.0}) {
+    experiment.path = {{reach, 0.0}, {-reach, 0.0}};
+    const EndErrors errors = rolled(robot, experiment.path, kRuns, random);
+    const NoiseEstimate found = estimate_wheel_noise(errors, experiment);
+    const NoiseFit fit = check_noise(errors, experiment, found);
+    EXPECT_EQ(fit.bends, reach > 5.0);
+    EXPECT_EQ(std::isnan(fit.shape_p_value), fit.bends);
+    EXPECT_EQ(noise_doubts(errors, experiment, found, fit).size(), fit.bends ? 1U : 0U);
+    EXPECT_GT(found.bend.norm(), 0.0);
+  }
 }
 
 TEST(NoiseChecks, DoubtsNameTheirCause) {

@@ -28,10 +28,15 @@ struct EllipseCount {
 
 struct NoiseFit {
   std::vector<EllipseCount> ellipses;
-  double distance_p_value = 0.0;  ///< Kolmogorov-Smirnov
-  double shape_p_value = 0.0;     ///< likelihood ratio; NaN with fewer than 8 runs
+  double distance_p_value = 0.0;  ///< Kolmogorov-Smirnov; NaN where the path bends
+  double shape_p_value = 0.0;     ///< likelihood ratio; NaN there, and with fewer than 8 runs
+  bool bends = false;             ///< bend_share above 0.2: the errors are not Gaussian
   bool good = false;              ///< no p-value below 0.01
 };
+
+/// How far the noise's own bend moves the mean end, in the standard deviations that it has by the
+/// first order: of x or y, the larger.
+[[nodiscard]] double bend_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate);
 
 [[nodiscard]] NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
                                    const NoiseEstimate& estimate);

@@ -17,9 +17,14 @@
 // k^2 is estimated without a bound at 0, so that it is right on average; k itself
 // is some sd(k)^2/(2k) too small. Where sensor noise hides a wheel's own, k^2 may come out
 // negative: k is then 0, the other wheel is fitted again without it, and an upper limit says what
-// could be hidden. Sigma is of first order in the noise: the bend of long, noisy paths adds to it
-// (0.3 to 0.9 % of k^2 at 10 m out and back with the paper's constants, a twentieth of the standard
-// error of 60 runs).
+// could be hidden.
+//
+// NoiseOrder::first takes M from the first order, as the paper does, and a mean of 0. It is right
+// to 0.5 to 0.9 % of k^2 for the paper's robot (k = 0.0005, 10 m out and back, B = 0.5 m), and
+// misleading for one with ten times its noise, whose wandering heading bends the path as much as
+// the wheels scatter along it. NoiseOrder::exact takes mean and covariance as they are
+// (end_moments.hpp); the likelihood stays Gaussian, which long tails of the bend make a little
+// less sharp, and right on average.
 #pragma once
 
 #include "trussmap/core/planar.hpp"
@@ -33,11 +38,14 @@ namespace trussmap {
 
 using EndErrors = std::vector<Eigen::Vector3d>;  ///< x, y [m], heading [rad]; absolute - calculated
 
+enum class NoiseOrder { first, exact };
+
 struct NoiseExperiment {
   TestPath path = {{10.0, 0.0}, {-10.0, 0.0}};
   double wheelbase = 0.34;                              ///< m
   Eigen::Vector3d sensor_sd = Eigen::Vector3d::Zero();  ///< m, m, rad: known, per run
   bool subtract_mean = false;  ///< the runs' mean is a systematic error, not noise
+  NoiseOrder order = NoiseOrder::first;
 };
 
 /// Covariance of the end for k = 1 of one wheel and 0 of the other, in the frame of the start.
@@ -62,10 +70,11 @@ struct NoiseEstimate {
   Matrix2 squared_covariance = Matrix2::Zero();  ///< m^2
   int runs = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< of the errors
-  /// Probability of a mean as far from 0 if there were no systematic error (Hotelling's T^2); NaN
-  /// with too few runs.
+  Eigen::Vector3d bend = Eigen::Vector3d::Zero();  ///< mean that the noise itself causes; 0: first
+  /// Probability of a mean as far from the bend if there were no systematic error (Hotelling's
+  /// T^2); NaN with too few runs.
   double mean_p_value = 0.0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< the mean if subtracted, else 0
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< the mean if subtracted, else the bend
   Matrix3 observed = Matrix3::Zero();                ///< S
   Matrix3 modelled = Matrix3::Zero();                ///< Sigma at (k_L, k_R)
 };
