@@ -3,14 +3,13 @@
 #include "session.hpp"
 
 #include "trussmap/core/error.hpp"
-#include "trussmap/correction/heading_reset.hpp"
+#include "trussmap/odometry/heading_in_map.hpp"
+#include "trussmap/odometry/heading_reset.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
-
-#include "session_heading.hpp"
 
 namespace trussmap {
 namespace {

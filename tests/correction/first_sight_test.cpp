@@ -5,7 +5,7 @@
 #include "trussmap/correction/first_sight.hpp"
 
 #include "trussmap/core/index.hpp"
-#include "trussmap/correction/heading_reset.hpp"
+#include "trussmap/odometry/heading_reset.hpp"
 #include "trussmap/truss/truss.hpp"
 
 #include <cmath>

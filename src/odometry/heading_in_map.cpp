@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "session_heading.hpp"
+#include "trussmap/odometry/heading_in_map.hpp"
 
-#include "trussmap/correction/heading_reset.hpp"
+#include "trussmap/odometry/heading_reset.hpp"
 
 #include <algorithm>
 #include <cmath>
