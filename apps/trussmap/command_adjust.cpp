@@ -156,7 +156,12 @@ void setup_adjust(CLI::App& app) {
       "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
       "(VERTEX2, EDGE2), iSAM (ODOMETRY or EDGE2, LANDMARK), plain or .xz. Without FIX the first "
       "vertex stays where it is.");
-  command->callback([options] { run_adjust(*options); });
+  command->callback([options, command] {
+    if (command->count("--gate") > 0 && !options->robust) {
+      throw UsageError("--gate is given without --robust, to which it belongs");
+    }
+    run_adjust(*options);
+  });
 }
 
 }  // namespace trussmap::app

@@ -7,7 +7,6 @@
 #include "trussmap/correction/recording_map.hpp"
 #include "trussmap/graph/survey_comparison.hpp"
 #include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/map_graphml.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/recording_csv.hpp"
 #include "trussmap/odometry/effect_correction.hpp"
@@ -17,13 +16,16 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "map_files.hpp"
 #include "option_checks.hpp"
 
 namespace trussmap::app {
@@ -132,7 +134,7 @@ void print_survey(const Judged& judged) {
 }
 
 void print_result(const RecordingMap& built, const BuildOptions& options, bool judged_too,
-                  const Judged& judged) {
+                  const Judged& judged, const std::vector<std::string>& warnings) {
   fmt::print("map of {} landmarks and {} routes, method {}\n\n", built.map.landmarks(),
              built.map.routes(), options.method);
   const auto line = [](const char* what, std::size_t number) {
@@ -145,8 +147,9 @@ void print_result(const RecordingMap& built, const BuildOptions& options, bool j
   line("sightings kept out", built.rejected.size());
   for (std::size_t k = 0; k < std::min(built.rejected.size(), kRejectedShown); ++k) {
     const RejectedSighting& one = built.rejected[k];
-    fmt::print("    t = {:.3f} s: landmark {} seen {:.2f} m from where the map has it\n", one.t,
-               one.landmark, one.misfit);
+    const std::string where = options.recordings.size() > 1 ? one.recording + ", " : "";
+    fmt::print("    {}t = {:.3f} s: landmark {} seen {:.2f} m from where the map has it\n", where,
+               one.t, one.landmark, one.misfit);
   }
   if (built.rejected.size() > kRejectedShown) {
     fmt::print("    and {} more (--json lists all)\n", built.rejected.size() - kRejectedShown);
@@ -155,6 +158,7 @@ void print_result(const RecordingMap& built, const BuildOptions& options, bool j
     fmt::print("  landmark {} was sighted too seldom to be placed\n", name);
   }
   if (judged_too) print_survey(judged);
+  for (const std::string& warning : warnings) fmt::print("\nwarning: {}\n", warning);
   if (!options.out.empty()) fmt::print("\n  map written to {}\n", options.out);
 }
 
@@ -171,7 +175,78 @@ MapPicture picture_of(const RecordingMap& built, const std::vector<SurveyPoint>&
   return picture;
 }
 
+void check_usage(const BuildOptions& options) {
+  std::set<fs::path> seen;
+  for (const std::string& folder : options.recordings) {
+    std::error_code ignored;
+    if (!seen.insert(fs::weakly_canonical(folder, ignored)).second) {
+      throw UsageError(folder + " is given twice, expected each session once");
+    }
+  }
+  if (!options.out.empty()) check_map_format(options.out);
+}
+
+/// Numbers that no wheeled robot has: other units, mostly.
+void doubt_units(const std::vector<Recording>& recordings, const Model& model,
+                 std::vector<std::string>& warnings) {
+  constexpr double kFast = 30.0;  // m/s
+  constexpr double kWide = 10.0;  // m
+  for (const Recording& recording : recordings) {
+    const Drive& drive = recording.drive;
+    double path = 0.0;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      path += std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+    }
+    const double speed = path / (drive.t.back() - drive.start());
+    if (speed > kFast) {
+      warnings.push_back(
+          fmt::format("{}: the wheels drive at {:.3g} m/s on average; are left and "
+                      "right in metres, t in seconds?",
+                      recording.name, speed));
+    }
+  }
+  if (model.robot.wheelbase > kWide) {
+    warnings.push_back(
+        fmt::format("a wheelbase of {:g} m; is it in metres?", model.robot.wheelbase));
+  }
+}
+
+/// How far the map's routes are from what was measured of them, in standard deviations, in the
+/// middle of all routes. Sound maps have 1 to 5.
+double contradiction(const LandmarkGraph& map) {
+  std::vector<double> distances;
+  for (int k = 0; k < map.routes(); ++k) {
+    const Route& route = map.route(k);
+    const Vector2 off = map.landmark(route.target).position - map.landmark(route.source).position -
+                        route.displacement;
+    distances.push_back(std::sqrt(off.dot(route.covariance.inverse() * off)));
+  }
+  if (distances.empty()) return 0.0;
+  std::nth_element(distances.begin(), distances.begin() + std::ssize(distances) / 2,
+                   distances.end());
+  return distances[distances.size() / 2];
+}
+
+std::vector<std::string> doubts_of(const RecordingMap& built,
+                                   const std::vector<Recording>& recordings, const Model& model,
+                                   const BuildOptions& options) {
+  constexpr double kTorn = 20.0;  // standard deviations
+  std::vector<std::string> warnings;
+  doubt_units(recordings, model, warnings);
+  const double torn = contradiction(built.map);
+  if (torn > kTorn) {
+    warnings.push_back(fmt::format(
+        "the map contradicts its own routes, by {:.0f} standard deviations in the middle; {}", torn,
+        options.method == "elastic-printed"
+            ? "the printed refinement diverges here, use --method elastic"
+            : "wrong units, a wrong wheelbase, exchanged columns or labels, or noise that is "
+              "believed too small"));
+  }
+  return warnings;
+}
+
 void run_build(const BuildOptions& options) {
+  check_usage(options);
   std::vector<Recording> recordings;
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
@@ -192,22 +267,24 @@ void run_build(const BuildOptions& options) {
   judged.map = compare_with_survey(positions_of(built.map), survey);
   judged.rms_dead_reckoning = survey_rms(built.dead_reckoned, survey, judged.map.contradicting);
   const bool judged_too = judged.map.landmarks >= 3;
+  const std::vector<std::string> warnings = doubts_of(built, recordings, model, options);
 
   std::vector<std::pair<fs::path, std::string>> files;
   if (!options.out.empty()) {
-    files.emplace_back(options.out,
-                       format_map_graphml(built.map, "trussmap build, method " + options.method));
+    files.emplace_back(options.out, format_map(built.map, options.out,
+                                               "trussmap build, method " + options.method));
   }
   if (!options.json_file.empty()) {
     json result = result_json(built, options.method);
     if (judged_too) result["survey"] = survey_json(judged);
+    result["warnings"] = warnings;
     files.emplace_back(options.json_file, result.dump(2) + "\n");
   }
   if (!options.svg.empty()) {
     files.emplace_back(options.svg, draw_map(picture_of(built, survey, judged, options.method)));
   }
   write_files(files);
-  print_result(built, options, judged_too, judged);
+  print_result(built, options, judged_too, judged, warnings);
 }
 
 }  // namespace
@@ -221,7 +298,7 @@ void setup_build(CLI::App& app) {
   command->add_option("--method", options->method, "How the map is made")
       ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
       ->capture_default_str();
-  command->add_option("--out", options->out, "The map (GraphML)");
+  command->add_option("--out", options->out, "The map (.graphml, .g2o, .geojson or .dot)");
   command->add_option("--json", options->json_file, "The figures, complete (JSON)");
   command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
   command
@@ -232,7 +309,7 @@ void setup_build(CLI::App& app) {
   command
       ->add_option("--min-drive", options->min_drive,
                    "Shortest driven path between a leg's ends [m]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(zero_or_more())
       ->capture_default_str();
   command
       ->add_option("--gate", options->gate,

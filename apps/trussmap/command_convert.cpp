@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap convert: maps between formats, and foreign recordings to recordings.
-#include "trussmap/adjustment/landmark_conversion.hpp"
 #include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/g2o.hpp"
-#include "trussmap/io/map_formats.hpp"
-#include "trussmap/io/map_graphml.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/mrclam.hpp"
 #include "trussmap/io/optiodom.hpp"
@@ -19,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "map_files.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -63,25 +60,17 @@ void convert_optiodom(const fs::path& in, const fs::path& out) {
   fmt::print("  {:>7.4f} mm a tick\n", 1000.0 * foreign.metre_per_tick);
 }
 
-LandmarkGraph read_map(const fs::path& in) {
-  if (in.extension() == ".graphml") return read_map_graphml(in);
-  if (in.extension() == ".g2o") return to_landmark_graph(read_g2o(in.string()));
-  throw UsageError("cannot tell what " + in.string() +
-                   " is: expected a map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or "
-                   "an OptiOdom run (..._run-NN.csv, plain or .xz)");
-}
-
-std::string format_map(const LandmarkGraph& map, const fs::path& out) {
-  if (out.extension() == ".graphml") return format_map_graphml(map);
-  if (out.extension() == ".g2o") return format_g2o(to_pose_graph(map));
-  if (out.extension() == ".geojson") return format_geojson(map);
-  if (out.extension() == ".dot") return format_dot(map);
-  throw UsageError("cannot write " + out.string() + ": expected .graphml, .g2o, .geojson or .dot");
+/// A recording is a folder; a map's name for it is a mistake.
+void check_folder(const fs::path& out) {
+  if (is_map_file(out)) {
+    throw UsageError(out.string() + " is named like a map, expected a folder for the recording");
+  }
 }
 
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
+  if (is_mrclam(in) || is_optiodom(in)) check_folder(out);
   if (is_mrclam(in)) {
     convert_mrclam(in, out);
     return;
@@ -91,7 +80,7 @@ void run_convert(const ConvertOptions& options) {
     return;
   }
   const LandmarkGraph map = read_map(in);
-  write_file(out, format_map(map, out));
+  write_file(out, format_map(map, out, ""));
   fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
              out.string());
 }

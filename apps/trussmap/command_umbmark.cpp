@@ -69,6 +69,7 @@ Round analyse(SquareRuns runs, const SquareSetup& setup, const GeometryErrors& i
   round.formulas = umbmark(round.clusters, setup);
   round.consistency = square_consistency(round.clusters, setup);
   round.doubts = square_doubts(round.clusters, setup);
+  for (std::string& doubt : square_outliers(round.runs)) round.doubts.push_back(std::move(doubt));
   return round;
 }
 

@@ -21,6 +21,18 @@ int complain(const std::exception& error, int status) {
   return status;
 }
 
+/// The first word must be a command: CLI11 would only miss one.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == argv[1]) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw trussmap::app::UsageError("\"" + std::string(argv[1]) +
+                                  "\" is no command, expected one of " + names);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -35,6 +47,7 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_tour(app);
   trussmap::app::setup_umbmark(app);
   try {
+    check_command(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);

@@ -27,6 +27,19 @@ inline CLI::Validator above_zero() {
   return {check, ""};
 }
 
+/// A number of 0 or more, infinity not included.
+inline CLI::Validator zero_or_more() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = read.ec == std::errc{} && read.ptr == text.data() + text.size();
+    return whole && std::isfinite(value) && value >= 0.0
+               ? ""
+               : "'" + text + "' is not a number of 0 or more";
+  };
+  return {check, ""};
+}
+
 /// A whole number from `least` on.
 inline CLI::Validator whole_number(std::uint64_t least) {
   const auto check = [least](const std::string& text) -> std::string {

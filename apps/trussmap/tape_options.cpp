@@ -13,18 +13,6 @@
 
 namespace trussmap::app {
 
-CLI::Validator zero_or_more() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = read.ec == std::errc{} && read.ptr == text.data() + text.size();
-    return whole && std::isfinite(value) && value >= 0.0
-               ? ""
-               : "'" + text + "' is not a number of 0 or more";
-  };
-  return {check, ""};
-}
-
 void add_tape_options(CLI::App& command, TapeOptions& options) {
   command
       .add_option("--wheelbase", options.wheelbase,

@@ -48,9 +48,6 @@ void check_source(const CLI::App& command, bool has_files);
 /// The robot to rehearse with.
 [[nodiscard]] TapeRobot simulated_robot(const TapeOptions& options, double wheelbase);
 
-/// A number above 0.
-[[nodiscard]] CLI::Validator zero_or_more();
-
 /// Cells of a table: value, "±", standard error, unit.
 [[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
 

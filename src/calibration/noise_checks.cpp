@@ -147,6 +147,8 @@ std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperi
                                       const NoiseEstimate& estimate, const NoiseFit& fit) {
   constexpr double kImplausible = 0.1;  // m^1/2: a tenth of a metre after each metre
   constexpr double kSureMisfit = 1e-4;
+  constexpr std::size_t kFewRuns = 10;
+  constexpr double kFarthest = 30.0;  // squared distance; chi-square(3) exceeds it once in 700 000
   constexpr double kDegree = std::numbers::pi / 180.0;
   std::vector<std::string> doubts;
   if (!experiment.subtract_mean && estimate.mean_p_value < kBadFit) {
@@ -175,18 +177,35 @@ std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperi
   if (fit.bends && !degrees) {
     doubts.push_back(fmt::format(
         "noise this large bends the path: its end lags by {:.2g} m on average, and the papers' "
-        "first-order figures are off; the exact ones hold, but drive a shorter path for sharper "
-        "ones, \"2,-2\" for instance",
+        "first-order figures are off; the exact ones hold, with standard errors that are some 10 % "
+        "too small; drive a shorter path for sharper ones, \"2,-2\" for instance",
         end_moments(experiment.path, experiment.wheelbase,
                     {std::pow(estimate.left.k, 2), std::pow(estimate.right.k, 2)})
             .mean.head<2>()
             .norm()));
   }
+  const std::vector<double> distances = squared_distances(errors, estimate, {0, 1, 2});
+  const auto farthest = std::max_element(distances.begin(), distances.end());
+  const double runs = static_cast<double>(distances.size());
+  if (distances.size() >= kFewRuns && *farthest > std::max(kFarthest, 0.4 * runs)) {
+    doubts.push_back(
+        fmt::format("run {} ends far outside of all others and steers the result; was it measured "
+                    "well, did a wheel slip?",
+                    farthest - distances.begin() + 1));
+  }
+  if (distances.size() < kFewRuns) {
+    doubts.push_back(fmt::format(
+        "{} runs are few: the stated standard errors are too small, and a wheel's noise can seem "
+        "to be 0; drive 30 runs or more",
+        distances.size()));
+  }
+  const bool sensor = experiment.sensor_sd.maxCoeff() > 0.0;
   for (const double k : {estimate.left.k, estimate.right.k}) {
     if (k > 0.0) continue;
-    doubts.push_back(
-        "the sensor's noise hides that of a wheel; drive a longer path, or measure the ends "
-        "better");
+    doubts.push_back(sensor ? "the sensor's noise hides that of a wheel; drive a longer path, or "
+                              "measure the ends better"
+                            : "the noise of one wheel is lost in the scatter of the other's; drive "
+                              "more runs");
     break;
   }
   return doubts;

@@ -75,7 +75,16 @@ int CsvReader::require(std::string_view column) const {
   const int place = find(column);
   if (place < 0) {
     std::string found;
-    for (const std::string& name : columns_) found += (found.empty() ? "" : ",") + name;
+    for (const std::string& name : columns_) {
+      found += (found.empty() ? "" : ",") + name;
+      const std::size_t first = name.find_first_not_of(' ');
+      if (first == std::string::npos) continue;
+      if (name.substr(first, name.find_last_not_of(' ') - first + 1) == column) {
+        throw InputError(file_, line_,
+                         "column \"" + name + "\" has a blank, expected \"" + std::string(column) +
+                             "\" (blanks beside a comma are part of the field)");
+      }
+    }
     throw InputError(file_, line_,
                      "column \"" + std::string(column) + "\" is missing, found \"" + found + "\"");
   }

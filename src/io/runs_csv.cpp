@@ -7,6 +7,7 @@
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/csv.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -26,8 +27,7 @@ double coordinate(const CsvReader& table, int column, const char* name, double l
 }
 
 std::string runs_text(std::size_t count, const std::string& of) {
-  return (count == 0 ? "no run" : "1 run") + of +
-         ", expected two or more: without scatter there are no standard errors";
+  return (count == 0 ? "no run" : "1 run") + of + ", expected two or more";
 }
 
 }  // namespace
@@ -66,6 +66,11 @@ EndErrors read_end_errors(const std::filesystem::path& file, double longest) {
   while (table.next()) {
     errors.push_back({coordinate(table, x, "x", longest), coordinate(table, y, "y", longest),
                       wrap_angle(table.number(heading))});
+  }
+  const auto equals_first = [&errors](const Eigen::Vector3d& e) { return e == errors.front(); };
+  if (errors.size() >= 2 && std::all_of(errors.begin(), errors.end(), equals_first)) {
+    throw InputError(file.string(), 0,
+                     "all runs ended with the same errors, expected scatter to learn from");
   }
   if (errors.size() < 2) throw InputError(file.string(), 0, runs_text(errors.size(), ""));
   return errors;

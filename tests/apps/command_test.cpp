@@ -131,5 +131,64 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
                             "other sessions, and without a compass of two\n");
 }
 
+TEST(Command, AWordThatIsNoCommandIsNamed) {
+  const Ran ran = run_trussmap("polish x");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_EQ(ran.output,
+            "trussmap: \"polish\" is no command, expected one of adjust, build, convert, noise, "
+            "simulate, tour, umbmark\n");
+}
+
+TEST(Command, ASessionGivenTwiceIsRefused) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 3x3 --tours 1 --out " + at + "/r");
+  const Ran ran =
+      run_trussmap("build " + at + "/r " + at + "/../" + scratch.path().filename().string() +
+                   "/r/ --model " + at + "/r/model.toml");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_NE(ran.output.find("is given twice"), std::string::npos) << ran.output;
+}
+
+/// On a mesh of uneven routes, without a compass, the printed refinement diverges: build says so,
+/// and says nothing of the kind of the methods that do not.
+TEST(Command, AMapThatContradictsItsRoutesIsDoubted) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 6x6 --uneven --tours 3 --seed 1 --no-compass --out " + at + "/r");
+  const std::string build = "build " + at + "/r --model " + at + "/r/model.toml --method ";
+  EXPECT_NE(run_trussmap(build + "elastic-printed").output.find("contradicts its own routes"),
+            std::string::npos);
+  for (const char* method : {"elastic", "gauss-markov", "adjustment"}) {
+    EXPECT_EQ(run_trussmap(build + method).output.find("warning"), std::string::npos) << method;
+  }
+}
+
+TEST(Command, UnitsThatNoRobotHasAreDoubted) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 3x3 --tours 1 --out " + at + "/r");
+  scratch.write("m.toml", "[robot]\nwheelbase = 340\n");
+  const Ran ran = run_trussmap("build " + at + "/r --model " + at + "/m.toml");
+  EXPECT_NE(ran.output.find("a wheelbase of 340 m; is it in metres?"), std::string::npos)
+      << ran.output;
+}
+
+TEST(Command, BuildTakesAModelsEffectsOutAndRefusesWhatItCannot) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 3x3 --tours 1 --out " + at + "/r");
+  scratch.write("good.toml", "[[effect]]\nname = \"wheelbase\"\ncoefficients = [0.0]\n");
+  scratch.write("bad.toml",
+                "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"fuel\"]\n"
+                "coefficients = [0.1]\n");
+  EXPECT_EQ(run_trussmap("build " + at + "/r --model " + at + "/good.toml").status, 0);
+  const Ran ran = run_trussmap("build " + at + "/r --model " + at + "/bad.toml");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find("effect \"x\": shape \"fuel\" names \"fuel\", which is unknown"),
+            std::string::npos)
+      << ran.output;
+}
+
 }  // namespace
 }  // namespace trussmap

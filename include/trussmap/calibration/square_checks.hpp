@@ -30,6 +30,11 @@ struct SquareConsistency {
 [[nodiscard]] std::vector<std::string> square_doubts(const SquareClusters& clusters,
                                                      const SquareSetup& setup);
 
+/// Runs that end far from the others of their direction (ten times as far as those scatter), a
+/// sentence each: a wrong label, a slip, a misread tape. Nothing where a direction has fewer
+/// than 4.
+[[nodiscard]] std::vector<std::string> square_outliers(const SquareRuns& runs);
+
 /// Borenstein & Feng (1996), Fig. 4: a robot with both errors, its wheelbase alone tuned until the
 /// square closes in one direction.
 struct OneWayTuning {
