@@ -84,6 +84,7 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectBo
     pair_.push_back(one.to >= 0 ? pair++ : -1);
   }
   residuals_.resize(rows_);
+  squared_errors_.resize(problem.measurements.size());
   M_.resize(rows_, static_cast<Eigen::Index>(border.size()));
 }
 
@@ -121,6 +122,7 @@ double RecordingSystem::linearise(const RecordingState& state,
     if (gauge_.hold_heading && one.from == problem_.pose_node(0)) J.from.col(2).setZero();
     if (gauge_.hold_heading && one.to == problem_.pose_node(0)) J.to.col(2).setZero();
     const Vector4 error = W * rows.error;
+    squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
     add_to_normal(k, J, error);
     evaluate_border(k, rows, slopes);

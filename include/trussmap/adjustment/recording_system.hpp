@@ -68,6 +68,8 @@ class RecordingSystem {
   [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const Eigen::MatrixXd& border() const { return M_; }
+  /// Squared whitened error of each measurement, as if all weights were 1.
+  [[nodiscard]] const std::vector<double>& squared_errors() const { return squared_errors_; }
   /// J'v and J x, J as linearised.
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
@@ -103,6 +105,7 @@ class RecordingSystem {
   std::vector<Whitened> J_;
   Eigen::MatrixXd M_;
   Eigen::VectorXd residuals_;
+  std::vector<double> squared_errors_;
   Eigen::VectorXd gradient_;         ///< J'r
   Eigen::VectorXd border_gradient_;  ///< M'r and prior
   Eigen::MatrixXd B_;
