@@ -153,7 +153,7 @@ class Reckoner {
   }
 
   const RecordingProblem& problem_;
-  const StartOptions& options_;
+  StartOptions options_;
   Landmarks& landmarks_;
   Pose pose_;
   Matrix3 covariance_ = Matrix3::Zero();
@@ -231,7 +231,7 @@ class Layer {
 
  private:
   const RecordingProblem& problem_;
-  const StartOptions& options_;
+  StartOptions options_;
   ByPose links_;
   Landmarks landmarks_;
   std::vector<Pose> poses_;
@@ -252,7 +252,8 @@ void adjust_stretch(const RecordingProblem& session, const StartOptions& options
     state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
   }
   state.poses.assign(layer.poses().begin(), layer.poses().begin() + count);
-  RecordingSystem system(part.problem, {});
+  const EffectBorder no_effects;
+  RecordingSystem system(part.problem, no_effects);
   const Eigen::VectorXd none;
   constexpr RecordingDescentOptions kRough{30, 1e-4};
   RecordingDescent fit;
