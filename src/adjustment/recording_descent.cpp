@@ -14,6 +14,7 @@ namespace {
 constexpr double kFirstDamping = 1e-4;
 constexpr double kLeastDamping = 1e-9;
 constexpr double kMostDamping = 1e12;
+constexpr double kPoor = 0.25;          // of the promised decrease
 constexpr double kNegligible = 1e-10;  // of chi^2, where it is all but zero
 
 RecordingSystem::Step solve_damped(RecordingSystem& system, double& damping) {
@@ -40,17 +41,25 @@ RecordingDescent descend(RecordingSystem& system, RecordingState state,
     const double enough = options.tolerance * result.chi2 + kNegligible;
     last = damping == 0.0 && step.promised <= enough;
     RecordingState next = system.moved(result.state, step);
-    const Eigen::VectorXd next_coefficients = result.coefficients + step.coefficients;
-    const double chi2 = system.linearise(next, next_coefficients);
+    Eigen::VectorXd next_coefficients = result.coefficients + step.coefficients;
+    double chi2 = system.linearise(next, next_coefficients);
+    if (!last && result.chi2 - chi2 < kPoor * step.promised) {
+      // Turning a stiff part by a finite angle strains it, to second order in the angle. The
+      // positions that suit the new headings best take that strain out.
+      system.linearise(next, next_coefficients, true);
+      double undamped = 0.0;
+      next = system.moved(next, solve_damped(system, undamped));
+      chi2 = system.linearise(next, next_coefficients);
+    }
     const double decrease = result.chi2 - chi2;
     if (decrease >= 0.0) {
       result.state = std::move(next);
-      result.coefficients = next_coefficients;
+      result.coefficients = std::move(next_coefficients);
       result.chi2 = chi2;
       ++result.iterations;
       if (decrease > 0.5 * step.promised) {
         damping = damping > 10.0 * kLeastDamping ? damping / 10.0 : 0.0;
-      } else {
+      } else if (decrease < kPoor * step.promised) {
         damping = std::max(kFirstDamping, 10.0 * damping);
       }
     } else {

@@ -97,7 +97,11 @@ int RecordingSystem::unknowns() const {
 }
 
 double RecordingSystem::linearise(const RecordingState& state,
-                                  const Eigen::VectorXd& coefficients) {
+                                  const Eigen::VectorXd& coefficients, bool hold_headings) {
+  const auto heading_held = [&](int node) {
+    return node >= problem_.landmark_count() &&
+           (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
+  };
   normal_.clear();
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
   M_.setZero();
@@ -119,18 +123,18 @@ double RecordingSystem::linearise(const RecordingState& state,
     Whitened& J = J_[k];
     J.from = W * rows.by_from;
     J.to = W * rows.by_to;
-    if (gauge_.hold_heading && one.from == problem_.pose_node(0)) J.from.col(2).setZero();
-    if (gauge_.hold_heading && one.to == problem_.pose_node(0)) J.to.col(2).setZero();
+    if (heading_held(one.from)) J.from.col(2).setZero();
+    if (heading_held(one.to)) J.to.col(2).setZero();
     const Vector4 error = W * rows.error;
     squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
     add_to_normal(k, J, error);
     evaluate_border(k, rows, slopes);
   }
-  if (gauge_.hold_heading) {
-    Matrix3 held = Matrix3::Zero();
-    held(2, 2) = 1.0;
-    normal_.add_diagonal<3>(problem_.pose_node(0), held);
+  Matrix3 held = Matrix3::Zero();
+  held(2, 2) = 1.0;
+  for (int node = problem_.landmark_count(); node < problem_.nodes(); ++node) {
+    if (heading_held(node)) normal_.add_diagonal<3>(node, held);
   }
   double chi2 = residuals_.squaredNorm();
   B_ = transposed_times(M_);

@@ -39,8 +39,10 @@ class RecordingSystem {
   /// Keeps references to the problem and the border.
   RecordingSystem(const RecordingProblem& problem, const EffectBorder& border);
 
-  /// chi^2 (with priors), and with it r, J, M, A, B, D at these values.
-  double linearise(const RecordingState& state, const Eigen::VectorXd& coefficients);
+  /// chi^2 (with priors), and with it r, J, M, A, B, D at these values. With headings held, a step
+  /// moves positions (and coefficients) only.
+  double linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
+                   bool hold_headings = false);
   /// Multiplies the information of each measurement from the next linearise on.
   void set_weights(const std::vector<double>& weights);
 
