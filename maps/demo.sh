@@ -18,5 +18,6 @@ run "$trussmap" simulate --mesh 6x6 --uneven --tours 3 --seed 1 --no-compass --o
 run "$trussmap" build "$out/recording" --model "$out/recording/model.toml" \
   --out "$out/map.graphml" --svg "$out/map.svg"
 run "$trussmap" tour --mesh 6x6 --spacing 5 --tours 20 --seeds 24 --json "$out/tours.json"
+run "$trussmap" umbmark maps/square_runs.csv maps/square_runs_2.csv --wheelbase 0.34 --plots "$out"
 
 printf '\nThe map before and after correction: %s\n' "$out/map.svg"

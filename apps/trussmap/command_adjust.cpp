@@ -154,7 +154,8 @@ void setup_adjust(CLI::App& app) {
       ->capture_default_str();
   command->footer(
       "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
-      "(VERTEX2, EDGE2), plain or .xz. Without FIX the first vertex stays where it is.");
+      "(VERTEX2, EDGE2), iSAM (ODOMETRY or EDGE2, LANDMARK), plain or .xz. Without FIX the first "
+      "vertex stays where it is.");
   command->callback([options] { run_adjust(*options); });
 }
 

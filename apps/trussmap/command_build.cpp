@@ -10,6 +10,7 @@
 #include "trussmap/io/map_graphml.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/recording_csv.hpp"
+#include "trussmap/odometry/effect_correction.hpp"
 #include "trussmap/report/map_picture.hpp"
 
 #include <algorithm>
@@ -177,8 +178,11 @@ void run_build(const BuildOptions& options) {
   }
   const Model model = read_model(options.model);
   if (!model.effects.empty()) {
-    throw InputError(options.model, 0,
-                     "has effects, which build cannot apply yet; expected a model without any");
+    try {
+      recordings = without_effects(recordings, model);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(options.model, 0, error.what());
+    }
   }
   RecordingMap built = map_recordings(recordings, model, map_options(options));
   if (options.method == "adjustment") built.map = adjust_linear(built.map).map;

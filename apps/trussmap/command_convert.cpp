@@ -9,6 +9,7 @@
 #include "trussmap/io/map_graphml.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/mrclam.hpp"
+#include "trussmap/io/optiodom.hpp"
 #include "trussmap/io/recording_csv.hpp"
 
 #include <filesystem>
@@ -52,11 +53,22 @@ void convert_mrclam(const fs::path& in, const fs::path& out) {
   count(foreign.same_frame, "sightings set to the time of their camera frame (within 5 ms)");
 }
 
+void convert_optiodom(const fs::path& in, const fs::path& out) {
+  const OptiOdomRecording foreign = read_optiodom(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("OptiOdom run {}", in.filename().string()),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: OptiOdom {} to the recording {}\n\n", in.string(), out.string());
+  fmt::print("  {:>7} drive rows, each with the truth\n", recording.drive.rows());
+  fmt::print("  {:>7.4f} mm a tick\n", 1000.0 * foreign.metre_per_tick);
+}
+
 LandmarkGraph read_map(const fs::path& in) {
   if (in.extension() == ".graphml") return read_map_graphml(in);
   if (in.extension() == ".g2o") return to_landmark_graph(read_g2o(in.string()));
   throw UsageError("cannot tell what " + in.string() +
-                   " is: expected a map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set");
+                   " is: expected a map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or "
+                   "an OptiOdom run (..._run-NN.csv, plain or .xz)");
 }
 
 std::string format_map(const LandmarkGraph& map, const fs::path& out) {
@@ -74,6 +86,10 @@ void run_convert(const ConvertOptions& options) {
     convert_mrclam(in, out);
     return;
   }
+  if (is_optiodom(in)) {
+    convert_optiodom(in, out);
+    return;
+  }
   const LandmarkGraph map = read_map(in);
   write_file(out, format_map(map, out));
   fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
@@ -87,9 +103,9 @@ void setup_convert(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      ->add_option(
-          "IN", options->in,
-          "A map (.graphml, .g2o), or DIR/RobotN of an MRCLAM data set (plain or .xz files)")
+      ->add_option("IN", options->in,
+                   "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
+                   "..._run-NN.csv (plain or .xz files)")
       ->required();
   command
       ->add_option("OUT", options->out,

@@ -124,9 +124,9 @@ void print_result(const TourResult& result, const CommandOptions& options) {
       100.0 * last.at("adjustment").stretch_error.mean,
       last.at("adjustment").orientation_error.mean, options.seeds);
   print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
-              [](const TourFigures& f) { return std::optional<Figure>(f.stretch_error); });
+              [](const TourFigures& f) { return std::optional<SeedMean>(f.stretch_error); });
   print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
-              [](const TourFigures& f) { return std::optional<Figure>(f.orientation_error); });
+              [](const TourFigures& f) { return std::optional<SeedMean>(f.orientation_error); });
   print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
               [](const TourFigures& f) { return f.position_error; });
   fmt::print(

@@ -22,7 +22,9 @@ class UsageError : public std::runtime_error {
 void setup_adjust(CLI::App& app);
 void setup_build(CLI::App& app);
 void setup_convert(CLI::App& app);
+void setup_noise(CLI::App& app);
 void setup_simulate(CLI::App& app);
 void setup_tour(CLI::App& app);
+void setup_umbmark(CLI::App& app);
 
 }  // namespace trussmap::app

@@ -30,8 +30,10 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_adjust(app);
   trussmap::app::setup_build(app);
   trussmap::app::setup_convert(app);
+  trussmap::app::setup_noise(app);
   trussmap::app::setup_simulate(app);
   trussmap::app::setup_tour(app);
+  trussmap::app::setup_umbmark(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version

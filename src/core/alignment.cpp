@@ -8,6 +8,9 @@
 namespace trussmap {
 namespace {
 
+// The mean of equal points differs from them by rounding, as a share of their size.
+constexpr double kRounding = 1e-14;
+
 Vector2 mean_of(const std::vector<Vector2>& points) {
   Vector2 sum = Vector2::Zero();
   for (const Vector2& point : points) sum += point;
@@ -24,17 +27,21 @@ Alignment align(const std::vector<Vector2>& points, const std::vector<Vector2>& 
   double along = 0.0;
   double across = 0.0;
   double spread = 0.0;
+  double size = 0.0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Vector2 a = points[k] - mean_a;
     const Vector2 b = onto[k] - mean_b;
     along += a.dot(b);
     across += quarter_turn(a).dot(b);
     spread += a.squaredNorm();
+    size += points[k].squaredNorm();
   }
   Alignment result;
   result.angle = std::atan2(across, along);
   if (with_scale) {
-    if (spread <= 0.0) throw std::invalid_argument("all points to be aligned coincide");
+    if (spread <= kRounding * kRounding * size) {
+      throw std::invalid_argument("all points to be aligned coincide");
+    }
     result.scale = std::hypot(along, across) / spread;
   }
   result.translation = mean_b - result.scale * (rotation(result.angle) * mean_a);

@@ -4,12 +4,38 @@
 
 #include "trussmap/core/index.hpp"
 
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 namespace trussmap {
+namespace {
+
+int unknown(int joint) {
+  return 2 * (joint - 1);  // joint 0 is held
+}
+
+/// The columns w at j and -w at i: what a stiffness w w' between them adds to K is W W'.
+SparseMatrix between(int i, int j, const Vector2& w, int unknowns) {
+  SparseMatrix W(unknowns, 1);
+  std::vector<Eigen::Triplet<double, int>> entries;
+  for (int row = 0; row < 2; ++row) {
+    if (i > 0) entries.emplace_back(unknown(i) + row, 0, -w(row));
+    if (j > 0) entries.emplace_back(unknown(j) + row, 0, w(row));
+  }
+  W.setFromTriplets(entries.begin(), entries.end());
+  return W;
+}
+
+}  // namespace
+
+void ExactIncrements::check(int i, int j) const {
+  if (i < 0 || j < 0 || i >= joints_ || j >= joints_ || i == j) {
+    throw std::invalid_argument("a bar joins two different joints of the truss");
+  }
+}
 
 void ExactIncrements::add_joint(int i, const Matrix2& stiffness) {
   if (i < 0 || i >= joints_) throw std::invalid_argument("the new joint is tied to no joint");
@@ -17,32 +43,26 @@ void ExactIncrements::add_joint(int i, const Matrix2& stiffness) {
   ++joints_;
 }
 
-std::vector<Vector2> ExactIncrements::add_bar(int i, int j, const Matrix2& stiffness,
-                                              const Vector2& misfit) {
-  if (i < 0 || j < 0 || i >= joints_ || j >= joints_ || i == j) {
-    throw std::invalid_argument("a bar joins two different joints of the truss");
-  }
+void ExactIncrements::add_bar(int i, int j, const Matrix2& stiffness) {
+  check(i, j);
   bars_.push_back({i, j, stiffness});
-  const int unknowns = 2 * (joints_ - 1);
-  const auto unknown = [](int joint) { return 2 * (joint - 1); };  // joint 0 is held
-  if (factored_joints_ != joints_) {
-    factorise();
-  } else {
-    // B = W W': the bar's columns of the update are W at j and -W at i.
-    const Matrix2 W = stiffness.llt().matrixL();
-    SparseMatrix update(unknowns, 2);
-    std::vector<Eigen::Triplet<double, int>> entries;
-    for (int column = 0; column < 2; ++column) {
-      for (int row = 0; row < 2; ++row) {
-        if (i > 0) entries.emplace_back(unknown(i) + row, column, -W(row, column));
-        if (j > 0) entries.emplace_back(unknown(j) + row, column, W(row, column));
-      }
-    }
-    update.setFromTriplets(entries.begin(), entries.end());
-    cholesky_.update(update);
-  }
-  Eigen::VectorXd load = Eigen::VectorXd::Zero(unknowns);
-  const Vector2 force = stiffness * misfit;
+  if (factored()) change_factor(bars_.back());
+}
+
+const Matrix2& ExactIncrements::stiffness(int bar) const {
+  return bars_.at(idx(bar)).stiffness;
+}
+
+void ExactIncrements::set_stiffness(int bar, const Matrix2& stiffness) {
+  Bar& changed = bars_.at(idx(bar));
+  if (factored()) change_factor({changed.i, changed.j, stiffness - changed.stiffness});
+  changed.stiffness = stiffness;
+}
+
+std::vector<Vector2> ExactIncrements::pull(int i, int j, const Vector2& force) {
+  check(i, j);
+  if (!factored()) factorise();
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(unknown(joints_));
   if (j > 0) load.segment<2>(unknown(j)) += force;
   if (i > 0) load.segment<2>(unknown(i)) -= force;
   const Eigen::VectorXd u = cholesky_.solve(load);
@@ -51,6 +71,18 @@ std::vector<Vector2> ExactIncrements::add_bar(int i, int j, const Matrix2& stiff
     displacements[idx(joint)] = u.segment<2>(unknown(joint));
   }
   return displacements;
+}
+
+/// A change of stiffness may be indefinite: what it adds goes in first, so that K stays definite.
+void ExactIncrements::change_factor(const Bar& change) {
+  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(change.stiffness);
+  for (const int axis : {1, 0}) {  // eigenvalues ascend
+    const double value = axes.eigenvalues()(axis);
+    const Vector2 w = std::sqrt(std::abs(value)) * axes.eigenvectors().col(axis);
+    const SparseMatrix W = between(change.i, change.j, w, unknown(joints_));
+    if (value > 0.0) cholesky_.update(W);
+    if (value < 0.0) cholesky_.downdate(W);
+  }
 }
 
 void ExactIncrements::factorise() {

@@ -25,6 +25,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kMoved = 1e-12;          // m
+constexpr double kRounding = 1e-9;        // asymmetry of a covariance, as a share of its size
 constexpr double kNegligibleShare = 0.1;  // of the smallest standard deviation, for eta estimated
 
 /// Displacements of some landmarks, not yet made.
@@ -49,10 +50,13 @@ struct Piece {
 
 void check(const Traversal& leg) {
   const bool finite = leg.displacement.allFinite() && leg.covariance.allFinite();
-  if (!finite || leg.displacement.squaredNorm() <= 0.0 || leg.covariance(0, 0) <= 0.0 ||
-      leg.covariance.determinant() <= 0.0) {
+  const Matrix2& C = leg.covariance;
+  const double asymmetry = std::abs(C(0, 1) - C(1, 0));
+  if (!finite || leg.displacement.squaredNorm() <= 0.0 || C(0, 0) <= 0.0 ||
+      C.determinant() <= 0.0 || asymmetry > kRounding * C.trace() || !C.inverse().allFinite()) {
     throw std::invalid_argument(
-        "a leg needs a finite displacement other than zero and a positive definite covariance");
+        "a leg needs a finite displacement other than zero and a symmetric, positive definite "
+        "covariance whose inverse is finite");
   }
 }
 
@@ -156,7 +160,7 @@ class MapBuilder::State {
     arrival.landmark = graph_.add_landmark(name, position);
     arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
     if (options_.method == Method::gauss_markov) {
-      increments_.add_joint(here_, leg.covariance.inverse());
+      increments_.add_joint(here_, leg.covariance.inverse());  // bar number = route number
     } else {
       chain_.append(here_, arrival.landmark);
     }
@@ -167,11 +171,19 @@ class MapBuilder::State {
   Arrival increment(Arrival arrival, const Traversal& leg) {
     const bool known_route = graph_.route_between(here_, arrival.landmark).has_value();
     arrival.kind = known_route ? Arrival::Kind::refinement : Arrival::Kind::first_sight;
-    Moves moves;
-    moves.displacements =
-        increments_.add_bar(here_, arrival.landmark, leg.covariance.inverse(), arrival.misfit);
-    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
     arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    const Route& route = graph_.route(arrival.route);
+    const Matrix2 one = options_.pooled ? route.covariance.inverse() : leg.covariance.inverse();
+    if (!known_route) {
+      increments_.add_bar(here_, arrival.landmark, one);
+    } else {
+      increments_.set_stiffness(
+          arrival.route, options_.pooled ? Matrix2(route.traversals * one)
+                                         : Matrix2(increments_.stiffness(arrival.route) + one));
+    }
+    Moves moves;
+    moves.displacements = increments_.pull(here_, arrival.landmark, one * arrival.misfit);
+    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
     make(moves, arrival);
     return arrival;
   }

@@ -19,10 +19,13 @@ std::map<std::string, Vector2> dead_reckoned_positions(const Recording& recordin
   std::map<std::string, std::pair<Vector2, int>> sums;
   const std::vector<Stop> stops = stops_of(recording.sightings);
   double time = stops.front().t;
+  const InitialHeading first = initial_heading(recording.drive, time, model.robot, model.noise);
   PoseEstimate pose;
-  pose.pose.heading = initial_heading(recording.drive, time, model.robot, model.noise).heading;
+  pose.pose.heading = first.heading.heading;
+  pose.covariance(2, 2) = first.heading.variance;
   for (const Stop& stop : stops) {
-    pose = dead_reckon(pose, recording.drive, time, stop.t, model.robot, model.noise);
+    pose = dead_reckon(pose, recording.drive, time, stop.t, model.robot, model.noise,
+                       first.reading_time);
     time = stop.t;
     for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
       const Sighting& sighting = recording.sightings[k];
@@ -37,14 +40,23 @@ std::map<std::string, Vector2> dead_reckoned_positions(const Recording& recordin
   return means;
 }
 
-RecordingMap look(const std::vector<Recording>& recordings, const Model& model,
+/// Sessions with a compass first: it gives the map its direction.
+std::vector<const Recording*> in_order(const std::vector<Recording>& recordings) {
+  std::vector<const Recording*> sessions;
+  for (const Recording& recording : recordings) sessions.push_back(&recording);
+  std::stable_partition(sessions.begin(), sessions.end(),
+                        [](const Recording* one) { return one->drive.has_compass(); });
+  return sessions;
+}
+
+RecordingMap look(const std::vector<const Recording*>& sessions, const Model& model,
                   const RecordingMapOptions& options, const Guide& guide) {
   RecordingMap result;
   result.method = name_of(options.builder.method);
   MapBuilder builder(options.builder);
   Candidates candidates(options);
-  for (const Recording& recording : recordings) {
-    Session(recording, model, options, guide, builder, candidates, result).run();
+  for (const Recording* recording : sessions) {
+    Session(*recording, model, options, guide, builder, candidates, result).run();
   }
   for (int round = 0; round < options.settle; ++round)
     builder.settle(options.builder.gain_limit / (round + 1));
@@ -84,7 +96,7 @@ RecordingMap map_recordings(const std::vector<Recording>& recordings, const Mode
   RecordingMap result;
   Guide guide;
   for (int n = 0; n < (compass ? 1 : options.looks); ++n) {
-    result = look(recordings, model, options, guide);
+    result = look(in_order(recordings), model, options, guide);
     guide = guide_of(result.map);
   }
   if (result.legs == 0) {

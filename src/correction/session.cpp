@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "session.hpp"
 
-#include "trussmap/correction/heading_reset.hpp"
+#include "trussmap/core/error.hpp"
+#include "trussmap/odometry/heading_in_map.hpp"
+#include "trussmap/odometry/heading_reset.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,12 +61,47 @@ Session::Session(const Recording& recording, const Model& model, const Recording
 
 void Session::run() {
   for (const Stop& stop : stops_of(recording_.sightings)) {
-    if (reference_ == nullptr) {
-      begin(stop);
-    } else {
+    if (reference_ != nullptr) {
       visit(stop);
+    } else if (builder_.landmarks() == 0) {
+      const Sighting& sighting = recording_.sightings[stop.reference];
+      const InitialHeading first =
+          initial_heading(recording_.drive, stop.t, model_.robot, model_.noise);
+      readings_used_until_ = first.reading_time;
+      begin(stop, sighting, first.heading);
+    } else {
+      resume(stop);
     }
   }
+  if (reference_ == nullptr) {
+    throw SolveError(recording_.name +
+                     " is tied to nothing: expected sightings of a landmark of the other sessions"
+                     ", and without a compass of two");
+  }
+}
+
+/// A further session begins where it first sights a landmark of the map and finds its heading.
+void Session::resume(const Stop& stop) {
+  const Sighting* nearest = nullptr;
+  for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
+    const Sighting& sighting = recording_.sightings[k];
+    if (!builder_.find(sighting.landmark)) continue;
+    const double distance = offset_of(sighting).offset_robot.norm();
+    if (nearest == nullptr || distance < offset_of(*nearest).offset_robot.norm()) {
+      nearest = &sighting;
+    }
+  }
+  if (nearest == nullptr) return;
+  const InitialHeading first =
+      initial_heading(recording_.drive, stop.t, model_.robot, model_.noise);
+  std::optional<HeadingEstimate> heading = first.heading;
+  if (!recording_.drive.has_compass()) {
+    heading = heading_in_map(recording_, *nearest, model_, options_.map_sd,
+                             [this](const std::string& name) { return believed(name); });
+  }
+  if (!heading) return;
+  readings_used_until_ = first.reading_time;
+  begin(stop, *nearest, *heading);
 }
 
 LandmarkOffset Session::offset_of(const Sighting& sighting) const {
@@ -78,20 +115,19 @@ std::optional<Vector2> Session::believed(const std::string& landmark) const {
   return std::nullopt;
 }
 
-void Session::begin(const Stop& stop) {
-  const Sighting& sighting = recording_.sightings[stop.reference];
-  builder_.start(sighting.landmark);
-  settle(stop, {&sighting, offset_of(sighting)},
-         initial_heading(recording_.drive, stop.t, model_.robot, model_.noise));
+void Session::begin(const Stop& stop, const Sighting& at, const HeadingEstimate& heading) {
+  builder_.start(at.landmark);
+  settle(stop, {&at, offset_of(at)}, heading);
   std::vector<Accepted> others;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
-    if (k != stop.reference) consider(recording_.sightings[k], others);
+    if (&recording_.sightings[k] != &at) consider(recording_.sightings[k], others);
   }
   observe(others);
 }
 
 void Session::visit(const Stop& stop) {
-  pose_ = dead_reckon(pose_, recording_.drive, time_, stop.t, model_.robot, model_.noise);
+  pose_ = dead_reckon(pose_, recording_.drive, time_, stop.t, model_.robot, model_.noise,
+                      readings_used_until_);
   time_ = stop.t;
   std::vector<Accepted> accepted;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {

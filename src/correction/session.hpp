@@ -7,6 +7,7 @@
 #include "trussmap/correction/recording_map.hpp"
 #include "trussmap/odometry/dead_reckoning.hpp"
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,7 +48,8 @@ class Session {
     LandmarkOffset offset;
   };
 
-  void begin(const Stop& stop);
+  void resume(const Stop& stop);
+  void begin(const Stop& stop, const Sighting& at, const HeadingEstimate& heading);
   void visit(const Stop& stop);
   void consider(const Sighting& sighting, std::vector<Accepted>& accepted);
   void reject(const Sighting& sighting, double misfit);
@@ -73,6 +75,8 @@ class Session {
   double time_ = 0.0;                    // of pose_
   double leg_start_ = 0.0;               // driven path at the leg's start
   double start_heading_variance_ = 0.0;
+  double readings_used_until_ =
+      -std::numeric_limits<double>::infinity();  // compass readings that the start heading rests on
 };
 
 }  // namespace trussmap

@@ -79,6 +79,7 @@ class SeedRun {
       MapBuilderOptions builder;
       builder.method = method;
       builder.eta = options.eta;
+      builder.pooled = true;
       builders_.emplace(name_of(method), MapBuilder(builder));
     }
     MapBuilderOptions only_first_sight;
@@ -127,12 +128,7 @@ class SeedRun {
     const int a = *averages_.find(landmark_name(mesh, from));
     const int route = averages_.add_traversal(a, *averages_.find(name), traversal);
     if (averages_.route(route).traversals == 1) raw_.push_back(averages_.route(route).displacement);
-
-    const double ratio = averages_.route(route).stretch / measured.displacement.norm();
-    const Traversal at_mean_stretch{traversal.displacement, ratio * ratio * traversal.covariance};
-    for (auto& [method, builder] : builders_) {
-      builder.arrive(name, method == "gauss_markov" ? at_mean_stretch : traversal);
-    }
+    for (auto& [method, builder] : builders_) builder.arrive(name, traversal);
   }
 
   /// A route's vector in the mesh's direction, out of per-route vectors in the averages' order.
@@ -172,9 +168,9 @@ class SeedRun {
   Vector2 reckoned_ = Vector2::Zero();
 };
 
-Figure figure_of(const std::vector<double>& values) {
+SeedMean figure_of(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
-  Figure figure;
+  SeedMean figure;
   for (const double value : values) figure.mean += value / n;
   double squares = 0.0;
   for (const double value : values) squares += std::pow(value - figure.mean, 2);

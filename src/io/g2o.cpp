@@ -7,79 +7,32 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "graph_line.hpp"
+
 namespace trussmap {
 namespace {
 
 constexpr std::string_view kKnownTags =
-    "VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX, VERTEX2 or EDGE2";
-constexpr std::string_view kBlank = " \t\r\v\f";
+    "VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX, VERTEX2, EDGE2, ODOMETRY or "
+    "LANDMARK";
 
-/// One line, taken apart from the left.
-class Line {
- public:
-  Line(std::string_view text, std::size_t number, const std::string& file)
-      : rest_(text.substr(0, text.find('#'))), number_(number), file_(file) {}
+/// Which program's lines a file has: TORO and iSAM both write EDGE2, and mean different things.
+enum class Dialect { g2o_or_toro, isam };
 
-  /// The next word, empty at the end of the line.
-  std::string_view word() {
-    const std::size_t begin = rest_.find_first_not_of(kBlank);
-    if (begin == std::string_view::npos) {
-      rest_ = {};
-      return rest_;
+Dialect dialect_of(std::string_view text) {
+  for (const std::string_view tag : {"LANDMARK ", "ODOMETRY "}) {
+    for (std::size_t at = text.find(tag); at != std::string_view::npos;
+         at = text.find(tag, at + 1)) {
+      if (at == 0 || text[at - 1] == '\n') return Dialect::isam;
     }
-    const std::size_t end = std::min(rest_.find_first_of(kBlank, begin), rest_.size());
-    const std::string_view found = rest_.substr(begin, end - begin);
-    rest_.remove_prefix(end);
-    return found;
   }
-
-  double number(std::string_view meaning) {
-    const std::string_view found = word();
-    double value = 0.0;
-    if (!parse(found, value) || !std::isfinite(value)) complain(found, meaning, "a number");
-    return value;
-  }
-
-  std::int64_t id(std::string_view meaning) {
-    const std::string_view found = word();
-    std::int64_t value = 0;
-    if (!parse(found, value)) complain(found, meaning, "a whole number");
-    return value;
-  }
-
-  void finish() {
-    const std::string_view found = word();
-    if (!found.empty()) fail(fmt::format("\"{}\" is too much, the line should end here", found));
-  }
-
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(file_, number_, what); }
-  [[nodiscard]] std::size_t line_number() const { return number_; }
-
- private:
-  template <typename Number>
-  static bool parse(std::string_view text, Number& value) {
-    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size();
-  }
-
-  [[noreturn]] void complain(std::string_view found, std::string_view meaning,
-                             std::string_view expected) const {
-    if (found.empty()) fail(fmt::format("the line ends before {}, expected {}", meaning, expected));
-    fail(fmt::format("{} is \"{}\", expected {}", meaning, found, expected));
-  }
-
-  std::string_view rest_;
-  std::size_t number_;
-  const std::string& file_;
-};
+  return Dialect::g2o_or_toro;
+}
 
 /// The ends of an edge or a fixed vertex, kept until all vertices are known.
 struct Mention {
@@ -90,13 +43,17 @@ struct Mention {
 
 class Reader {
  public:
-  explicit Reader(const std::string& file) : file_(file) {}
+  Reader(const std::string& file, Dialect dialect) : file_(file), dialect_(dialect) {}
 
-  void take(Line& line) {
+  void take(GraphLine& line) {
     const std::string_view tag = line.word();
     if (tag.empty()) return;
-    if (tag == "EDGE_SE2" || tag == "EDGE2") {
-      take_pose_edge(line, tag == "EDGE2");
+    if (tag == "EDGE_SE2" || tag == "EDGE2" || tag == "ODOMETRY") {
+      take_pose_edge(line, tag == "EDGE2" && dialect_ == Dialect::g2o_or_toro);
+    } else if (tag == "LANDMARK") {
+      PointEdge edge;
+      take_vector_edge(line, edge, VertexKind::pose);
+      graph_.point_edges.push_back(edge);
     } else if (tag == "VERTEX_SE2" || tag == "VERTEX2") {
       take_vertex(line, VertexKind::pose);
     } else if (tag == "EDGE_SE2_XY") {
@@ -119,6 +76,7 @@ class Reader {
   }
 
   PoseGraph finish() {
+    if (dialect_ == Dialect::isam) number_landmarks_apart();
     const bool implicit = graph_.vertices.empty();
     for (std::size_t k = 0; k < graph_.pose_edges.size(); ++k) {
       PoseEdge& edge = graph_.pose_edges[k];
@@ -140,7 +98,7 @@ class Reader {
   }
 
  private:
-  void take_vertex(Line& line, VertexKind kind) {
+  void take_vertex(GraphLine& line, VertexKind kind) {
     GraphVertex vertex;
     vertex.id = line.id("the vertex");
     vertex.kind = kind;
@@ -156,17 +114,18 @@ class Reader {
     graph_.vertices.push_back(vertex);
   }
 
-  void take_ends(Line& line, VertexKind from, VertexKind to, std::vector<Mention>& ends) {
+  void take_ends(GraphLine& line, VertexKind from, VertexKind to, std::vector<Mention>& ends) {
     const std::int64_t i = line.id("the first vertex");
     const std::int64_t j = line.id("the second vertex");
-    if (i == j) {
+    const bool same_numbers = dialect_ != Dialect::isam || from == to;
+    if (i == j && same_numbers) {
       line.fail(fmt::format("the edge joins vertex {} to itself, expected two vertices", i));
     }
     ends.push_back({i, from, line.line_number()});
     ends.push_back({j, to, line.line_number()});
   }
 
-  void take_pose_edge(Line& line, bool toro) {
+  void take_pose_edge(GraphLine& line, bool toro) {
     take_ends(line, VertexKind::pose, VertexKind::pose, pose_ends_);
     PoseEdge edge;
     edge.measured.x = line.number("dx");
@@ -180,12 +139,13 @@ class Reader {
       edge.information(row, column) = line.number("an entry of the information");
       edge.information(column, row) = edge.information(row, column);
     }
+    if (dialect_ == Dialect::isam) square(edge.information);
     check_information(line, edge.information);
     graph_.pose_edges.push_back(edge);
   }
 
   template <typename Edge>
-  void take_vector_edge(Line& line, Edge& edge, VertexKind from) {
+  void take_vector_edge(GraphLine& line, Edge& edge, VertexKind from) {
     take_ends(line, from, VertexKind::point,
               from == VertexKind::pose ? point_ends_ : displacement_ends_);
     edge.measured.x() = line.number("dx");
@@ -193,11 +153,29 @@ class Reader {
     edge.information(0, 0) = line.number("I11");
     edge.information(0, 1) = edge.information(1, 0) = line.number("I12");
     edge.information(1, 1) = line.number("I22");
+    if (dialect_ == Dialect::isam) square(edge.information);
     check_information(line, edge.information);
   }
 
+  /// iSAM gives the upper triangle R of the information R'R.
   template <typename Matrix>
-  static void check_information(const Line& line, const Matrix& information) {
+  static void square(Matrix& information) {
+    const Matrix R = information.template triangularView<Eigen::Upper>();
+    information = R.transpose() * R;
+  }
+
+  /// iSAM counts poses and landmarks separately: landmarks go on where the poses end.
+  void number_landmarks_apart() {
+    std::int64_t last = 0;
+    for (const Mention& end : pose_ends_) last = std::max(last, end.id);
+    for (std::size_t k = 0; k < point_ends_.size(); ++k) {
+      if (k % 2 == 0) last = std::max(last, point_ends_[k].id);
+    }
+    for (std::size_t k = 1; k < point_ends_.size(); k += 2) point_ends_[k].id += last + 1;
+  }
+
+  template <typename Matrix>
+  static void check_information(const GraphLine& line, const Matrix& information) {
     if (!is_information(information)) {
       line.fail(
           "the information matrix is not positive semidefinite, expected the inverse of a "
@@ -205,10 +183,10 @@ class Reader {
     }
   }
 
-  void take_fixed(Line& line) {
+  void take_fixed(GraphLine& line) {
     do {
       fixed_.push_back({line.id("the fixed vertex"), VertexKind::pose, line.line_number()});
-    } while (!Line(line).word().empty());
+    } while (!GraphLine(line).word().empty());
   }
 
   int resolve(const Mention& end, bool implicit) {
@@ -245,6 +223,7 @@ class Reader {
   }
 
   const std::string& file_;
+  Dialect dialect_;
   PoseGraph graph_;
   std::unordered_map<std::int64_t, std::size_t> numbers_;  // looked up only, never walked
   std::vector<Mention> pose_ends_;                         // two per edge, in the edges' order
@@ -256,11 +235,11 @@ class Reader {
 }  // namespace
 
 PoseGraph parse_g2o(std::string_view text, const std::string& name) {
-  Reader reader(name);
+  Reader reader(name, dialect_of(text));
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    Line line(text.substr(0, end), ++number, name);
+    GraphLine line(text.substr(0, end), ++number, name);
     reader.take(line);
     text.remove_prefix(std::min(end + 1, text.size()));
   }

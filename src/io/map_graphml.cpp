@@ -11,15 +11,13 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
+#include <Eigen/LU>
+
+#include "xml_element.hpp"
 
 namespace trussmap {
 namespace {
-
-using boost::property_tree::ptree;
 
 void write_data(std::string& text, const char* key, double value) {
   text += std::string("      <data key=\"") + key + "\">" + csv_number(value) + "</data>\n";
@@ -31,17 +29,18 @@ void write_covariance(std::string& text, const std::string& prefix, const Matrix
   write_data(text, (prefix + "c_yy").c_str(), covariance(1, 1));
 }
 
+using KeyNames = std::map<std::string, std::string>;
+
 /// The data of one node or edge, by attribute name.
 class Attributes {
  public:
-  Attributes(const ptree& element, const std::map<std::string, std::string>& names,
-             std::string file, std::string what)
-      : file_(std::move(file)), what_(std::move(what)) {
-    for (const auto& [tag, child] : element) {
-      if (tag != "data") continue;
-      const std::string key = child.get("<xmlattr>.key", "");
+  Attributes(const XmlElement& element, const KeyNames& names, std::string file, std::string what)
+      : file_(std::move(file)), line_(element.line), what_(std::move(what)) {
+    for (const XmlElement& child : element.children) {
+      if (child.name != "data") continue;
+      const std::string key = child.attribute("key");
       const auto name = names.find(key);
-      values_[name == names.end() ? key : name->second] = child.data();
+      values_[name == names.end() ? key : name->second] = child.text;
     }
   }
 
@@ -61,50 +60,56 @@ class Attributes {
 
   [[nodiscard]] Matrix2 covariance() const {
     const double xy = number("c_xy");
-    return (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
+    const Matrix2 C = (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
+    const double rounding = 1e-12 * C(0, 0) * C(1, 1);
+    if (C(0, 0) < 0.0 || C(1, 1) < 0.0 || C.determinant() < -rounding) {
+      fail("c_xx, c_xy, c_yy are no covariance, expected a positive semidefinite matrix");
+    }
+    return C;
   }
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw InputError(file_, 0, what_ + ": " + why);
+    throw InputError(file_, line_, what_ + ": " + why);
   }
 
  private:
   std::string file_;
+  int line_;
   std::string what_;
   std::map<std::string, std::string> values_;
 };
 
-/// Attribute names of the declared keys, for nodes or for edges. (ptree splits paths at dots, and
-/// "attr.name" has one.)
-std::map<std::string, std::string> declared_keys(const ptree& graphml, const std::string& domain) {
-  std::map<std::string, std::string> names;
-  for (const auto& [tag, child] : graphml) {
-    if (tag != "key") continue;
-    const auto attributes = child.get_child_optional("<xmlattr>");
-    if (!attributes) continue;
-    std::map<std::string, std::string> values;
-    for (const auto& [name, value] : *attributes) values[name] = value.data();
-    const std::string of = values.count("for") > 0 ? values["for"] : "all";
-    if (of == domain || of == "all") names[values["id"]] = values["attr.name"];
+/// Attribute names of the declared keys, for nodes or for edges.
+KeyNames declared_keys(const XmlElement& graphml, const std::string& domain) {
+  KeyNames names;
+  for (const XmlElement& child : graphml.children) {
+    if (child.name != "key") continue;
+    const std::string of = child.attribute("for");
+    if (of == domain || of == "all" || of.empty()) {
+      names[child.attribute("id")] = child.attribute("attr.name");
+    }
   }
   return names;
 }
 
-void read_node(const ptree& element, const std::map<std::string, std::string>& names,
-               const std::string& file, LandmarkGraph& map) {
-  const std::string name = element.get("<xmlattr>.id", "");
-  if (name.empty()) throw InputError(file, 0, "a node has no id, expected a landmark's name");
+void read_node(const XmlElement& element, const KeyNames& names, const std::string& file,
+               LandmarkGraph& map) {
+  const std::string name = element.attribute("id");
+  if (name.empty()) {
+    throw InputError(file, element.line, "a node has no id, expected a landmark's name");
+  }
   const Attributes data(element, names, file, "landmark " + name);
   if (map.find(name)) data.fail("stands twice, expected each landmark once");
   const int landmark = map.add_landmark(name, {data.number("x"), data.number("y")});
   if (data.has("c_xx")) map.set_covariance(landmark, data.covariance());
 }
 
-void read_edge(const ptree& element, const std::map<std::string, std::string>& names,
-               const std::string& file, LandmarkGraph& map) {
-  const std::string source = element.get("<xmlattr>.source", "");
-  const std::string target = element.get("<xmlattr>.target", "");
+void read_edge(const XmlElement& element, const KeyNames& names, const std::string& file,
+               LandmarkGraph& map) {
+  const std::string source = element.attribute("source");
+  const std::string target = element.attribute("target");
   const Attributes data(element, names, file, "route " + source + " - " + target);
+  if (element.attribute("directed") == "true") data.fail("is directed, expected undirected edges");
   const std::optional<int> i = map.find(source);
   const std::optional<int> j = map.find(target);
   if (!i || !j) data.fail("landmark " + (i ? target : source) + " is unknown, expected a node");
@@ -130,27 +135,23 @@ void read_edge(const ptree& element, const std::map<std::string, std::string>& n
 
 LandmarkGraph read_map_graphml(const std::filesystem::path& file) {
   const std::string name = file.string();
-  std::istringstream stream(read_file(file));
-  ptree root;
-  try {
-    boost::property_tree::read_xml(stream, root);
-  } catch (const boost::property_tree::xml_parser_error& error) {
-    throw InputError(name, error.line(), "no XML: " + error.message());
+  const XmlElement graphml = parse_xml(read_file(file), name);
+  const XmlElement* graph = graphml.name == "graphml" ? graphml.child("graph") : nullptr;
+  if (graph == nullptr) {
+    throw InputError(name, graphml.line, "no GraphML, expected a graphml element with a graph");
   }
-  const auto graphml = root.get_child_optional("graphml");
-  const auto graph = graphml ? graphml->get_child_optional("graph") : boost::none;
-  if (!graph) throw InputError(name, 0, "no GraphML, expected a graphml element with a graph");
-  if (graph->get("<xmlattr>.edgedefault", "undirected") != "undirected") {
-    throw InputError(name, 0, "the graph is directed, expected edgedefault=\"undirected\"");
+  if (graph->attribute("edgedefault") == "directed") {
+    throw InputError(name, graph->line,
+                     "the graph is directed, expected edgedefault=\"undirected\"");
   }
   LandmarkGraph map;
-  const auto node_keys = declared_keys(*graphml, "node");
-  const auto edge_keys = declared_keys(*graphml, "edge");
-  for (const auto& [tag, child] : *graph) {
-    if (tag == "node") read_node(child, node_keys, name, map);
+  const KeyNames node_keys = declared_keys(graphml, "node");
+  const KeyNames edge_keys = declared_keys(graphml, "edge");
+  for (const XmlElement& child : graph->children) {
+    if (child.name == "node") read_node(child, node_keys, name, map);
   }
-  for (const auto& [tag, child] : *graph) {
-    if (tag == "edge") read_edge(child, edge_keys, name, map);
+  for (const XmlElement& child : graph->children) {
+    if (child.name == "edge") read_edge(child, edge_keys, name, map);
   }
   return map;
 }

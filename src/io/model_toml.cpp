@@ -164,12 +164,20 @@ class ModelReader {
                (effect.shape.empty() ? "channel but no shape" : "shape but no channel") +
                ", expected both or neither");
     }
-    if (!effect.coefficients.empty() && !effect.per_session && !effect.shape.empty() &&
-        effect.coefficients.size() != effect.shape.size()) {
-      fail(table.source(), "effect \"" + effect.name + "\" has " +
-                               std::to_string(effect.coefficients.size()) +
-                               " coefficients, expected " + std::to_string(effect.shape.size()) +
-                               ", one per shape");
+    for (const std::string& shape : effect.shape) {
+      if (shape.find_first_not_of(" \t") == std::string::npos) {
+        fail(table.source(),
+             "effect \"" + effect.name + "\" has an empty shape, expected an expression");
+      }
+    }
+    const std::size_t shapes = effect.shape.size();
+    const std::size_t coefficients = effect.coefficients.size();
+    const bool fits = effect.per_session ? shapes == 0 || coefficients % shapes == 0
+                                         : coefficients == 0 || coefficients == shapes;
+    if (shapes > 0 && !fits) {
+      fail(table.source(), "effect \"" + effect.name + "\" has " + std::to_string(coefficients) +
+                               " coefficients, expected " + std::to_string(shapes) +
+                               ", one per shape" + (effect.per_session ? ", per session" : ""));
     }
   }
 

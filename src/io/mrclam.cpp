@@ -3,15 +3,14 @@
 #include "trussmap/io/mrclam.hpp"
 
 #include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "number_rows.hpp"
 
 namespace trussmap {
 namespace {
@@ -24,64 +23,18 @@ constexpr int kLastRobot = 5;         // subjects up to here are robots
 
 using Row = std::vector<double>;
 
-fs::path with_xz(const fs::path& path) {
-  fs::path compressed = path;
-  compressed += ".xz";
-  return compressed;
-}
-
-/// The file, plain or compressed; empty if there is neither.
-fs::path found(const fs::path& path) {
-  std::error_code ignored;
-  if (fs::exists(path, ignored)) return path;
-  if (fs::exists(with_xz(path), ignored)) return with_xz(path);
-  return {};
-}
-
 fs::path beside(const fs::path& prefix, const char* ending) {
   fs::path path = prefix;
   path += ending;
   return path;
 }
 
-/// Rows of `columns` numbers, separated by white space; lines that begin with # are skipped.
 std::vector<Row> read_rows(const fs::path& file, std::size_t columns) {
-  const std::string text = read_file(file);
-  std::vector<Row> rows;
-  std::size_t line = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view content = std::string_view(text).substr(at, end - at);
-    at = end + 1;
-    ++line;
-    Row row;
-    for (std::size_t k = content.find_first_not_of(" \t\r");
-         k != std::string_view::npos && content[k] != '#';) {
-      const std::size_t stop = std::min(content.find_first_of(" \t\r", k), content.size());
-      const std::string_view word = content.substr(k, stop - k);
-      double value = 0.0;
-      const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
-        throw InputError(file.string(), line,
-                         "\"" + std::string(word) + "\", expected a finite number");
-      }
-      row.push_back(value);
-      k = content.find_first_not_of(" \t\r", stop);
-    }
-    if (row.empty()) continue;
-    if (row.size() != columns) {
-      throw InputError(
-          file.string(), line,
-          std::to_string(row.size()) + " numbers, expected " + std::to_string(columns));
-    }
-    rows.push_back(std::move(row));
-  }
-  if (rows.empty()) throw InputError(file.string(), 0, "no rows, expected some");
-  return rows;
+  return read_number_rows(file, columns, kWhiteSpace);
 }
 
 std::vector<Row> require_rows(const fs::path& path, std::size_t columns) {
-  const fs::path file = found(path);
+  const fs::path file = plain_or_xz(path);
   if (file.empty()) throw InputError(path.string(), 0, "is missing, plain or as .xz");
   return read_rows(file, columns);
 }
@@ -129,7 +82,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   for (const Row& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
     subjects[number_of(row[1])] = number_of(row[0]);
   }
-  const fs::path file = found(beside(prefix, "_Measurement.dat"));
+  const fs::path file = plain_or_xz(beside(prefix, "_Measurement.dat"));
   if (file.empty()) {
     throw InputError(beside(prefix, "_Measurement.dat").string(), 0, "is missing, plain or as .xz");
   }
@@ -171,7 +124,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
 }
 
 void read_survey(const fs::path& prefix, Recording& recording) {
-  const fs::path file = found(prefix.parent_path() / "Landmark_Groundtruth.dat");
+  const fs::path file = plain_or_xz(prefix.parent_path() / "Landmark_Groundtruth.dat");
   if (file.empty()) return;
   for (const Row& row : read_rows(file, 5)) {
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
@@ -182,8 +135,8 @@ void read_survey(const fs::path& prefix, Recording& recording) {
 
 /// Truth rows within the drive. Times that do not increase are left out.
 void read_truth(const fs::path& prefix, MrclamRecording& result) {
-  fs::path file = found(beside(prefix, "_Groundtruth.dat"));
-  if (file.empty()) file = found(beside(prefix, "_Groundtruth_part.dat"));
+  fs::path file = plain_or_xz(beside(prefix, "_Groundtruth.dat"));
+  if (file.empty()) file = plain_or_xz(beside(prefix, "_Groundtruth_part.dat"));
   if (file.empty()) return;
   const Drive& drive = result.recording.drive;
   std::vector<TruthRow>& truth = result.recording.truth;
@@ -211,7 +164,7 @@ Model create_model() {
 }  // namespace
 
 bool is_mrclam(const fs::path& prefix) {
-  return !found(beside(prefix, "_Odometry.dat")).empty();
+  return !plain_or_xz(beside(prefix, "_Odometry.dat")).empty();
 }
 
 MrclamRecording read_mrclam(const fs::path& prefix) {

@@ -48,17 +48,19 @@ LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
   return {sighting.range * R.col(0), R * Vector2(along, across).asDiagonal() * R.transpose()};
 }
 
-HeadingEstimate initial_heading(const Drive& drive, double t, const Robot& robot,
-                                const Noise& noise) {
+InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
+                               const Noise& noise) {
   double turn = 0.0;
+  double variance = 0.0;
   for (const DriveRow& row : rows_between(drive, t, drive.t.back())) {
     if (!drive.has_compass()) break;
     const WheelTravel travel = travel_of(drive, row);
     turn += (travel.right - travel.left) / robot.wheelbase;
+    variance += arc_covariance(travel, row.duration, robot, noise)(2, 2);
     const double reading = drive.heading[row.row];
     if (!std::isnan(reading)) {
-      const Matrix3 covariance = arc_covariance(travel, row.duration, robot, noise);
-      return {wrap_angle(reading - turn), noise.compass * noise.compass + covariance(2, 2)};
+      return {{wrap_angle(reading - turn), noise.compass * noise.compass + variance},
+              drive.t[row.row]};
     }
   }
   return {};
@@ -79,7 +81,7 @@ PoseEstimate pose_from_landmark(const HeadingEstimate& heading, const LandmarkOf
 }
 
 PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from, double to,
-                         const Robot& robot, const Noise& noise) {
+                         const Robot& robot, const Noise& noise, double readings_used_until) {
   const std::vector<DriveRow> rows = rows_between(drive, from, to);
   PoseEstimate estimate = start;
   if (drive.has_compass()) {
@@ -88,13 +90,13 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
       estimate = moved(estimate, arc_displacement(travel, robot.wheelbase),
                        arc_covariance(travel, row.duration, robot, noise));
       const double reading = drive.heading[row.row];
-      if (row.ends && !std::isnan(reading)) {
+      if (row.ends && !std::isnan(reading) && drive.t[row.row] > readings_used_until) {
         correct_heading(estimate, reading, noise.compass * noise.compass);
       }
     }
     return estimate;
   }
-  for (const DriveArc& arc : merge_rows(drive, rows, {noise.left, noise.right})) {
+  for (const DriveArc& arc : merge_rows(drive, rows, robot.wheelbase, {noise.left, noise.right})) {
     estimate = moved(estimate, arc_displacement(arc.travel, robot.wheelbase),
                      arc_covariance(arc.travel, arc.duration, robot, noise));
   }

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSameCurvature = 0.1;  // of q
 constexpr double kNoiseLimit = 3.0;     // standard deviations of q
+constexpr double kSameShape = 0.01;     // of the path: how far the rows' end may lie from the arc's
 constexpr double kStanding = 1e-6;      // m per row
 
 enum class Kind { standing, forward, backward, spin_left, spin_right };
@@ -43,6 +44,29 @@ bool same_arc(const DriveArc& arc, const WheelTravel& row, const WheelNoise& noi
   return std::abs(curvature_of(arc.travel) - curvature_of(row)) <= tolerance;
 }
 
+/// An arc as it grows, with the rows' own displacement.
+struct Growing {
+  DriveArc arc;
+  Pose rows;
+  double path = 0.0;  // of the wheels, m
+
+  [[nodiscard]] Growing with(const WheelTravel& travel, double duration, double wheelbase) const {
+    Growing longer = *this;
+    longer.arc.travel.left += travel.left;
+    longer.arc.travel.right += travel.right;
+    longer.arc.duration += duration;
+    longer.rows = compose(rows, arc_displacement(travel, wheelbase));
+    longer.path += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+    return longer;
+  }
+
+  /// Many gentle bends add up: each row may be like the arc, and the whole not.
+  [[nodiscard]] bool keeps_shape(double wheelbase) const {
+    const Pose end = arc_displacement(arc.travel, wheelbase);
+    return (end.position() - rows.position()).norm() <= kSameShape * path;
+  }
+};
+
 }  // namespace
 
 std::vector<DriveRow> rows_between(const Drive& drive, double from, double to) {
@@ -63,15 +87,19 @@ WheelTravel travel_of(const Drive& drive, const DriveRow& row) {
 }
 
 std::vector<DriveArc> merge_rows(const Drive& drive, const std::vector<DriveRow>& rows,
-                                 const WheelNoise& noise) {
+                                 double wheelbase, const WheelNoise& noise) {
   std::vector<DriveArc> arcs;
+  Growing last;
   for (const DriveRow& row : rows) {
     const WheelTravel travel = travel_of(drive, row);
-    if (arcs.empty() || !same_arc(arcs.back(), travel, noise)) arcs.emplace_back();
-    DriveArc& arc = arcs.back();
-    arc.travel.left += travel.left;
-    arc.travel.right += travel.right;
-    arc.duration += row.duration;
+    const Growing longer = last.with(travel, row.duration, wheelbase);
+    if (!arcs.empty() && same_arc(last.arc, travel, noise) && longer.keeps_shape(wheelbase)) {
+      last = longer;
+    } else {
+      last = Growing{}.with(travel, row.duration, wheelbase);
+      arcs.emplace_back();
+    }
+    arcs.back() = last.arc;
   }
   return arcs;
 }

@@ -132,6 +132,14 @@ std::vector<int> SparseCholesky::order() const {
 }
 
 void SparseCholesky::update(const SparseMatrix& w) {
+  change(true, w);
+}
+
+void SparseCholesky::downdate(const SparseMatrix& w) {
+  change(false, w);
+}
+
+void SparseCholesky::change(bool add, const SparseMatrix& w) {
   // cholmod_updown wants the rows of W in the order of the factor.
   cholmod_sparse view = view_of(w, 0);
   auto* factor = cholmod_->factor;
@@ -139,7 +147,7 @@ void SparseCholesky::update(const SparseMatrix& w) {
                                                static_cast<SuiteSparse_long>(factor->n), nullptr,
                                                -1, 1, 1, &cholmod_->common);
   cholmod_->check("permute an update");
-  cholmod_updown(1, permuted, factor, &cholmod_->common);
+  cholmod_updown(add ? 1 : 0, permuted, factor, &cholmod_->common);
   cholmod_free_sparse(&permuted, &cholmod_->common);
   cholmod_->check("update the factor");
 }

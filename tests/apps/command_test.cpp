@@ -113,7 +113,7 @@ TEST(Command, AnOutputThatCannotBeWrittenLeavesTheOthersAlone) {
   EXPECT_EQ(scratch.contents(), before);
 }
 
-TEST(Command, ASessionThatStartsOnAnUnknownLandmarkIsNamed) {
+TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string();
   for (const char* session : {"one", "two"}) {
@@ -126,9 +126,9 @@ TEST(Command, ASessionThatStartsOnAnUnknownLandmarkIsNamed) {
   scratch.write("m.toml", "");
   const Ran ran = run_trussmap("build " + at + "/one " + at + "/two --model " + at + "/m.toml");
   EXPECT_EQ(ran.status, 1) << ran.output;
-  EXPECT_EQ(ran.output,
-            "trussmap: landmark X is tied to nothing: a session must start on a landmark of the "
-            "map\n");
+  EXPECT_EQ(ran.output, "trussmap: " + at +
+                            "/two is tied to nothing: expected sightings of a landmark of the "
+                            "other sessions, and without a compass of two\n");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "trussmap/core/index.hpp"
 
 #include <cmath>
+#include <map>
 #include <random>
 
 #include <Eigen/Dense>
@@ -96,6 +97,54 @@ TEST(MapBuilder, GaussMarkovIsTheBatchLeastSquaresMap) {
   for (int k = 1; k < 15; ++k) {
     const Vector2 expected = walk.truth[0] + p.segment<2>(2 * (k - 1));
     EXPECT_LE((builder.position(*builder.find(name(k))) - expected).norm(), 1e-9);
+  }
+}
+
+/// The same recursion with K built anew, densely, at every traversal.
+TEST(MapBuilder, PooledGaussMarkovIsItsRecursion) {
+  const Walk walk = random_walk(8, 120, 1.0, 9);
+  MapBuilderOptions options;
+  options.method = Method::gauss_markov;
+  options.pooled = true;
+  MapBuilder builder(options);
+  builder.start(name(0), walk.truth[0]);
+  std::map<std::string, Vector2> expected{{name(0), walk.truth[0]}};
+  LandmarkGraph graph;
+  graph.add_landmark(name(0), walk.truth[0]);
+  for (std::size_t k = 0; k < walk.legs.size(); ++k) {
+    const std::string from = name(walk.visits[k]);
+    const std::string to = name(walk.visits[k + 1]);
+    builder.arrive(to, walk.legs[k]);
+    const bool known = expected.contains(to);
+    if (!known) {
+      expected[to] = expected[from] + walk.legs[k].displacement;
+      graph.add_landmark(to, expected[to]);
+    }
+    const int i = *graph.find(from);
+    const int j = *graph.find(to);
+    const Matrix2 one = graph.route(graph.add_traversal(i, j, walk.legs[k])).covariance.inverse();
+    if (!known) continue;
+    const int n = 2 * graph.landmarks();
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    for (int number = 0; number < graph.routes(); ++number) {
+      const Route& route = graph.route(number);
+      const Matrix2 B = route.traversals * route.covariance.inverse();
+      K.block<2, 2>(2 * route.source, 2 * route.source) += B;
+      K.block<2, 2>(2 * route.target, 2 * route.target) += B;
+      K.block<2, 2>(2 * route.source, 2 * route.target) -= B;
+      K.block<2, 2>(2 * route.target, 2 * route.source) -= B;
+    }
+    Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
+    const Vector2 force = one * (walk.legs[k].displacement - (expected[to] - expected[from]));
+    f.segment<2>(2 * j) += force;
+    f.segment<2>(2 * i) -= force;
+    const Eigen::VectorXd u = K.bottomRightCorner(n - 2, n - 2).ldlt().solve(f.tail(n - 2));
+    for (int m = 1; m < graph.landmarks(); ++m) {
+      expected[graph.landmark(m).name] += u.segment<2>(2 * (m - 1));
+    }
+  }
+  for (const auto& [landmark, position] : expected) {
+    EXPECT_LE((builder.position(*builder.find(landmark)) - position).norm(), 1e-9) << landmark;
   }
 }
 

@@ -66,6 +66,25 @@ TEST(SlowMrclam, TheElasticMapBeatsDeadReckoningForEveryRobot) {
   EXPECT_GE(ratios[ratios.size() / 2], 5.0);
 }
 
+/// Each robot starts at a place and in a direction of its own, without a compass.
+TEST(SlowMrclam, FiveRobotsMakeOneMap) {
+  TRUSSMAP_NEEDS_SHARED("data/mrclam");
+  for (const int set : {6, 1, 4}) {
+    std::vector<Recording> recordings;
+    Model model;
+    for (int number = 1; number <= 5; ++number) {
+      MrclamRecording read = robot(set, number);
+      recordings.push_back(std::move(read.recording));
+      model = read.model;
+    }
+    const RecordingMap built = map_recordings(recordings, model);
+    const SurveyComparison survey =
+        compare_with_survey(positions_of(built.map), recordings.front().survey);
+    EXPECT_LE(survey.rigid.rms, 0.3) << set;
+    EXPECT_EQ(survey.contradicting.size(), set == 1 ? 2U : 0U) << set;
+  }
+}
+
 /// Counted with a line-by-line script of its own, once.
 TEST(Mrclam, ConvertsAndCountsWhatItLeavesOut) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");

@@ -3,6 +3,7 @@
 #include "trussmap/io/g2o.hpp"
 
 #include "trussmap/core/error.hpp"
+#include "trussmap/core/index.hpp"
 
 #include <random>
 
@@ -50,6 +51,18 @@ TEST(G2o, ReadsEveryKindOfLine) {
   EXPECT_EQ(graph.point_edges[0].information, (Matrix2() << 11, 2, 2, 22).finished());
   ASSERT_EQ(graph.displacement_edges.size(), 1U);
   EXPECT_EQ(graph.displacement_edges[0].measured, Vector2(-1.0, -2.0));
+}
+
+TEST(G2o, ReadsIsamsRootsAndItsOwnCountOfLandmarks) {
+  const PoseGraph graph = parse_g2o(
+      "EDGE2 0 1 1 2 3 5 1 2 6 3 7\nLANDMARK 1 1 4 5 2 1 3\nLANDMARK 0 0 6 7 2 0 2\n", "x.txt");
+  ASSERT_EQ(graph.vertices.size(), 4U);
+  const Matrix3 R = (Matrix3() << 5, 1, 2, 0, 6, 3, 0, 0, 7).finished();
+  EXPECT_EQ(graph.pose_edges[0].information, R.transpose() * R);
+  EXPECT_EQ(graph.point_edges[0].information, (Matrix2() << 4, 2, 2, 10).finished());
+  EXPECT_EQ(graph.vertices[idx(graph.point_edges[0].point)].id, 3);  // landmark 1 after pose 1
+  EXPECT_EQ(graph.vertices[idx(graph.point_edges[1].point)].id, 2);
+  EXPECT_EQ(graph.vertices[idx(graph.point_edges[0].point)].kind, VertexKind::point);
 }
 
 TEST(G2o, ReadsTorosOrderOfTheInformation) {
@@ -129,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"no_edges", kTwoPoses, "bad.g2o: has no edges, expected a pose graph"},
         Bad{"tag", "VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n",
             "bad.g2o:1: \"VERTEX_SE3:QUAT\" is unknown, expected VERTEX_SE2, VERTEX_XY, EDGE_SE2, "
-            "EDGE_SE2_XY, EDGE_POINTXY, FIX, VERTEX2 or EDGE2"},
+            "EDGE_SE2_XY, EDGE_POINTXY, FIX, VERTEX2, EDGE2, ODOMETRY or LANDMARK"},
         Bad{"short", kTwoPoses + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0\n",
             "bad.g2o:3: the line ends before an entry of the information, expected a number"},
         Bad{"long", kTwoPoses + "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1 5\n",

@@ -23,7 +23,7 @@ using testing::ScratchFolder;
 
 struct Refused {
   const char* name;
-  const char* content;
+  std::string content;
   const char* message;  // after the file's name
 };
 
@@ -73,6 +73,12 @@ const Refused kBadModels[] = {
      ":1: effect \"x\" has 1 coefficients, expected 2, one per shape"},
     {"Per", "[[effect]]\nname = \"x\"\nper = \"day\"\n",
      ":3: per is \"day\", expected \"session\""},
+    {"EmptyShape", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\" \"]\n",
+     ":1: effect \"x\" has an empty shape, expected an expression"},
+    {"SessionCoefficients",
+     "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"1\", \"t\"]\n"
+     "coefficients = [1, 2, 3]\nper = \"session\"\n",
+     ":1: effect \"x\" has 3 coefficients, expected 2, one per shape, per session"},
     {"ShapeText", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = \"1\"\n",
      ":4: shape is no list, expected [ ... ]"},
 };
@@ -145,6 +151,19 @@ TEST(MapGraphml, ReadsBackExactlyWhatItWrote) {
   }
 }
 
+TEST(MapGraphml, ReadsWhatOthersWrite) {
+  const ScratchFolder scratch;
+  const LandmarkGraph map = read_map_graphml(scratch.write("m.graphml", R"(<?xml version="1.0"?>
+<graphml><key id="d0" attr.name="x"/><key id="d1" for="node" attr.name="y"/>
+<graph id="G" edgedefault="undirected"><desc>by hand</desc>
+<node id="&#65;"><data key="d0"> 1.5
+</data><data key="d1"><![CDATA[-2]]></data><data key="label">dock</data></node>
+</graph></graphml>)"));
+  ASSERT_EQ(map.landmarks(), 1);
+  EXPECT_EQ(map.landmark(0).name, "A");
+  EXPECT_EQ(map.landmark(0).position, Vector2(1.5, -2.0));
+}
+
 TEST(MapFormats, GeoJsonHoldsEveryLandmarkAndRoute) {
   const auto geojson = nlohmann::json::parse(format_geojson(hostile_map()));
   EXPECT_EQ(geojson["type"], "FeatureCollection");
@@ -167,19 +186,42 @@ TEST_P(BadMap, IsRefused) {
   EXPECT_EQ(message.rfind(GetParam().message, 0), 0U) << message;
 }
 
+const std::string kTwoNodes =
+    "<graphml><graph>\n<node id=\"A\"><data key=\"x\"> 0 </data><data key=\"y\">0</data></node>\n"
+    "<node id=\"B\"><data key=\"x\">1</data><data key=\"y\">0</data></node>\n";
+
+std::string nested(int deep) {
+  std::string text;
+  for (int k = 0; k < deep; ++k) text += "<g>";
+  return text;
+}
+
 const Refused kBadMaps[] = {
     {"NoXml", "landmarks\n", ":1: no XML: "},
-    {"NoGraph", "<graphml/>", ": no GraphML, expected a graphml element with a graph"},
+    {"NoGraph", "<graphml/>", ":1: no GraphML, expected a graphml element with a graph"},
     {"Directed", "<graphml><graph edgedefault=\"directed\"/></graphml>",
-     ": the graph is directed, expected edgedefault=\"undirected\""},
+     ":1: the graph is directed, expected edgedefault=\"undirected\""},
     {"NoPosition", "<graphml><graph><node id=\"A\"/></graph></graphml>",
-     ": landmark A: has no x, expected a number"},
+     ":1: landmark A: has no x, expected a number"},
     {"TextPosition",
      "<graphml><graph><node id=\"A\"><data key=\"x\">far</data><data key=\"y\">0</data></node>"
      "</graph></graphml>",
-     ": landmark A: x is \"far\", expected a finite number"},
-    {"UnknownEnd", "<graphml><graph><edge source=\"A\" target=\"B\"/></graph></graphml>",
-     ": route A - B: landmark A is unknown, expected a node"},
+     ":1: landmark A: x is \"far\", expected a finite number"},
+    {"UnknownEnd", "<graphml><graph>\n<edge source=\"A\" target=\"B\"/></graph></graphml>",
+     ":2: route A - B: landmark A is unknown, expected a node"},
+    {"MismatchedTags", "<graphml><graph>\n</graphml></graph>", ":2: no XML: mismatched tag"},
+    {"CutOff", kTwoNodes, ":4: no XML: no element found"},
+    {"BottomlessPit", nested(300000), ":1: elements are nested more than 100 deep"},
+    {"NotUtf8", "<graphml><graph><node id=\"\xff\"/></graph></graphml>",
+     ":1: no XML: not well-formed"},
+    {"DirectedEdge",
+     kTwoNodes + "<edge source=\"A\" target=\"B\" directed=\"true\"/></graph></graphml>",
+     ":4: route A - B: is directed, expected undirected edges"},
+    {"NegativeVariance",
+     "<graphml><graph><node id=\"A\"><data key=\"x\">0</data><data key=\"y\">0</data>"
+     "<data key=\"c_xx\">-1</data><data key=\"c_xy\">0</data><data key=\"c_yy\">1</data></node>"
+     "</graph></graphml>",
+     ":1: landmark A: c_xx, c_xy, c_yy are no covariance"},
 };
 
 INSTANTIATE_TEST_SUITE_P(EveryWay, BadMap, ::testing::ValuesIn(kBadMaps),

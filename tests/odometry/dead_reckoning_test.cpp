@@ -53,7 +53,7 @@ TEST(DeadReckoning, AnyCutComposesToTheWhole) {
 
 TEST(DeadReckoning, EachKindOfMotionIsOneArc) {
   const Drive drive = varied_drive(0.0);
-  const auto arcs = merge_rows(drive, rows_between(drive, 0.0, 8.0), {0.003, 0.003});
+  const auto arcs = merge_rows(drive, rows_between(drive, 0.0, 8.0), 0.34, {0.003, 0.003});
   ASSERT_EQ(arcs.size(), 4U);
   EXPECT_NEAR(arcs[2].travel.right, 2.4, 1e-12);
   EXPECT_NEAR(arcs[3].duration, 2.0, 1e-12);

@@ -4,7 +4,8 @@
 // Laying one set of points over another, to judge a map whose frame is arbitrary.
 //
 // Minimises sum |s R a_k + v - b_k|^2 over the rotation R, the translation v and, if wanted, the
-// scale s (Horn's closed form in the plane). Two points at least; all points equal is refused.
+// scale s (Horn's closed form in the plane). Two points at least. Where all points coincide the
+// angle is arbitrary (0) and there is no scale.
 #pragma once
 
 #include "trussmap/core/planar.hpp"

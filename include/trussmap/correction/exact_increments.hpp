@@ -4,13 +4,15 @@
 // The exact increment: recursive least squares in the language of the truss.
 //
 //   for each traversal with measured vector z and covariance C, first sight included:
-//     K += the bar's single-traversal stiffness B = C^-1
-//     K u = f,  f = B (z - (p_j - p_i)) on j and -f on i,  the first joint held
+//     K: the route's bar becomes stiffer by C^-1
+//     K u = f,  f = C^-1 (z - (p_j - p_i)) on j and -f on i,  the first joint held
 //     p += u
 //
-// After every traversal p is the least-squares map of all measurements so far (to first order:
-// covariances are not re-evaluated). K's factor is kept alive and changed by rank-2 updates; only
-// a joint that is new since the last solve makes it be built again.
+// After every traversal p is the least-squares map of all measurements so far. Or *pooled*, with C
+// the mean over the route's t traversals and the bar's stiffness t C^-1: for errors that grow with
+// the measured length, where measurements that came out short would otherwise count for more and
+// shrink the map; least squares to first order. K's factor is kept alive and changed by rank-2
+// updates; only a joint that is new since the last solve makes it be built again.
 #pragma once
 
 #include "trussmap/core/planar.hpp"
@@ -25,17 +27,26 @@ class ExactIncrements {
   /// Joint 0 is held. Each further joint comes with the bar that ties it.
   ExactIncrements() = default;
 
-  /// Joint `joints()` is tied to `i` by a bar that is free of force: nothing moves.
+  /// Joint `joints()` is tied to joint i. Bars are numbered in the order in which they come.
   void add_joint(int i, const Matrix2& stiffness);
 
-  /// Displacements of all joints when a bar i-j that wants to be longer by `misfit` = z - (p_j -
-  /// p_i) is built in. Throws std::invalid_argument on joints out of range.
-  [[nodiscard]] std::vector<Vector2> add_bar(int i, int j, const Matrix2& stiffness,
-                                             const Vector2& misfit);
+  /// Joins two joints. These, and `pull`, throw std::invalid_argument on joints out of range.
+  void add_bar(int i, int j, const Matrix2& stiffness);
+
+  [[nodiscard]] const Matrix2& stiffness(int bar) const;
+
+  /// Changes the stiffness of a bar; both the old and the new one are positive definite.
+  void set_stiffness(int bar, const Matrix2& stiffness);
+
+  /// Displacements of all joints under `force` on j and its opposite on i.
+  [[nodiscard]] std::vector<Vector2> pull(int i, int j, const Vector2& force);
 
   [[nodiscard]] int joints() const { return joints_; }
 
  private:
+  [[nodiscard]] bool factored() const { return factored_joints_ == joints_; }
+  void check(int i, int j) const;
+  void change_factor(const Bar& change);
   void factorise();
 
   int joints_ = 1;

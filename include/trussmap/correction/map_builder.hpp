@@ -48,6 +48,8 @@ struct MapBuilderOptions {
   Eta eta;
   double gain_limit = 0.5;  ///< of `elastic`: part of the desired change reached at most, (0, 1]
   bool refine = true;       ///< false: first sight only (a known route only updates its averages)
+  bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
+                            ///< traversal's own (exact_increments.hpp)
 };
 
 /// What an arrival did to the map.

@@ -17,8 +17,10 @@
 // Without a compass the heading is taken from the map on every leg between landmarks that it knows
 // (heading_reset.hpp). While the map is young that carries its errors along; therefore the
 // recordings are looked at `looks` times, each time building the map anew, with heading and gate
-// taken from the map of the look before. At the end an elastic map is settled in `settle` rounds
-// with falling gain (MapBuilder::settle).
+// taken from the map of the look before. A further session begins where it first sights a landmark
+// of the map; without a compass its heading there follows from the next landmarks of the map that
+// it meets. Sessions with a compass come first. At the end an elastic map is settled in `settle`
+// rounds with falling gain (MapBuilder::settle).
 #pragma once
 
 #include "trussmap/correction/map_builder.hpp"
@@ -63,7 +65,7 @@ struct RecordingMap {
   std::map<std::string, Vector2> dead_reckoned;
 };
 
-/// Builds one map from the sessions, in order. Throws InputError where a recording has no
+/// Builds one map from the sessions. Throws InputError where a recording has no
 /// sightings or there is no leg, SolveError where a session is tied to nothing.
 [[nodiscard]] RecordingMap map_recordings(const std::vector<Recording>& recordings,
                                           const Model& model,

@@ -13,9 +13,7 @@
 //   weighted_average  each route's own means; it has no positions
 //   elastic_printed   the paper's two phases as printed
 //   elastic           the same, gain limited
-//   gauss_markov      exact increments; a traversal's covariance is the robot's error law at the
-//                     route's mean stretch so far, not at its own: single short measurements would
-//                     otherwise look surer than they are and shrink the map
+//   gauss_markov      exact increments, covariances pooled per route
 //   adjustment        batch least squares on the routes' means
 //
 // Golfarelli, Maio & Rizzi (1998), section 4. A seed's walk and measurements are shared by all
@@ -48,15 +46,15 @@ struct TourOptions {
 };
 
 /// Mean over the seeds, and its standard error.
-struct Figure {
+struct SeedMean {
   double mean = 0.0;
   double standard_error = 0.0;
 };
 
 struct TourFigures {
-  Figure stretch_error;
-  Figure orientation_error;              ///< rad
-  std::optional<Figure> position_error;  ///< m, where the method has positions
+  SeedMean stretch_error;
+  SeedMean orientation_error;              ///< rad
+  std::optional<SeedMean> position_error;  ///< m, where the method has positions
 };
 
 using MethodFigures = std::map<std::string, TourFigures>;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Pose graphs as text: g2o's format, of which the plane's part, and TORO's.
+// Pose graphs as text: g2o's format, of which the plane's part, TORO's and iSAM's.
 //
 //   VERTEX_SE2   id x y theta                                pose                     m, rad
 //   VERTEX_XY    id x y                                      point                    m
@@ -11,6 +11,12 @@
 //   EDGE_POINTXY i j  dx dy  I11 I12 I22                     point to point, map frame
 //   VERTEX2      id x y theta                                TORO: pose
 //   EDGE2        i j  dx dy dtheta  I11 I12 I22 I33 I13 I23  TORO: pose to pose, j seen from i
+//
+//   ODOMETRY     i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  iSAM: pose to pose, information R'R
+//   EDGE2        i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  the same, in a file with LANDMARKs
+//   LANDMARK     i l  dx dy  R11 R12 R22                     iSAM: pose to point, robot's frame;
+//                                                            l counts landmarks apart from poses,
+//                                                            and becomes vertex (last pose) + 1 + l
 //
 // One element a line, in any order; blank lines and what follows a # are skipped. A file may have
 // no vertex lines at all: its vertices are then those that its edges name, without estimates. If

@@ -18,6 +18,8 @@
 #include "trussmap/odometry/arc.hpp"
 #include "trussmap/recording/recording.hpp"
 
+#include <limits>
+
 namespace trussmap {
 
 struct PoseEstimate {
@@ -44,19 +46,26 @@ struct LandmarkOffset {
 /// `range` and `range_relative` along, `bearing` across.
 [[nodiscard]] LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise);
 
-/// First heading of a recording in map axes: its first compass reading less the turn up to there
-/// (in fact up to `t`, before which nothing is needed). Without a compass: 0, exactly, which makes
-/// the first heading the map's +x direction.
-[[nodiscard]] HeadingEstimate initial_heading(const Drive& drive, double t, const Robot& robot,
-                                              const Noise& noise);
+/// A first heading, and the time of the compass reading that it rests on (without: -infinity).
+struct InitialHeading {
+  HeadingEstimate heading;
+  double reading_time = -std::numeric_limits<double>::infinity();  ///< s
+};
+
+/// Heading at time `t` in map axes: the first compass reading from there on, less the turn up to
+/// it. Without a compass: 0, exactly, which makes this heading the map's +x direction.
+[[nodiscard]] InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
+                                             const Noise& noise);
 
 /// The robot sees a landmark that is the origin: where the robot then is.
 [[nodiscard]] PoseEstimate pose_from_landmark(const HeadingEstimate& heading,
                                               const LandmarkOffset& landmark);
 
-/// The robot drives from time `from` to time `to`.
-[[nodiscard]] PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from,
-                                       double to, const Robot& robot, const Noise& noise);
+/// The robot drives from time `from` to time `to`. Compass readings up to `readings_used_until`
+/// are passed over: `start` knows them already.
+[[nodiscard]] PoseEstimate dead_reckon(
+    const PoseEstimate& start, const Drive& drive, double from, double to, const Robot& robot,
+    const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity());
 
 /// Position of a landmark that the robot at `pose` sees, with its covariance, both map axes.
 struct PositionEstimate {

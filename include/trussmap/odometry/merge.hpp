@@ -9,8 +9,8 @@
 //
 // A row joins the arc before it while it is the same kind of motion (forward, backward, turning on
 // the spot left or right, standing) and its q lies within 0.1 of the arc's, or within what wheel
-// noise explains. The rows' own displacements are not merged: their exact composition is what
-// odometry measured.
+// noise explains, and while the arc ends within 1 % of its length of where its rows end. The rows'
+// own displacements are not merged: their exact composition is what odometry measured.
 #pragma once
 
 #include "trussmap/effects/model.hpp"
@@ -42,7 +42,7 @@ struct DriveRow {
 
 /// The arcs of these rows, in order.
 [[nodiscard]] std::vector<DriveArc> merge_rows(const Drive& drive,
-                                               const std::vector<DriveRow>& rows,
+                                               const std::vector<DriveRow>& rows, double wheelbase,
                                                const WheelNoise& noise);
 
 }  // namespace trussmap

@@ -63,6 +63,9 @@ class SparseCholesky {
   /// Makes the factor that of A + W W' (n x k, few columns). The factor becomes simplicial LDL'.
   void update(const SparseMatrix& w);
 
+  /// The same for A - W W', which must be positive definite still.
+  void downdate(const SparseMatrix& w);
+
   /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
   [[nodiscard]] double reciprocal_condition() const;
 
@@ -70,6 +73,8 @@ class SparseCholesky {
   [[nodiscard]] double factor_nonzeros() const;
 
  private:
+  void change(bool add, const SparseMatrix& w);
+
   struct Cholmod;
   std::unique_ptr<Cholmod> cholmod_;
 };

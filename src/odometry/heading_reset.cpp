@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/correction/heading_reset.hpp"
+#include "trussmap/odometry/heading_reset.hpp"
 
 namespace trussmap {
 

@@ -1,0 +1,278 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap noise: how noisy each wheel is, from one path driven many times.
+#include "trussmap/calibration/geometry_errors.hpp"
+#include "trussmap/calibration/noise_checks.hpp"
+#include "trussmap/calibration/path.hpp"
+#include "trussmap/calibration/wheel_noise.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/io/runs_csv.hpp"
+#include "trussmap/report/calibration_figures.hpp"
+#include "trussmap/report/table.hpp"
+#include "trussmap/simulation/random_stream.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "option_checks.hpp"
+#include "tape_options.hpp"
+
+namespace trussmap::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+struct NoiseOptions {
+  std::string file;
+  std::string path = "10,-10";
+  std::vector<double> sensor_sd;  // m, m, rad
+  bool subtract_mean = false;
+  TapeOptions tape;
+};
+
+struct Result {
+  NoiseExperiment experiment;
+  EndErrors errors;
+  NoiseEstimate first_order;  // the paper's
+  NoiseEstimate exact;
+  NoiseEstimate estimate;  // the one in use: the paper's, unless the noise bends the path
+  NoiseFit fit;
+  std::vector<std::string> doubts;
+};
+
+/// The wheelbase is the corrected one: the model's errors of geometry are taken out already.
+NoiseExperiment make_experiment(const NoiseOptions& options, const Model& model) {
+  NoiseExperiment experiment;
+  try {
+    experiment.path = parse_path(options.path);
+    experiment.wheelbase = model.robot.wheelbase * geometry_errors(model).wheelbase_ratio;
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  for (std::size_t k = 0; k < options.sensor_sd.size(); ++k) {
+    experiment.sensor_sd[static_cast<Eigen::Index>(k)] = options.sensor_sd[k];
+  }
+  experiment.subtract_mean = options.subtract_mean;
+  return experiment;
+}
+
+/// How far off a run can end: the path, and half the wheelbase times what it turns besides.
+double longest_error(const NoiseExperiment& experiment) {
+  double longest = 0.0;
+  for (const PathPiece& piece : experiment.path) {
+    longest += std::abs(piece.distance) + 0.5 * experiment.wheelbase * std::abs(piece.turn);
+  }
+  return longest;
+}
+
+EndErrors simulated_errors(const NoiseOptions& options, const NoiseExperiment& experiment) {
+  std::mt19937_64 random = random_stream(options.tape.seed, Stream::wheels);
+  const TapeRobot robot = simulated_robot(options.tape, experiment.wheelbase);
+  EndErrors errors;
+  for (const Pose& end : drive_often(robot, experiment.path, options.tape.runs, random)) {
+    errors.push_back({end.x, end.y, end.heading});
+  }
+  return errors;
+}
+
+Result analyse(const NoiseOptions& options, const Model& model) {
+  Result result;
+  result.experiment = make_experiment(options, model);
+  result.errors = options.tape.simulate
+                      ? simulated_errors(options, result.experiment)
+                      : read_end_errors(options.file, longest_error(result.experiment));
+  result.first_order = estimate_wheel_noise(result.errors, result.experiment);
+  result.experiment.order = NoiseOrder::exact;
+  result.exact = estimate_wheel_noise(result.errors, result.experiment);
+  result.estimate = result.exact;
+  if (!check_noise(result.errors, result.experiment, result.exact).bends) {
+    result.estimate = result.first_order;
+    result.experiment.order = NoiseOrder::first;
+  }
+  result.fit = check_noise(result.errors, result.experiment, result.estimate);
+  result.doubts = noise_doubts(result.errors, result.experiment, result.estimate, result.fit);
+  return result;
+}
+
+ordered_json constants_json(const NoiseEstimate& e) {
+  return {{"k_left", e.left.k},
+          {"k_right", e.right.k},
+          {"sd_k_left", number_or_null(e.left.standard_error)},
+          {"sd_k_right", number_or_null(e.right.standard_error)},
+          {"upper95_k_left", e.left.upper_limit},
+          {"upper95_k_right", e.right.upper_limit},
+          {"k_left_squared", e.squared[0]},
+          {"k_right_squared", e.squared[1]},
+          {"sd_k_left_squared", std::sqrt(e.squared_covariance(0, 0))},
+          {"sd_k_right_squared", std::sqrt(e.squared_covariance(1, 1))}};
+}
+
+/// The figures in use; both kinds under `first_order` and `exact`.
+ordered_json json(const Result& result, const NoiseOptions& options) {
+  const NoiseEstimate& e = result.estimate;
+  ordered_json out = constants_json(e);
+  out["runs"] = e.runs;
+  out["first_order"] = constants_json(result.first_order);
+  out["exact"] = constants_json(result.exact);
+  ordered_json ellipses = ordered_json::array();
+  for (const EllipseCount& ellipse : result.fit.ellipses) {
+    ellipses.push_back({{"coordinates", ellipse.coordinates},
+                        {"inside", ellipse.inside},
+                        {"runs", ellipse.runs},
+                        {"p_value", ellipse.p_value}});
+  }
+  out.update({{"path", options.path},
+              {"wheelbase_m", result.experiment.wheelbase},
+              {"mean", {e.mean[0], e.mean[1], e.mean[2]}},
+              {"mean_p_value", number_or_null(e.mean_p_value)},
+              {"mean_subtracted", result.experiment.subtract_mean},
+              {"fit",
+               {{"good", result.fit.good},
+                {"bends", result.fit.bends},
+                {"distance_p_value", number_or_null(result.fit.distance_p_value)},
+                {"shape_p_value", number_or_null(result.fit.shape_p_value)},
+                {"ellipses", ellipses}}},
+              {"warnings", result.doubts}});
+  return out;
+}
+
+std::string constants_text(const Result& result) {
+  TextTable table{{Align::left, Align::right, Align::left, Align::left, Align::left}, {}, false, 2};
+  const double length = path_length(result.experiment.path);
+  const auto row = [&](const char* name, const WheelConstant& wheel) {
+    const auto cells = quantity_cells({1000.0 * wheel.k, 1000.0 * wheel.standard_error, 0.0});
+    const std::string meaning =
+        wheel.k > 0.0
+            ? fmt::format("{:.2f} mm after 1 m, {:.2f} mm after {:g} m", 1000.0 * wheel.k,
+                          1000.0 * wheel.k * std::sqrt(length), length)
+            : fmt::format("below {:.2g} with 95 % confidence", 1000.0 * wheel.upper_limit);
+    table.rows.push_back({name, cells[0], cells[1], "10^-3 m^1/2", meaning});
+  };
+  row("left wheel, k", result.estimate.left);
+  row("right wheel, k", result.estimate.right);
+  if (result.fit.bends) {
+    row("  left, first order", result.first_order.left);
+    row("  right, first order", result.first_order.right);
+  }
+  return "\n" + format_table(table);
+}
+
+std::string scatter_text(const Result& result) {
+  TextTable table;
+  table.columns = {Align::left, Align::right, Align::right, Align::right};
+  table.has_heading = true;
+  table.rows.push_back({"standard deviation", "x [mm]", "y [mm]", "heading [mrad]"});
+  const auto row = [&](const char* name, const Eigen::Vector3d& sd) {
+    table.rows.push_back({name, fmt::format("{:.2f}", 1000.0 * sd[0]),
+                          fmt::format("{:.2f}", 1000.0 * sd[1]),
+                          fmt::format("{:.2f}", 1000.0 * sd[2])});
+  };
+  row("of the runs", result.estimate.observed.diagonal().cwiseSqrt());
+  row("of the model", result.estimate.modelled.diagonal().cwiseSqrt());
+  row("mean of the runs", result.estimate.mean);
+  return "\n" + format_table(table);
+}
+
+std::string fit_text(const Result& result) {
+  TextTable table;
+  table.columns = {Align::left, Align::right, Align::right};
+  table.has_heading = true;
+  table.rows.push_back({"does the model fit", "", "p"});
+  for (const EllipseCount& ellipse : result.fit.ellipses) {
+    table.rows.push_back({"runs in the 95 % ellipse, " + ellipse.coordinates,
+                          fmt::format("{} of {}", ellipse.inside, ellipse.runs),
+                          probability_text(ellipse.p_value)});
+  }
+  table.rows.push_back(
+      {"distances as chi-square has them", "", probability_text(result.fit.distance_p_value)});
+  table.rows.push_back(
+      {"covariance as two wheels give it", "", probability_text(result.fit.shape_p_value)});
+  return "\n" + format_table(table);
+}
+
+std::string text(const Result& result) {
+  const std::string verdict =
+      fmt::format("the wheels' noise {} the end errors of {} runs\n",
+                  result.fit.good ? "explains" : "does not explain", result.estimate.runs);
+  return verdict + constants_text(result) + scatter_text(result) + fit_text(result) +
+         warnings_text(result.doubts);
+}
+
+void run_noise(const NoiseOptions& options) {
+  Model model = starting_model(options.tape);
+  const Result result = analyse(options, model);
+  std::vector<std::pair<fs::path, std::string>> files;
+  if (!options.tape.out.empty()) {
+    model.noise.left = result.estimate.left.k;
+    model.noise.right = result.estimate.right.k;
+    files.emplace_back(options.tape.out, format_model(model));
+  }
+  if (!options.tape.json.empty()) {
+    files.emplace_back(options.tape.json, json(result, options).dump(2) + "\n");
+  }
+  if (!options.tape.plots.empty()) {
+    files.emplace_back(fs::path(options.tape.plots) / "noise.svg",
+                       draw_figure(noise_figure(result.errors, result.estimate)));
+    fs::create_directories(options.tape.plots);
+  }
+  if (!options.tape.write.empty()) {
+    files.emplace_back(options.tape.write, format_end_errors(result.errors));
+  }
+  write_files(files);
+  fmt::print("{}", text(result));
+}
+
+constexpr const char* kFooter =
+    "RUNS.csv has the columns x,y,heading and a row per run: where the robot was measured to "
+    "stand\n"
+    "after the path minus where its odometry had it; x [m] ahead at the start, y [m] to the left,\n"
+    "heading [rad] counter-clockwise.\n\n"
+    "PATH: pieces in the order driven, separated by commas. 10 is a straight drive of 10 m, -10 "
+    "one\n"
+    "backwards, a90 a turn on the spot by 90 degrees counter-clockwise, 3@45 an arc of 3 m that\n"
+    "turns by 45 degrees. Quote it: --path \"10,-10\".\n\n"
+    "The variance of a wheel's travel is k^2 times the travel. Correct systematic errors first\n"
+    "(umbmark), or leave them out with --subtract-mean.";
+
+}  // namespace
+
+void setup_noise(CLI::App& app) {
+  auto options = std::make_shared<NoiseOptions>();
+  options->tape.runs = 60;
+  CLI::App* command = app.add_subcommand(
+      "noise",
+      "Measure how noisy each wheel is: one path driven many times, k of both wheels by maximum "
+      "likelihood (Chong & Kleeman 1997).");
+  command->add_option("RUNS", options->file, "End errors of the runs (CSV)")->type_name("FILE");
+  command->add_option("--path", options->path, "Path driven in every run")
+      ->type_name("PATH")
+      ->capture_default_str();
+  command
+      ->add_option("--sensor-sd", options->sensor_sd,
+                   "Noise of the measured ends, standard deviations x,y,heading [m, m, rad]; "
+                   "0,0,0 if left out")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(zero_or_more())
+      ->type_name("X,Y,HEADING");
+  command->add_flag("--subtract-mean", options->subtract_mean,
+                    "Take the mean of the runs as a systematic error, not as noise");
+  add_tape_options(*command, options->tape);
+  command->footer(kFooter);
+  command->callback([options, command] {
+    check_source(*command, !options->file.empty());
+    run_noise(*options);
+  });
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "tape_options.hpp"
+
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "commands.hpp"
+#include "option_checks.hpp"
+
+namespace trussmap::app {
+
+CLI::Validator zero_or_more() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = read.ec == std::errc{} && read.ptr == text.data() + text.size();
+    return whole && std::isfinite(value) && value >= 0.0
+               ? ""
+               : "'" + text + "' is not a number of 0 or more";
+  };
+  return {check, ""};
+}
+
+void add_tape_options(CLI::App& command, TapeOptions& options) {
+  command
+      .add_option("--wheelbase", options.wheelbase,
+                  "Distance of the wheels that the robot calculates with [m]; may be left out with "
+                  "--model, which has it, and with --simulate (0.34 then)")
+      ->check(above_zero());
+  command.add_option("--model", options.model, "Model to start from (TOML)")->type_name("FILE");
+  command.add_option("--out", options.out, "Write the model with what was found (TOML)")
+      ->type_name("FILE");
+  command.add_option("--json", options.json, "Write every figure as JSON")->type_name("FILE");
+  command.add_option("--plots", options.plots, "Folder to write the picture to (SVG)")
+      ->type_name("DIR");
+
+  const std::string group = "Rehearsal with a simulated robot";
+  command.add_flag("--simulate", options.simulate, "Let a simulated robot make the runs")
+      ->group(group);
+  const auto add = [&](const char* name, double& value, const CLI::Validator& check,
+                       const char* help) {
+    command.add_option(name, value, help)->check(check)->capture_default_str()->group(group);
+  };
+  add("--true-E-d", options.true_e_d, above_zero(), "Its right wheel over its left");
+  add("--true-E-b", options.true_e_b, above_zero(), "Its true wheelbase over the nominal one");
+  add("--true-k-left", options.true_k_left, zero_or_more(), "Noise of its left wheel [m^1/2]");
+  add("--true-k-right", options.true_k_right, zero_or_more(), "Noise of its right wheel [m^1/2]");
+  add("--scatter", options.scatter, zero_or_more(),
+      "Error of a measured end position [m, standard deviation per coordinate]");
+  add("--scatter-heading", options.scatter_heading, zero_or_more(),
+      "Error of a measured end heading [rad, standard deviation]");
+  command.add_option("--runs", options.runs, "Number of runs; of umbmark, in each direction")
+      ->check(whole_number(2))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--seed", options.seed, "The same seed gives the same runs")
+      ->check(whole_number(0))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--write", options.write, "Write the runs as CSV")
+      ->type_name("FILE")
+      ->group(group);
+}
+
+void check_source(const CLI::App& command, bool has_files) {
+  const bool simulate = command.count("--simulate") > 0;
+  if (simulate && has_files) {
+    throw UsageError("both RUNS.csv and --simulate are given, expected one of them");
+  }
+  if (!simulate && !has_files) throw UsageError("no runs, expected RUNS.csv or --simulate");
+  if (simulate) return;
+  for (const CLI::Option* option : command.get_options()) {
+    const bool rehearsal = option->get_group().rfind("Rehearsal", 0) == 0;
+    if (rehearsal && option->count() > 0) {
+      throw UsageError(option->get_name() + " is given without --simulate, to which it belongs");
+    }
+  }
+}
+
+Model starting_model(const TapeOptions& options) {
+  Model model;
+  if (!options.model.empty()) {
+    model = read_model(options.model);
+    if (options.wheelbase && *options.wheelbase != model.robot.wheelbase) {
+      throw UsageError("--wheelbase is not the wheelbase of " + options.model +
+                       ", expected one of them, or the same");
+    }
+  } else if (options.wheelbase) {
+    model.robot.wheelbase = *options.wheelbase;
+  } else if (!options.simulate) {
+    throw UsageError("the wheelbase is missing, expected --wheelbase METRES or --model FILE");
+  }
+  return model;
+}
+
+TapeRobot simulated_robot(const TapeOptions& options, double wheelbase) {
+  TapeRobot robot = misbuilt_robot(wheelbase, options.true_e_d, options.true_e_b);
+  robot.left_noise = options.true_k_left;
+  robot.right_noise = options.true_k_right;
+  robot.tape_sd = options.scatter;
+  robot.tape_heading_sd = options.scatter_heading;
+  return robot;
+}
+
+std::vector<std::string> quantity_cells(const Estimate& estimate) {
+  const QuantityText text = quantity_text(estimate.value, estimate.standard_error);
+  return {text.value, text.error.empty() ? "" : "\u00b1 " + text.error};
+}
+
+nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+std::string warnings_text(const std::vector<std::string>& warnings) {
+  std::string text = warnings.empty() ? "" : "\n";
+  for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace trussmap::app

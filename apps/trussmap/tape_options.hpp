@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What the calibrations with a tape measure have in common: the model they start from, the robot
+// that rehearses them, and files written together.
+#pragma once
+
+#include "trussmap/calibration/estimate.hpp"
+#include "trussmap/effects/model.hpp"
+#include "trussmap/simulation/tape_robot.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+
+struct TapeOptions {
+  std::string model;
+  std::optional<double> wheelbase;  // m
+  std::string out;
+  std::string json;
+  std::string plots;
+  bool simulate = false;
+  double true_e_d = 1.0;
+  double true_e_b = 1.0;
+  double true_k_left = 0.0;      // m^1/2
+  double true_k_right = 0.0;     // m^1/2
+  double scatter = 0.0;          // m
+  double scatter_heading = 0.0;  // rad
+  int runs = 5;
+  std::uint64_t seed = 1;
+  std::string write;
+};
+
+void add_tape_options(CLI::App& command, TapeOptions& options);
+
+/// Refuses neither or both of runs and --simulate, and options that go with --simulate alone.
+void check_source(const CLI::App& command, bool has_files);
+
+/// The model given, or one with the wheelbase alone. Throws UsageError without either.
+[[nodiscard]] Model starting_model(const TapeOptions& options);
+
+/// The robot to rehearse with.
+[[nodiscard]] TapeRobot simulated_robot(const TapeOptions& options, double wheelbase);
+
+/// A number above 0.
+[[nodiscard]] CLI::Validator zero_or_more();
+
+/// Cells of a table: value, "±", standard error, unit.
+[[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
+
+/// null where there is none.
+[[nodiscard]] nlohmann::ordered_json number_or_null(double value);
+
+/// "warning: ..." lines.
+[[nodiscard]] std::string warnings_text(const std::vector<std::string>& warnings);
+
+}  // namespace trussmap::app

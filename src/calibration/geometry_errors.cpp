@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/calibration/geometry_errors.hpp"
+
+#include "trussmap/odometry/arc.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace trussmap {
+namespace {
+
+constexpr const char* kRatio = "wheel diameter ratio";
+constexpr const char* kWheelbase = "wheelbase";
+
+/// sin(x)/x and its derivative.
+struct Sinc {
+  explicit Sinc(double x) {
+    if (std::abs(x) < 1e-3) {  // the next terms are below 1e-16
+      const double x2 = x * x;
+      value = 1.0 - x2 / 6.0 + x2 * x2 / 120.0;
+      slope = x * (-1.0 / 3.0 + x2 / 30.0);
+    } else {
+      value = std::sin(x) / x;
+      slope = (std::cos(x) - value) / x;
+    }
+  }
+  double value;
+  double slope;
+};
+
+double coefficient(const Effect& effect, const char* channel) {
+  if (effect.channel.empty() && effect.shape.empty()) {  // a catalogue name alone
+    return effect.coefficients.empty() ? 0.0 : effect.coefficients.front();
+  }
+  if (effect.channel != channel || effect.shape.size() != 1 || effect.shape.front() != "1" ||
+      effect.per_session) {
+    throw std::invalid_argument("effect \"" + effect.name + "\" is not channel \"" + channel +
+                                "\" with shape [\"1\"], expected that or another name");
+  }
+  return effect.coefficients.empty() ? 0.0 : effect.coefficients.front();
+}
+
+void set_effect(Model& model, const char* name, const char* channel, double value) {
+  const Effect effect{name, channel, {"1"}, {value}, false};
+  const auto same = [&](const Effect& one) { return one.name == name; };
+  const auto found = std::find_if(model.effects.begin(), model.effects.end(), same);
+  if (found == model.effects.end()) {
+    model.effects.push_back(effect);
+  } else {
+    *found = effect;
+  }
+}
+
+}  // namespace
+
+GeometryErrors combined(const GeometryErrors& in_force, const GeometryErrors& found) {
+  return {in_force.diameter_ratio * found.diameter_ratio,
+          in_force.wheelbase_ratio * found.wheelbase_ratio};
+}
+
+GeometryErrors geometry_errors(const Model& model) {
+  GeometryErrors errors;
+  for (const Effect& effect : model.effects) {
+    if (effect.name == kRatio) {
+      const double g = coefficient(effect, "difference");
+      if (std::abs(g) >= 2.0) {
+        throw std::invalid_argument(
+            "effect \"wheel diameter ratio\" has a coefficient of 2 or "
+            "more, expected one near 0");
+      }
+      errors.diameter_ratio = (1.0 + g / 2.0) / (1.0 - g / 2.0);
+    } else if (effect.name == kWheelbase) {
+      const double g = coefficient(effect, "turn");
+      if (g <= -1.0) {
+        throw std::invalid_argument(
+            "effect \"wheelbase\" has a coefficient of -1 or less, "
+            "expected one near 0");
+      }
+      errors.wheelbase_ratio = 1.0 / (1.0 + g);
+    }
+  }
+  return errors;
+}
+
+void set_geometry_errors(Model& model, const GeometryErrors& errors) {
+  const double e_d = errors.diameter_ratio;
+  set_effect(model, kRatio, "difference", 2.0 * (e_d - 1.0) / (e_d + 1.0));
+  set_effect(model, kWheelbase, "turn", 1.0 / errors.wheelbase_ratio - 1.0);
+}
+
+PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {
+  using Row2 = Eigen::RowVector2d;
+  const double b = wheelbase * errors.wheelbase_ratio;
+  const double c_left = errors.left_factor();
+  const double c_right = errors.right_factor();
+  const double slope = 2.0 / std::pow(errors.diameter_ratio + 1.0, 2);  // dc_R/dE_d = -dc_L/dE_d
+  Pose calculated;
+  Pose actual;
+  PathError result;
+  Row2 dx = Row2::Zero();
+  Row2 dy = Row2::Zero();
+  Row2 dheading = Row2::Zero();
+  for (const PathPiece& piece : path) {
+    const double left = piece.distance - 0.5 * wheelbase * piece.turn;
+    const double right = piece.distance + 0.5 * wheelbase * piece.turn;
+    calculated = compose(calculated, arc_displacement({left, right}, wheelbase));
+
+    const double distance = 0.5 * (c_left * left + c_right * right);
+    const double turn = (c_right * right - c_left * left) / b;
+    const Row2 ddistance(0.5 * slope * (right - left), 0.0);
+    const Row2 dturn(slope * (left + right) / b, -turn / errors.wheelbase_ratio);
+    const Sinc sinc(0.5 * turn);
+    const double chord = distance * sinc.value;
+    const Row2 dchord = ddistance * sinc.value + 0.5 * distance * sinc.slope * dturn;
+    const double middle = actual.heading + 0.5 * turn;
+    const Row2 dmiddle = dheading + 0.5 * dturn;
+    actual.x += chord * std::cos(middle);
+    actual.y += chord * std::sin(middle);
+    actual.heading += turn;
+    dx += dchord * std::cos(middle) - chord * std::sin(middle) * dmiddle;
+    dy += dchord * std::sin(middle) + chord * std::cos(middle) * dmiddle;
+    dheading += dturn;
+  }
+  result.error = {actual.x - calculated.x, actual.y - calculated.y,
+                  actual.heading - calculated.heading};
+  result.jacobian << dx, dy, dheading;
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/calibration/square_checks.hpp"
+
+#include "trussmap/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/QR>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/minima.hpp>
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using Eigen::Vector2d;
+
+struct Residual {
+  Eigen::Vector4d left = Eigen::Vector4d::Zero();  // cw x, y, ccw x, y
+  Eigen::Matrix<double, 4, 2> jacobian;
+};
+
+Residual residual_of(const SquareClusters& clusters, const SquareSetup& setup) {
+  const GeometryErrors errors = solve_square(clusters, setup).errors();
+  const PathError cw = path_error(square_path(setup.side, Direction::cw), setup.wheelbase, errors);
+  const PathError ccw =
+      path_error(square_path(setup.side, Direction::ccw), setup.wheelbase, errors);
+  Residual result;
+  result.left << clusters.cw.mean - cw.error.head<2>(), clusters.ccw.mean - ccw.error.head<2>();
+  result.jacobian << cw.jacobian.topRows<2>(), ccw.jacobian.topRows<2>();
+  return result;
+}
+
+double two_sided_p(const Estimate& estimate) {
+  if (estimate.dof <= 0.0) return std::numeric_limits<double>::quiet_NaN();
+  const boost::math::students_t_distribution<double> student(estimate.dof);
+  const double t = std::abs(estimate.value) / estimate.standard_error;
+  return 2.0 * boost::math::cdf(boost::math::complement(student, t));
+}
+
+/// Smaller of the p-values of the two contrasts that no E_d and E_b can change, times two.
+double contradiction_p(const Residual& residual, const SquareClusters& clusters) {
+  const Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>> qr(residual.jacobian);
+  const Eigen::Matrix4d q = qr.householderQ();
+  double smallest = 1.0;
+  for (int k = 2; k < 4; ++k) {
+    const Eigen::Vector4d contrast = q.col(k);
+    const double p = two_sided_p(welch_estimate(contrast.dot(residual.left), contrast.head<2>(),
+                                                clusters.cw, contrast.tail<2>(), clusters.ccw));
+    if (std::isnan(p)) return p;
+    smallest = std::min(smallest, p);
+  }
+  return std::min(1.0, 2.0 * smallest);
+}
+
+SquareClusters exchanged(const SquareClusters& clusters) {
+  SquareClusters result = clusters;
+  std::swap(result.cw, result.ccw);
+  return result;
+}
+
+double end_error(const GeometryErrors& errors, const SquareSetup& setup, Direction direction) {
+  const TestPath path = square_path(setup.side, direction);
+  return path_error(path, setup.wheelbase, errors).error.head<2>().norm();
+}
+
+}  // namespace
+
+SquareConsistency square_consistency(const SquareClusters& clusters, const SquareSetup& setup) {
+  const Residual given = residual_of(clusters, setup);
+  SquareConsistency result;
+  result.residual = given.left.norm() / 2.0;
+  try {
+    result.residual_exchanged = residual_of(exchanged(clusters), setup).left.norm() / 2.0;
+  } catch (const SolveError&) {
+    result.residual_exchanged = std::numeric_limits<double>::infinity();
+  }
+  result.p_value = contradiction_p(given, clusters);
+  return result;
+}
+
+std::vector<std::string> square_doubts(const SquareClusters& clusters, const SquareSetup& setup) {
+  constexpr double kSureContradiction = 1e-3;
+  constexpr double kClearlyBetter = 0.3;  // residual after / before exchanging the labels
+  constexpr double kSuspectShare = 0.25;  // of the side: no wheeled robot is that far off
+  constexpr double kRoomSize = 100.0;     // m
+  std::vector<std::string> doubts;
+  const double largest = clusters.largest_offset.value;
+  if (!(clusters.sem > 0.0)) {
+    doubts.push_back(
+        "all runs of each direction are equal, so that no standard errors can be "
+        "stated; expected separate drives, each measured anew");
+  }
+  if (setup.side > kRoomSize) {
+    doubts.push_back(fmt::format("a side of {:g} m is unusual; --side is in metres", setup.side));
+  }
+  if (setup.wheelbase >= setup.side) {
+    doubts.push_back(
+        fmt::format("a wheelbase of {:g} m is not less than the side of {:g} m; both "
+                    "are in metres",
+                    setup.wheelbase, setup.side));
+  }
+  if (largest > kSuspectShare * setup.side) {
+    doubts.push_back(
+        fmt::format("a centre of gravity is {:.3g} m off after a square of {:g} m; x "
+                    "and y are in metres, absolute - calculated",
+                    largest, setup.side));
+  }
+  const SquareConsistency consistency = square_consistency(clusters, setup);
+  const bool contradicts = std::isnan(consistency.p_value)
+                               ? consistency.residual > 0.1 * largest
+                               : consistency.p_value < kSureContradiction;
+  if (!contradicts) return doubts;
+  if (consistency.residual_exchanged < kClearlyBetter * consistency.residual) {
+    doubts.push_back(fmt::format(
+        "x and y contradict each other (the fit misses the centres by {:.2g} m), and would not "
+        "({:.2g} m) if the labels cw and ccw were exchanged, or y had the other sign; expected ccw "
+        "= turning left, and y to the left of the first leg",
+        consistency.residual, consistency.residual_exchanged));
+  } else if (consistency.residual > 0.1 * largest) {
+    doubts.push_back(fmt::format(
+        "E_d and E_b alone do not explain the runs: the fit misses the centres by {:.2g} m; check "
+        "the start heading, the side and how the end positions were measured",
+        consistency.residual));
+  }
+  return doubts;
+}
+
+OneWayTuning tune_one_way(const GeometryErrors& errors, const SquareSetup& setup,
+                          Direction driven) {
+  constexpr double kReach = 0.3;  // of the ratio that makes every turn a quarter turn
+  constexpr int kBits = 40;
+  const auto tuned_error = [&](double ratio, Direction direction) {
+    // The robot calculates with the tuned wheelbase; its geometry is off by what that leaves.
+    return end_error({errors.diameter_ratio, errors.wheelbase_ratio / ratio},
+                     {setup.side, setup.wheelbase * ratio}, direction);
+  };
+  const double ratio =
+      boost::math::tools::brent_find_minima([&](double at) { return tuned_error(at, driven); },
+                                            errors.wheelbase_ratio * (1.0 - kReach),
+                                            errors.wheelbase_ratio * (1.0 + kReach), kBits)
+          .first;
+  const Direction other = driven == Direction::cw ? Direction::ccw : Direction::cw;
+  OneWayTuning result;
+  result.wheelbase_ratio = ratio;
+  result.error_before = end_error(errors, setup, driven);
+  result.error_same_way = tuned_error(ratio, driven);
+  result.error_other_way = tuned_error(ratio, other);
+  return result;
+}
+
+}  // namespace trussmap

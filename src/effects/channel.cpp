@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/effects/channel.hpp"
+
+#include <algorithm>
+
+namespace trussmap {
+
+const std::vector<ChannelFacts>& channels() {
+  using enum Channel;
+  static const std::vector<ChannelFacts> all{
+      {travel, "travel", "", 0.1, "forward travel"},
+      {left, "left", "", 0.1, "travel of the left wheel"},
+      {right, "right", "", 0.1, "travel of the right wheel"},
+      {wheels, "wheels", "", 0.1, "travel of both wheels"},
+      {difference, "difference", "", 0.1, "right wheel's travel over left's"},
+      {turn, "turn", "", 0.1, "rotation"},
+      {drift, "drift", "rad/s", 0.01, "rotation with time"},
+      {advance, "advance", "m", 0.02, "travel per event"},
+      {rotate, "rotate", "rad", 0.05, "rotation per event"},
+      {creep, "creep", "", 0.1, "slip to the left, per travel"},
+      {lever, "lever", "m", 0.3, "sensor's place ahead of the axle"},
+      {lever_left, "lever_left", "m", 0.3, "sensor's place to the axle's left"},
+      {compass, "compass", "rad", 0.5, "compass reading"},
+      {range, "range", "m", 0.3, "range reading"},
+      {range_scale, "range_scale", "", 0.1, "range reading, in proportion"},
+      {bearing, "bearing", "rad", 0.5, "bearing reading"},
+      {delay, "delay", "s", 0.5, "time stamp of sightings and truth"}};
+  return all;
+}
+
+const ChannelFacts& facts_of(Channel channel) {
+  return *std::find_if(channels().begin(), channels().end(),
+                       [channel](const ChannelFacts& one) { return one.channel == channel; });
+}
+
+std::optional<Channel> parse_channel(std::string_view name) {
+  for (const ChannelFacts& one : channels()) {
+    if (one.name == name) return one.channel;
+  }
+  return std::nullopt;
+}
+
+std::string channel_names() {
+  std::string text;
+  for (const ChannelFacts& one : channels()) {
+    text += (text.empty() ? "" : ", ") + std::string(one.name);
+  }
+  return text;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/effects/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+namespace trussmap {
+namespace {
+
+double sign(double value) {
+  return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
+}
+
+[[noreturn]] void refuse(const std::string& expression, const std::string& why) {
+  throw std::invalid_argument(fmt::format("shape \"{}\" {}", expression, why));
+}
+
+/// A parser that knows our functions and no others, with the expression set.
+mu::Parser parser_of(const std::string& expression) {
+  mu::Parser parser;
+  parser.ClearFun();
+  parser.ClearConst();
+  const auto define = [&parser](const char* name, double (*function)(double)) {
+    parser.DefineFun(name, function);
+  };
+  define("sin", [](double v) { return std::sin(v); });
+  define("cos", [](double v) { return std::cos(v); });
+  define("tan", [](double v) { return std::tan(v); });
+  define("abs", [](double v) { return std::abs(v); });
+  define("exp", [](double v) { return std::exp(v); });
+  define("log", [](double v) { return std::log(v); });
+  define("sqrt", [](double v) { return std::sqrt(v); });
+  define("sign", sign);
+  const auto define_list = [&parser](const char* name, double (*function)(const double*, int)) {
+    parser.DefineFun(name, function);
+  };
+  define_list("min", [](const double* v, int count) { return *std::min_element(v, v + count); });
+  define_list("max", [](const double* v, int count) { return *std::max_element(v, v + count); });
+  parser.SetExpr(expression);
+  return parser;
+}
+
+std::string reason(const mu::Parser::exception_type& error) {
+  std::string text = error.GetMsg();
+  while (!text.empty() && (text.back() == '.' || text.back() == '\n')) text.pop_back();
+  return "cannot be read: " + text + ", expected + - * / ^ ( ), numbers, variables, and sin cos " +
+         "tan abs sign min max exp log sqrt";
+}
+
+std::string list(const RowVariables& variables) {
+  std::string text;
+  for (const auto& [name, values] : variables) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> variables_of(const std::string& expression) {
+  try {
+    mu::Parser parser = parser_of(expression);
+    std::vector<std::string> names;
+    for (const auto& [name, address] : parser.GetUsedVar()) names.push_back(name);
+    return names;
+  } catch (const mu::Parser::exception_type& error) {
+    refuse(expression, reason(error));
+  }
+}
+
+std::vector<double> evaluate_shape(const std::string& expression, const RowVariables& variables) {
+  const std::vector<std::string> names = variables_of(expression);
+  std::vector<const std::vector<double>*> columns;
+  std::vector<double> present(names.size());
+  std::size_t rows = variables.empty() ? 0 : variables.begin()->second.size();
+  std::vector<double> result;
+  result.reserve(rows);
+  try {
+    mu::Parser parser = parser_of(expression);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto found = variables.find(names[k]);
+      if (found == variables.end()) {
+        refuse(expression, fmt::format("names \"{}\", which is unknown, expected one of {}",
+                                       names[k], list(variables)));
+      }
+      columns.push_back(&found->second);
+      parser.DefineVar(names[k], &present[k]);
+    }
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t k = 0; k < names.size(); ++k) present[k] = (*columns[k])[row];
+      const double value = parser.Eval();
+      if (!std::isfinite(value)) {
+        std::string where;
+        for (std::size_t k = 0; k < names.size(); ++k) {
+          where += fmt::format("{}{} = {:g}", k == 0 ? "" : ", ", names[k], present[k]);
+        }
+        refuse(expression, fmt::format("has no finite value in row {} of the drive ({}), expected "
+                                       "one in every row",
+                                       row + 1, where));
+      }
+      result.push_back(value);
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    refuse(expression, reason(error));
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "number_rows.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/io/atomic_file.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <system_error>
+
+namespace trussmap {
+
+std::vector<std::vector<double>> read_number_rows(const std::filesystem::path& file,
+                                                  std::size_t columns,
+                                                  std::string_view separators) {
+  const std::string text = read_file(file);
+  std::vector<std::vector<double>> rows;
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view content = std::string_view(text).substr(at, end - at);
+    at = end + 1;
+    ++line;
+    std::vector<double> row;
+    for (std::size_t k = content.find_first_not_of(separators);
+         k != std::string_view::npos && content[k] != '#';) {
+      const std::size_t stop = std::min(content.find_first_of(separators, k), content.size());
+      const std::string_view word = content.substr(k, stop - k);
+      double value = 0.0;
+      const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
+        throw InputError(file.string(), line,
+                         "\"" + std::string(word) + "\", expected a finite number");
+      }
+      row.push_back(value);
+      k = content.find_first_not_of(separators, stop);
+    }
+    if (row.empty()) continue;
+    if (row.size() != columns) {
+      throw InputError(
+          file.string(), line,
+          std::to_string(row.size()) + " numbers, expected " + std::to_string(columns));
+    }
+    rows.push_back(std::move(row));
+  }
+  if (rows.empty()) throw InputError(file.string(), 0, "no rows, expected some");
+  return rows;
+}
+
+std::filesystem::path plain_or_xz(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path;
+  std::filesystem::path compressed = path;
+  compressed += ".xz";
+  if (std::filesystem::exists(compressed, ignored)) return compressed;
+  return {};
+}
+
+}  // namespace trussmap

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/optiodom.hpp"
+
+#include "trussmap/core/error.hpp"
+#include "trussmap/core/planar.hpp"
+#include "trussmap/io/atomic_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "number_rows.hpp"
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kWheelbase = 0.20;       // m
+constexpr double kWheelDiameter = 0.084;  // m
+
+/// The run's name without its endings, "SET_run-NN"; empty if it is none.
+std::string run_of(const fs::path& file) {
+  std::string name = file.filename().string();
+  if (name.ends_with(".xz")) name.resize(name.size() - 3);
+  if (!name.ends_with(".csv")) return {};
+  name.resize(name.size() - 4);
+  const std::size_t at = name.rfind("_run-");
+  const bool numbered = at != std::string::npos && name.size() > at + 5 &&
+                        name.find_first_not_of("0123456789", at + 5) == std::string::npos;
+  return numbered ? name : std::string();
+}
+
+/// First value of each key.
+std::map<std::string, std::string> read_metadata(const fs::path& file) {
+  if (plain_or_xz(file).empty()) {
+    throw InputError(file.string(), 0, "is missing, expected the set's metadata beside the run");
+  }
+  std::map<std::string, std::string> values;
+  std::istringstream lines(read_file(plain_or_xz(file)));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t comma = line.find(',');
+    if (comma == std::string::npos) continue;
+    const std::size_t end = line.find_first_of(",\r", comma + 1);
+    values[line.substr(0, comma)] = line.substr(comma + 1, end - comma - 1);
+  }
+  return values;
+}
+
+double positive_number(const std::map<std::string, std::string>& metadata, const char* key,
+                       const fs::path& file) {
+  const auto found = metadata.find(key);
+  const std::string text = found == metadata.end() ? std::string() : found->second;
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status != std::errc() || end != text.data() + text.size() || !(value > 0.0) ||
+      !std::isfinite(value)) {
+    throw InputError(file.string(), 0,
+                     std::string(key) + " is \"" + text + "\", expected a positive number");
+  }
+  return value;
+}
+
+/// Encoders of 0.1 mm a tick, a motion capture of about a millimetre; the wheels' noise is that of
+/// the best runs, to start from: calibrate finds its own.
+Model nominal_model() {
+  Model model;
+  model.robot.wheelbase = kWheelbase;
+  model.noise.left = model.noise.right = 0.002;
+  model.noise.truth = 0.001;
+  model.noise.truth_heading = 0.005;
+  return model;
+}
+
+}  // namespace
+
+bool is_optiodom(const fs::path& file) {
+  return !run_of(file).empty();
+}
+
+OptiOdomRecording read_optiodom(const fs::path& file) {
+  const std::string run = run_of(file);
+  if (run.empty()) throw InputError(file.string(), 0, "is no run, expected ..._run-NN.csv[.xz]");
+  const fs::path about = file.parent_path() / (run.substr(0, run.rfind("_run-")) + "_metadata.csv");
+  const auto metadata = read_metadata(about);
+  const auto type = metadata.find("type");
+  if (type == metadata.end() || type->second != "diff") {
+    throw InputError(about.string(), 0,
+                     "the robot's type is \"" +
+                         (type == metadata.end() ? std::string() : type->second) +
+                         "\", expected diff (two driven wheels)");
+  }
+  OptiOdomRecording result;
+  result.model = nominal_model();
+  result.metre_per_tick =
+      std::numbers::pi * kWheelDiameter /
+      (positive_number(metadata, "ngear", about) * positive_number(metadata, "encRes", about));
+  Recording& recording = result.recording;
+  recording.name = file.string();
+  double before = -INFINITY;
+  for (const std::vector<double>& row : read_number_rows(file, 6, kCommas)) {
+    if (!(row[0] > before)) {
+      throw InputError(file.string(), recording.drive.rows() + 1,
+                       "time runs backwards, expected rows in order of time");
+    }
+    before = row[0];
+    recording.truth.push_back({row[0], row[1], row[2], wrap_angle(row[3])});
+    recording.drive.t.push_back(row[0]);
+    recording.drive.right.push_back(row[4] * result.metre_per_tick);
+    recording.drive.left.push_back(row[5] * result.metre_per_tick);
+  }
+  if (recording.drive.rows() < 2) {
+    throw InputError(file.string(), 0, "fewer than two rows, expected a drive");
+  }
+  return result;
+}
+
+}  // namespace trussmap

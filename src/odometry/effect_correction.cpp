@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/odometry/effect_correction.hpp"
+
+#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/effects/corrected_recording.hpp"
+
+namespace trussmap {
+namespace {
+
+Pose start_pose(const Drive& drive, const Model& model) {
+  Pose pose;
+  pose.heading = initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
+  return pose;
+}
+
+}  // namespace
+
+std::vector<Pose> row_path(const Drive& drive, const Model& model) {
+  const InitialHeading first = initial_heading(drive, drive.start(), model.robot, model.noise);
+  PoseEstimate at;
+  at.pose.heading = first.heading.heading;
+  at.covariance(2, 2) = first.heading.variance;
+  std::vector<Pose> path;
+  path.reserve(drive.rows());
+  double before = drive.start();
+  for (const double t : drive.t) {
+    at = dead_reckon(at, drive, before, t, model.robot, model.noise, first.reading_time);
+    before = t;
+    path.push_back(at.pose);
+  }
+  return path;
+}
+
+std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
+                                       const Model& model) {
+  Model spelt_out = model;
+  for (Effect& effect : spelt_out.effects) effect = resolved(effect);
+  std::vector<Recording> result;
+  for (const Recording& recording : recordings) {
+    const int session = static_cast<int>(result.size());
+    Recording corrected = recording;
+    for (int pass = 0; pass < 2; ++pass) {
+      const std::vector<Pose> path = row_path(corrected.drive, model);
+      corrected =
+          corrected_recording(recording, spelt_out,
+                              row_variables(recording.drive, model.robot.wheelbase,
+                                            start_pose(corrected.drive, model), path, session),
+                              session);
+    }
+    result.push_back(std::move(corrected));
+  }
+  return result;
+}
+
+}  // namespace trussmap

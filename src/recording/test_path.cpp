@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/recording/test_path.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace trussmap {
+
+TestPath square_path(double side, Direction direction) {
+  const double quarter = direction == Direction::ccw ? std::numbers::pi / 2 : -std::numbers::pi / 2;
+  TestPath path;
+  for (int leg = 0; leg < 4; ++leg) {
+    path.push_back({side, 0.0});
+    path.push_back({0.0, quarter});
+  }
+  return path;
+}
+
+double path_length(const TestPath& path) {
+  double length = 0.0;
+  for (const PathPiece& piece : path) length += std::abs(piece.distance);
+  return length;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,226 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap umbmark and trussmap noise as a user meets them.
+#include "trussmap/calibration/geometry_errors.hpp"
+#include "trussmap/io/model_toml.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch_folder.hpp"
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+using testing::Ran;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+
+json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return json::parse(stream);
+}
+
+const std::vector<std::string> kUmbmarkKeys = {
+    "alpha_rad", "beta_rad",    "E_d",          "E_b",   "c_left",
+    "c_right",   "wheelbase_m", "E_max_syst_m", "sem_m", "second_round_worthwhile"};
+
+/// Chong & Kleeman's centres before calibration, as four runs each 10 mm off.
+constexpr const char* kRuns =
+    "# end errors, m\ndirection,x,y\ncw,0.042,0.031\ncw,0.022,0.031\ncw,0.032,0.041\n"
+    "cw,0.032,0.021\nccw,0.107,-0.094\nccw,0.087,-0.094\nccw,0.097,-0.084\nccw,0.097,-0.104\n";
+
+TEST(UmbmarkCommand, WritesWhatTheFormatsPromise) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string runs = scratch.write("runs.csv", kRuns).string();
+  const Ran ran = run_trussmap("umbmark " + runs + " --side 4 --wheelbase 0.5 --out " + at +
+                               "/m.toml --json " + at + "/u.json --plots " + at + "/plots");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_EQ(ran.output.rfind("worth correcting", 0), 0U) << ran.output;
+  const json result = read_json(scratch.path() / "u.json");
+  for (const std::string& key : kUmbmarkKeys) {
+    EXPECT_TRUE(result.contains(key)) << key;
+    EXPECT_TRUE(result["exact"].contains(key)) << key;
+  }
+  EXPECT_NEAR(result["alpha_rad"].get<double>(), -0.0079375, 1e-12);
+  EXPECT_NEAR(result["beta_rad"].get<double>(), 0.004, 1e-12);
+  EXPECT_NEAR(result["E_d"].get<double>(), 1.0005001246977578, 1e-12);
+  EXPECT_NEAR(result["E_b"].get<double>(), 0.994972236696724, 1e-12);
+  EXPECT_NEAR(result["wheelbase_m"].get<double>(), 0.5 * 0.994972236696724, 1e-12);
+  EXPECT_NEAR(result["E_max_syst_m"].get<double>(), 0.13507405376311175, 1e-12);
+  // Coordinates +10, -10, 0, 0 mm: variance 200/3 mm^2, over four runs.
+  EXPECT_NEAR(result["sem_m"].get<double>(), 1e-3 * std::sqrt(200.0 / 3.0 / 4.0), 1e-12);
+  EXPECT_TRUE(result["second_round_worthwhile"].get<bool>());
+
+  const GeometryErrors written = geometry_errors(read_model(scratch.path() / "m.toml"));
+  EXPECT_NEAR(written.diameter_ratio, result["exact"]["E_d"].get<double>(), 1e-14);
+  EXPECT_NEAR(written.wheelbase_ratio, result["exact"]["E_b"].get<double>(), 1e-14);
+  EXPECT_NE(scratch.contents().at("plots/umbmark.svg").find("</svg>"), std::string::npos);
+}
+
+TEST(UmbmarkCommand, RoundsMultiplyWhetherTogetherOrThroughAModel) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string rehearsal =
+      "umbmark --simulate --true-E-d 1.004 --true-E-b 1.02 --scatter 0.005 --solution formulas ";
+  ASSERT_EQ(run_trussmap(rehearsal + "--rounds 2 --seed 3 --write " + at + "/r.csv --json " + at +
+                         "/both.json")
+                .status,
+            0);
+  const std::string given = "--wheelbase 0.34 --solution formulas ";
+  ASSERT_EQ(run_trussmap("umbmark " + at + "/r.csv " + at + "/r_2.csv " + given + "--json " + at +
+                         "/again.json --out " + at + "/both.toml")
+                .status,
+            0);
+  EXPECT_EQ(read_json(scratch.path() / "both.json"), read_json(scratch.path() / "again.json"));
+  ASSERT_EQ(run_trussmap("umbmark " + at + "/r.csv " + given + "--out " + at + "/1.toml").status,
+            0);
+  ASSERT_EQ(run_trussmap("umbmark " + at + "/r_2.csv --solution formulas --model " + at +
+                         "/1.toml --out " + at + "/2.toml")
+                .status,
+            0);
+  const auto total = [&](const char* file) {
+    return geometry_errors(read_model(scratch.path() / file));
+  };
+  EXPECT_NEAR(total("both.toml").diameter_ratio, total("2.toml").diameter_ratio, 1e-13);
+  EXPECT_NEAR(total("both.toml").wheelbase_ratio, total("2.toml").wheelbase_ratio, 1e-13);
+  EXPECT_NEAR(total("2.toml").diameter_ratio, 1.004, 2e-4);
+  EXPECT_NEAR(total("2.toml").wheelbase_ratio, 1.02, 1e-3);
+  const json result = read_json(scratch.path() / "both.json");
+  ASSERT_EQ(result["rounds"].size(), 2U);
+  EXPECT_LT(result["E_max_syst_m"].get<double>(),
+            0.1 * result["rounds"][0]["E_max_syst_m"].get<double>());
+  EXPECT_NEAR(result["c_left"].get<double>() + result["c_right"].get<double>(), 2.0, 1e-12);
+}
+
+TEST(UmbmarkCommand, SaysOfTheExampleWhatTheReadmeShows) {
+  const std::filesystem::path source = TRUSSMAP_SOURCE_DIR;
+  const Ran ran = run_trussmap("umbmark " + (source / "maps/square_runs.csv").string() +
+                               " --side 4 --wheelbase 0.34");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  std::ostringstream readme;
+  readme << std::ifstream(source / "README.md").rdbuf();
+  EXPECT_NE(readme.str().find(ran.output), std::string::npos) << ran.output;
+}
+
+TEST(NoiseCommand, WritesWhatTheFormatsPromise) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  ASSERT_EQ(run_trussmap("noise --simulate --true-k-left 0.0004 --true-k-right 0.00058 --runs 400 "
+                         "--wheelbase 0.5 --seed 2 --write " +
+                         at + "/r.csv")
+                .status,
+            0);
+  scratch.write("m.toml",
+                "[robot]\nwheelbase = 0.5\n[[effect]]\nname = \"mine\"\nchannel = \"turn\"\n"
+                "shape = [\"speed\"]\n");
+  const Ran ran =
+      run_trussmap("noise " + at + "/r.csv --path 10,-10 --model " + at + "/m.toml --out " + at +
+                   "/n.toml --json " + at + "/n.json --plots " + at + "/plots --sensor-sd 0,0,0");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_EQ(ran.output.rfind("the wheels' noise explains", 0), 0U) << ran.output;
+  const json result = read_json(scratch.path() / "n.json");
+  EXPECT_EQ(result["runs"], 400);
+  // Four standard errors of 400 runs, the bounds of 60 runs over sqrt(400/60).
+  EXPECT_NEAR(result["k_left"].get<double>(), 0.0004, 4 * 1.37e-5);
+  EXPECT_NEAR(result["k_right"].get<double>(), 0.00058, 4 * 1.73e-5);
+  EXPECT_NEAR(result["sd_k_left"].get<double>(), 1.37e-5, 1e-6);
+  EXPECT_NEAR(result["sd_k_right"].get<double>(), 1.73e-5, 1e-6);
+  const Model model = read_model(scratch.path() / "n.toml");
+  EXPECT_EQ(model.noise.left, result["k_left"].get<double>());
+  EXPECT_EQ(model.noise.right, result["k_right"].get<double>());
+  ASSERT_EQ(model.effects.size(), 1U);  // what the model said otherwise is kept
+  EXPECT_EQ(model.effects[0].name, "mine");
+  EXPECT_NE(scratch.contents().at("plots/noise.svg").find("</svg>"), std::string::npos);
+}
+
+TEST(CalibrationCommands, BadInputNamesFileAndLineAndWritesNothing) {
+  const ScratchFolder scratch;
+  struct Bad {
+    const char* command;
+    const char* content;
+    const char* said;
+  };
+  const std::string square = "umbmark --wheelbase 0.34";
+  const std::string noise = "noise --wheelbase 0.34";
+  const Bad all[] = {
+      {"umbmark", "", "bad.csv"},
+      {"umbmark", "direction,x\ncw,1\n", "bad.csv:1"},
+      {"umbmark", "direction,x,y\ncw,0.1,0.2\nleft,0.1,0.2\n", "bad.csv:3: direction is \"left\""},
+      {"umbmark", "direction,x,y\ncw,0.1,abc\n", "bad.csv:2"},
+      {"umbmark", "direction,x,y\ncw,0.1,nan\n", "bad.csv:2"},
+      {"umbmark", "direction,x,y\ncw,0.1,0.1\ncw,0.2,0.1\n", "no run in direction ccw"},
+      {"umbmark", "direction,x,y\ncw,0.1,0.1\ncw,0.2,0.1\nccw,0.1,0.1\n", "1 run in direction ccw"},
+      {"umbmark", "direction,x,y\ncw,32,31\ncw,97,94\n", "bad.csv:2: x is 32 m"},
+      {"noise", "x,y\n0.1,0.2\n", "bad.csv:1"},
+      {"noise", "x,y,heading\n0.1,0.2,0.01\n", "1 run, expected two"},
+      {"noise", "x,y,heading\n0.1,0.2,0.01\n0.1,45,0.01\n", "bad.csv:3: y is 45 m"}};
+  for (const Bad& bad : all) {
+    const std::string file = scratch.write("bad.csv", bad.content).string();
+    const std::string command = bad.command == std::string("umbmark") ? square : noise;
+    const Ran ran = run_trussmap(command + " " + file + " --out " + scratch.path().string() +
+                                 "/m.toml --plots " + scratch.path().string() + "/plots");
+    EXPECT_EQ(ran.status, 2) << bad.content << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_NE(ran.output.find(bad.said), std::string::npos) << ran.output;
+    EXPECT_EQ(scratch.contents().size(), 1U) << bad.content;
+  }
+}
+
+TEST(CalibrationCommands, BadUsageEndsWithStatus2AndOneLine) {
+  const ScratchFolder scratch;
+  const std::string runs = scratch.write("runs.csv", kRuns).string();
+  const std::vector<std::string> bad = {"umbmark",
+                                        "umbmark " + runs,
+                                        "umbmark --simulate " + runs,
+                                        "umbmark --wheelbase 0.3 --runs 4 " + runs,
+                                        "umbmark --wheelbase 0 " + runs,
+                                        "umbmark --wheelbase 0.3 --side -1 " + runs,
+                                        "umbmark --simulate --true-E-d 0",
+                                        "noise --simulate --path 10,x",
+                                        "noise --simulate --path 0",
+                                        "noise --simulate --sensor-sd 1,2",
+                                        "noise --simulate --sensor-sd 1,2,-3"};
+  for (const std::string& arguments : bad) {
+    const Ran ran = run_trussmap(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+  }
+  // No scatter at all: a failed run, not bad usage.
+  EXPECT_EQ(run_trussmap("noise --simulate").status, 1);
+  for (const char* command : {"umbmark --help", "noise --help"}) {
+    EXPECT_EQ(run_trussmap(command).status, 0);
+  }
+}
+
+TEST(CalibrationCommands, ExchangedLabelsAreAWarningAboutTheRunsGiven) {
+  const ScratchFolder scratch;
+  std::string text = kRuns;
+  for (std::size_t at = text.find("\ncw,"); at != std::string::npos; at = text.find("\ncw,", at)) {
+    text.replace(at, 4, "\nCCW,");
+  }
+  for (std::size_t at = text.find("\nccw,"); at != std::string::npos;
+       at = text.find("\nccw,", at)) {
+    text.replace(at, 5, "\ncw,");
+  }
+  for (std::size_t at = text.find("CCW"); at != std::string::npos; at = text.find("CCW", at)) {
+    text.replace(at, 3, "ccw");
+  }
+  const std::string runs = scratch.write("runs.csv", text).string();
+  const Ran ran = run_trussmap("umbmark --wheelbase 0.5 " + runs);
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_NE(ran.output.find("warning: x and y contradict"), std::string::npos) << ran.output;
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/io/optiodom.hpp"
+
+#include "trussmap/core/error.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "scratch_folder.hpp"
+#include "shared_data.hpp"
+
+namespace trussmap {
+namespace {
+
+using testing::ScratchFolder;
+
+const std::string kMetadata = "type,diff,,\nngear,10,,\nencRes,84,,\nLi,0.2,,\n";
+
+TEST(OptiOdom, TicksBecomeMetresOnTheRightWheels) {
+  const ScratchFolder scratch;
+  scratch.write("7_metadata.csv", kMetadata);
+  const auto file = scratch.write("7_run-02.csv", "0,0,0,0,0,0\n0.05,0.1,0.2,7,30,-10\n");
+  ASSERT_TRUE(is_optiodom(file));
+  const OptiOdomRecording read = read_optiodom(file);
+  ASSERT_EQ(read.recording.drive.rows(), 2U);
+  // 84 x 10 ticks are one turn of a wheel of pi 0.084 m: 0.1 pi mm a tick.
+  EXPECT_NEAR(read.recording.drive.right[1], 30 * 1e-4 * M_PI, 1e-15);
+  EXPECT_NEAR(read.recording.drive.left[1], -10 * 1e-4 * M_PI, 1e-15);
+  ASSERT_EQ(read.recording.truth.size(), 2U);
+  EXPECT_EQ(read.recording.truth[1].y, 0.2);
+  EXPECT_NEAR(read.recording.truth[1].heading, 7.0 - 2.0 * M_PI, 1e-15);
+}
+
+TEST(OptiOdom, OnlyRunsAreRuns) {
+  EXPECT_TRUE(is_optiodom("a/231220200121_run-01.csv.xz"));
+  EXPECT_FALSE(is_optiodom("a/231220200121_run-01_odo.csv"));
+  EXPECT_FALSE(is_optiodom("a/231220200121_run-.csv"));
+  EXPECT_FALSE(is_optiodom("a/231220200121_metadata.csv"));
+}
+
+std::string complaint(const ScratchFolder& scratch, const std::string& metadata,
+                      const std::string& rows) {
+  scratch.write("1_metadata.csv", metadata);
+  try {
+    (void)read_optiodom(scratch.write("1_run-01.csv", rows));
+  } catch (const InputError& error) {
+    return std::string(error.what()).substr(scratch.path().string().size() + 1);
+  }
+  return "none";
+}
+
+TEST(OptiOdom, SaysWhatIsWrong) {
+  const ScratchFolder scratch;
+  EXPECT_EQ(complaint(scratch, "type,tricyc,\n", "0,0,0,0,0,0\n1,0,0,0,0,0\n"),
+            "1_metadata.csv: the robot's type is \"tricyc\", expected diff (two driven wheels)");
+  EXPECT_EQ(complaint(scratch, "type,diff\nngear,x\n", "0,0,0,0,0,0\n1,0,0,0,0,0\n"),
+            "1_metadata.csv: ngear is \"x\", expected a positive number");
+  EXPECT_EQ(complaint(scratch, kMetadata, "0,0,0,0,0,0\n1,0,0,zero,0,0\n"),
+            "1_run-01.csv:2: \"zero\", expected a finite number");
+  EXPECT_EQ(complaint(scratch, kMetadata, "0,0,0,0,0,0\n1,0,0,0,0\n"),
+            "1_run-01.csv:2: 5 numbers, expected 6");
+  EXPECT_EQ(complaint(scratch, kMetadata, "1,0,0,0,0,0\n0,0,0,0,0,0\n"),
+            "1_run-01.csv:2: time runs backwards, expected rows in order of time");
+}
+
+/// The distance from start to end by the wheels is that of the motion capture, to 2 %.
+TEST(OptiOdom, WheelsAndTruthAgreeOnHowFarItWent) {
+  TRUSSMAP_NEEDS_SHARED("data/optiodom");
+  const OptiOdomRecording read = read_optiodom(
+      testing::shared("data/optiodom/diff/circular/231220200121/231220200121_run-01.csv.xz"));
+  ASSERT_EQ(read.recording.drive.rows(), 2074U);
+  double wheels = 0.0;
+  for (std::size_t row = 0; row < 2074; ++row) {
+    wheels += 0.5 * (read.recording.drive.left[row] + read.recording.drive.right[row]);
+  }
+  // Truth over half seconds: its noise would lengthen a sum over single rows.
+  double truth = 0.0;
+  for (std::size_t row = 10; row < 2074; row += 10) {
+    const TruthRow& a = read.recording.truth[row - 10];
+    const TruthRow& b = read.recording.truth[row];
+    truth += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  EXPECT_NEAR(wheels / truth, 1.0, 0.02);
+}
+
+}  // namespace
+}  // namespace trussmap

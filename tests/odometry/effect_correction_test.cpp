@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Maps from recordings of a robot with known faults, built with and without the model of them.
+#include "trussmap/odometry/effect_correction.hpp"
+
+#include "trussmap/correction/recording_map.hpp"
+#include "trussmap/graph/survey_comparison.hpp"
+#include "trussmap/io/recording_csv.hpp"
+#include "trussmap/simulation/random_stream.hpp"
+#include "trussmap/simulation/tours.hpp"
+#include "trussmap/simulation/wheeled_robot.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "shared_data.hpp"
+
+namespace trussmap {
+namespace {
+
+Recording drive_about(bool compass) {
+  const Mesh mesh = even_mesh({4, 4}, 5.0);
+  auto random = random_stream(3, Stream::walk);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
+  WheeledRobot robot;
+  robot.compass = compass;
+  Recording recording = simulate_drive(mesh, tours.walk, {}, robot, 3).recording;
+  recording.survey = survey(mesh, 1e-6, 3);
+  return recording;
+}
+
+double error_of(const std::vector<Recording>& recordings) {
+  const RecordingMap built = map_recordings(recordings, Model{});
+  return compare_with_survey(positions_of(built.map), recordings.front().survey).rigid.rms;
+}
+
+/// A wheelbase 3 % larger than believed, a right wheel 0.3 % larger: what the wheels show is less
+/// of both.
+TEST(EffectCorrection, RestoresTheMapOfTheSoundRobot) {
+  const Recording sound = drive_about(false);
+  Recording faulty = sound;
+  for (std::size_t row = 0; row < faulty.drive.rows(); ++row) {
+    const double middle = 0.5 * (sound.drive.left[row] + sound.drive.right[row]);
+    const double half = 0.5 * (sound.drive.right[row] - sound.drive.left[row]) * 1.03;
+    faulty.drive.left[row] = (middle - half) / (1.0 - 0.0015);
+    faulty.drive.right[row] = (middle + half) / (1.0 + 0.0015);
+  }
+  Model model;
+  model.effects.push_back({"wheel diameter ratio", "", {}, {0.003}, false});
+  model.effects.push_back({"wheelbase", "", {}, {1.0 / 1.03 - 1.0}, false});
+  const std::vector<Recording> corrected = without_effects({faulty}, model);
+  for (std::size_t row = 0; row < sound.drive.rows(); ++row) {
+    EXPECT_NEAR(corrected[0].drive.left[row], sound.drive.left[row], 1e-12);
+    EXPECT_NEAR(corrected[0].drive.right[row], sound.drive.right[row], 1e-12);
+  }
+  EXPECT_GT(error_of({faulty}), 1.5 * error_of({sound}));
+}
+
+/// The practice recording with the compass's hard iron: with its answer as a model the map is
+/// better than without.
+TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsMap) {
+  TRUSSMAP_NEEDS_SHARED("data/hidden/b");
+  const Recording recording = read_recording(testing::shared("data/hidden/b"));
+  Model model;
+  model.effects.push_back({"hard iron", "", {}, {0.0305937, -0.0257687}, false});
+  EXPECT_LT(error_of(without_effects({recording}, model)), 0.7 * error_of({recording}));
+}
+
+}  // namespace
+}  // namespace trussmap
