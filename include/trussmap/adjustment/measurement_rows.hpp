@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// How far a measurement is from what the unknowns say, and the derivatives of that.
+//
+//   e         predicted - measured, rows as in recording_problem.hpp; angles wrapped    m, rad
+//   p, theta  robot pose; q = p + R(theta) (ahead, left) its sensor; l a landmark
+//   delta     l - q
+//
+//   piece      R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a,  theta_i - m
+//   standing   delta
+//   view       |delta| - range,  direction(delta) - theta - bearing
+//   near_view  R(theta)' delta - offset
+//   survey     l - s
+//   truth      q - t,  theta - h
+#pragma once
+
+#include "trussmap/adjustment/effect_border.hpp"
+#include "trussmap/adjustment/recording_problem.hpp"
+
+namespace trussmap {
+
+using RowsByNode = Eigen::Matrix<double, 4, 3>;  ///< unused rows and columns are zero
+
+struct MeasurementRows {
+  Vector4 error = Vector4::Zero();
+  RowsByNode by_from = RowsByNode::Zero();
+  RowsByNode by_to = RowsByNode::Zero();
+  Eigen::Matrix<double, 4, 6> by_view = Eigen::Matrix<double, 4, 6>::Zero();  ///< of ViewPattern
+};
+
+/// `motion` is a piece's four numbers (with effects), `view` the sum of the effects' patterns.
+[[nodiscard]] MeasurementRows measurement_rows(const RecordingProblem& problem,
+                                               const Measurement& measurement,
+                                               const RecordingState& state, const Vector4& value,
+                                               const ViewPattern& view);
+
+}  // namespace trussmap
