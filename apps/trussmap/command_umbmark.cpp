@@ -320,6 +320,7 @@ void run_umbmark(const UmbmarkOptions& options) {
   }
   if (!options.tape.plots.empty()) {
     std::vector<SquareRuns> runs;
+    runs.reserve(rounds.size());
     for (const Round& round : rounds) runs.push_back(round.runs);
     files.emplace_back(fs::path(options.tape.plots) / "umbmark.svg",
                        draw_figure(square_figure(runs, options.side)));

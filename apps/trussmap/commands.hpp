@@ -21,6 +21,7 @@ class UsageError : public std::runtime_error {
 
 void setup_adjust(CLI::App& app);
 void setup_build(CLI::App& app);
+void setup_calibrate(CLI::App& app);
 void setup_convert(CLI::App& app);
 void setup_noise(CLI::App& app);
 void setup_simulate(CLI::App& app);

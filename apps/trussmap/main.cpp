@@ -41,6 +41,7 @@ int main(int argc, char** argv) try {
   app.set_version_flag("--version", "trussmap " TRUSSMAP_VERSION);
   trussmap::app::setup_adjust(app);
   trussmap::app::setup_build(app);
+  trussmap::app::setup_calibrate(app);
   trussmap::app::setup_convert(app);
   trussmap::app::setup_noise(app);
   trussmap::app::setup_simulate(app);

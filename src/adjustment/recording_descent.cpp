@@ -14,7 +14,7 @@ namespace {
 constexpr double kFirstDamping = 1e-4;
 constexpr double kLeastDamping = 1e-9;
 constexpr double kMostDamping = 1e12;
-constexpr double kPoor = 0.25;          // of the promised decrease
+constexpr double kPoor = 0.25;         // of the promised decrease
 constexpr double kNegligible = 1e-10;  // of chi^2, where it is all but zero
 
 RecordingSystem::Step solve_damped(RecordingSystem& system, double& damping) {

@@ -96,8 +96,8 @@ int RecordingSystem::unknowns() const {
   return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) + static_cast<int>(border_.size());
 }
 
-double RecordingSystem::linearise(const RecordingState& state,
-                                  const Eigen::VectorXd& coefficients, bool hold_headings) {
+double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
+                                  bool hold_headings) {
   const auto heading_held = [&](int node) {
     return node >= problem_.landmark_count() &&
            (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
@@ -330,6 +330,13 @@ Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes)
 
 Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {
   return B_.cols() == 0 ? B_.topRows(0) : schur_inverse_;
+}
+
+double RecordingSystem::log_determinant() const {
+  double sum = normal_.unknowns() > 0 ? normal_.log_determinant() : 0.0;
+  if (schur_.cols() == 0) return sum;
+  const Eigen::LLT<Eigen::MatrixXd> factor(schur_);
+  return sum + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
 double RecordingSystem::gradient_norm() const {

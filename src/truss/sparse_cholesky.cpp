@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/truss/sparse_cholesky.hpp"
 
+#include <cmath>
 #include <new>
 #include <string>
 #include <utility>
@@ -150,6 +151,28 @@ void SparseCholesky::change(bool add, const SparseMatrix& w) {
   cholmod_updown(add ? 1 : 0, permuted, factor, &cholmod_->common);
   cholmod_free_sparse(&permuted, &cholmod_->common);
   cholmod_->check("update the factor");
+}
+
+double SparseCholesky::log_determinant() const {
+  const cholmod_factor& factor = *cholmod_->factor;
+  const auto* x = static_cast<const double*>(factor.x);
+  double sum = 0.0;
+  if (factor.is_super != 0) {
+    const auto* super = static_cast<const int*>(factor.super);
+    const auto* pi = static_cast<const int*>(factor.pi);
+    const auto* px = static_cast<const int*>(factor.px);
+    for (std::size_t s = 0; s < factor.nsuper; ++s) {
+      const int rows = pi[s + 1] - pi[s];
+      for (int j = 0; j < super[s + 1] - super[s]; ++j)
+        sum += 2.0 * std::log(x[px[s] + j * rows + j]);
+    }
+    return sum;
+  }
+  const auto* p = static_cast<const int*>(factor.p);
+  for (std::size_t j = 0; j < factor.n; ++j) {
+    sum += (factor.is_ll != 0 ? 2.0 : 1.0) * std::log(x[p[j]]);
+  }
+  return sum;
 }
 
 double SparseCholesky::reciprocal_condition() const {

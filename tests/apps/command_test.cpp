@@ -135,7 +135,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
-            "trussmap: \"polish\" is no command, expected one of adjust, build, convert, noise, "
+            "trussmap: \"polish\" is no command, expected one of adjust, build, calibrate, "
+            "convert, noise, "
             "simulate, tour, umbmark\n");
 }
 

@@ -181,6 +181,35 @@ TEST(Truss, RefusesWhatIsNoTruss) {
   EXPECT_THROW((void)bar_stiffness(StiffnessLaw::printed, B, 0.0, 0.0), std::invalid_argument);
 }
 
+/// Small (simplicial) and large (supernodal) factors, and one that was updated (LDL').
+TEST(SparseCholesky, KnowsTheDeterminant) {
+  for (const int joints : {5, 40, 400}) {
+    const RandomTruss truss = random_truss(joints, 12);
+    std::vector<int> unknown(idx(joints));
+    for (int n = 0; n < joints; ++n) unknown[idx(n)] = n - 1;
+    const SparseMatrix K = assemble(truss.bars, unknown, joints - 1);
+    SparseCholesky cholesky;
+    cholesky.analyse(K);
+    cholesky.factorise(K);
+    const Eigen::MatrixXd dense = Eigen::MatrixXd(K).selfadjointView<Eigen::Lower>();
+    const double expected = 2.0 * dense.llt().matrixLLT().diagonal().array().log().sum();
+    EXPECT_NEAR(cholesky.log_determinant(), expected, 1e-10 * std::abs(expected));
+    SparseMatrix w(2 * (joints - 1), 1);
+    w.insert(3, 0) = 2.0;
+    w.makeCompressed();
+    cholesky.update(w);
+    const double updated =
+        2.0 * Eigen::MatrixXd(dense + Eigen::MatrixXd(w) * Eigen::MatrixXd(w).transpose())
+                  .llt()
+                  .matrixLLT()
+                  .diagonal()
+                  .array()
+                  .log()
+                  .sum();
+    EXPECT_NEAR(cholesky.log_determinant(), updated, 1e-10 * std::abs(updated));
+  }
+}
+
 TEST(SparseCholesky, AnUpdatedFactorEqualsANewOne) {
   const RandomTruss truss = random_truss(40, 11);
   std::vector<int> unknown(40);

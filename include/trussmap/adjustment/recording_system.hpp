@@ -62,6 +62,8 @@ class RecordingSystem {
   /// Joint covariance of nodes and, after them, all coefficients. Zero where held.
   [[nodiscard]] Eigen::MatrixXd joint_covariance(const std::vector<int>& nodes) const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
+  /// Of the whole normal matrix, border included. Call after factorise.
+  [[nodiscard]] double log_determinant() const;
   /// Inverse normal matrix (with border) times the columns of b (nodes, then coefficients).
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 

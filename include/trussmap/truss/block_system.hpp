@@ -57,6 +57,7 @@ class BlockSystem {
   void solve_in_place(Eigen::VectorXd& x) { cholesky_.solve_in_place(x); }
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return cholesky_.solve(b); }
 
+  [[nodiscard]] double log_determinant() const { return cholesky_.log_determinant(); }
   [[nodiscard]] double reciprocal_condition() const { return cholesky_.reciprocal_condition(); }
 
   /// The lower triangle of A.

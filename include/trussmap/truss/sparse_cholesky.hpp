@@ -66,6 +66,9 @@ class SparseCholesky {
   /// The same for A - W W', which must be positive definite still.
   void downdate(const SparseMatrix& w);
 
+  /// Natural logarithm of the determinant of A. Call after factorise.
+  [[nodiscard]] double log_determinant() const;
+
   /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
   [[nodiscard]] double reciprocal_condition() const;
 
