@@ -300,6 +300,7 @@ void RecordingSystem::factorise() {
 Eigen::MatrixXd RecordingSystem::solve(const Eigen::MatrixXd& b) const {
   const Eigen::Index n = normal_.unknowns();
   Eigen::MatrixXd x(b.rows(), b.cols());
+  if (b.cols() == 0) return x;
   x.topRows(n) = normal_.solve(b.topRows(n));
   if (B_.cols() > 0) {
     x.bottomRows(B_.cols()) =
@@ -345,7 +346,15 @@ double RecordingSystem::gradient_norm() const {
 
 Eigen::MatrixXd RecordingSystem::scaled_schur() const {
   const Eigen::VectorXd scale = D_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  return scale.asDiagonal() * schur_ * scale.asDiagonal();
+  // Not D - B' A^-1 B, whose difference loses all digits where it matters, but what is left of M
+  // when the nodes have taken what they can.
+  const Eigen::MatrixXd left = M_ - times(A_inverse_B_);
+  Eigen::MatrixXd schur = left.transpose() * left;
+  for (Eigen::Index k = 0; k < schur.cols(); ++k) {
+    const double prior_sd = border_[static_cast<std::size_t>(k)].prior_sd;
+    schur(k, k) += 1.0 / (prior_sd * prior_sd);
+  }
+  return scale.asDiagonal() * schur * scale.asDiagonal();
 }
 
 }  // namespace trussmap
