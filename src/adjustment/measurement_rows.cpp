@@ -39,17 +39,6 @@ Sight sight(const Pose& pose, const Vector2& landmark, const ViewPattern& view) 
   return {landmark - pose.position() - lever, -quarter_turn(lever), -R};
 }
 
-MeasurementRows standing_rows(const Pose& pose, const Vector2& landmark, const ViewPattern& view) {
-  MeasurementRows rows;
-  const Sight seen = sight(pose, landmark, view);
-  rows.error.head<2>() = seen.offset;
-  rows.by_from.topLeftCorner<2, 2>() = -Matrix2::Identity();
-  rows.by_from.block<2, 1>(0, 2) = seen.by_heading;
-  rows.by_to.topLeftCorner<2, 2>().setIdentity();
-  rows.by_view.topLeftCorner<2, 2>() = seen.by_lever;
-  return rows;
-}
-
 MeasurementRows view_rows(const Measurement& one, const Pose& pose, const Vector2& landmark,
                           const Vector4& value, const ViewPattern& view) {
   MeasurementRows rows;
@@ -91,6 +80,16 @@ MeasurementRows near_view_rows(const Pose& pose, const Vector2& landmark, const 
   rows.by_to.topLeftCorner<2, 2>() = R;
   rows.by_view.topLeftCorner<2, 2>() = R * seen.by_lever;
   rows.by_view.block<2, 1>(0, 2) = -quarter_turn(offset);
+  return rows;
+}
+
+/// In robot axes too: the map turned as a whole then changes no error, not even to first order
+/// where the errors are large, and a free direction stays recognisable.
+MeasurementRows standing_rows(const Pose& pose, const Vector2& landmark, const ViewPattern& view) {
+  ViewPattern place = view;
+  place.heading = 0.0;
+  MeasurementRows rows = near_view_rows(pose, landmark, Vector4::Zero(), place);
+  rows.by_view.col(2).setZero();
   return rows;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
@@ -59,9 +60,10 @@ void check_determined(RecordingSystem& system, const RecordingProblem& problem,
     system.factorise();
   } catch (const NotPositiveDefinite& error) {
     if (error.column() >= 0) throw SolveError("the map is too loosely tied together to be solved");
+    const std::vector<int> known = find_undetermined(system);
     std::vector<int> all(border.size());
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<int>(k);
-    refuse_undetermined(border, all);
+    std::iota(all.begin(), all.end(), 0);
+    refuse_undetermined(border, known.empty() ? all : known);
   }
   refuse_undetermined(border, find_undetermined(system));
 }

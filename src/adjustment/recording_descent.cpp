@@ -127,7 +127,6 @@ std::vector<int> find_undetermined(const RecordingSystem& system) {
   const Eigen::MatrixXd schur = system.scaled_schur();
   if (schur.cols() == 0) return {};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(schur);
-  if (getenv("DBG")) printf("eig %g %g\n", modes.eigenvalues()[0], modes.eigenvalues()[1]);
   std::vector<int> result;
   for (Eigen::Index c = 0; c < schur.cols(); ++c) {
     double share = 0.0;

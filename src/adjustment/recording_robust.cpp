@@ -69,11 +69,13 @@ BentFit bend(RecordingSystem& system, const RecordingProblem& problem, Recording
     keep_one_per_landmark(problem, system.squared_errors(), fit.weights);
     system.set_weights(fit.weights);
   };
-  for (double mu = gate / (2.0 * largest - gate); mu < kNearlyTruncated; mu *= kBendFaster) {
+  double mu = gate / (2.0 * largest - gate);
+  while (mu < kNearlyTruncated) {
     weigh(mu);
     RecordingDescent next = descend(system, fit.state, fit.coefficients, {kSteps, 1e-6});
     fit.state = std::move(next.state);
     fit.coefficients = std::move(next.coefficients);
+    mu *= kBendFaster;
   }
   weigh(1e9);  // in or out
   for (double& weight : fit.weights) weight = weight > 0.0 ? 1.0 : 0.0;

@@ -145,7 +145,7 @@ Matrix2 slope_scatter(const EndErrors& errors, const Problem& problem, const Law
 
 /// Covariance of the weights.
 Matrix2 covariance_of(const Fit& fit, const EndErrors& errors, const Problem& problem) {
-  const Matrix2 inverse = fit.information.inverse();
+  Matrix2 inverse = fit.information.inverse();
   if (problem.experiment.order == NoiseOrder::first) return inverse;
   return inverse * slope_scatter(errors, problem, problem.law(fit.weights)) * inverse;
 }

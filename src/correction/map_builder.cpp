@@ -410,7 +410,7 @@ void MapBuilder::start(const std::string& landmark, const Vector2& position) {
 }
 
 Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
-  const Arrival arrival = state_->travel(landmark, leg);
+  Arrival arrival = state_->travel(landmark, leg);
   state_->stand_on(arrival.landmark);
   return arrival;
 }

@@ -43,6 +43,7 @@ std::map<std::string, Vector2> dead_reckoned_positions(const Recording& recordin
 /// Sessions with a compass first: it gives the map its direction.
 std::vector<const Recording*> in_order(const std::vector<Recording>& recordings) {
   std::vector<const Recording*> sessions;
+  sessions.reserve(recordings.size());
   for (const Recording& recording : recordings) sessions.push_back(&recording);
   std::stable_partition(sessions.begin(), sessions.end(),
                         [](const Recording* one) { return one->drive.has_compass(); });

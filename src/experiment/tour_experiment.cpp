@@ -62,6 +62,7 @@ Errors map_errors(const Mesh& mesh, const std::vector<Vector2>& positions) {
 
 std::vector<Vector2> positions_by_mesh(const Mesh& mesh, const LandmarkGraph& map) {
   std::vector<Vector2> positions;
+  positions.reserve(idx(mesh.landmarks()));
   for (int k = 0; k < mesh.landmarks(); ++k) {
     positions.push_back(map.landmark(*map.find(landmark_name(mesh, k))).position);
   }

@@ -80,7 +80,7 @@ Common subset(const Common& common, const std::vector<bool>& keep) {
 /// Which landmarks agree with the survey.
 std::vector<bool> agreeing(const Common& common) {
   const std::size_t count = common.names.size();
-  const std::vector<bool> all(count, true);
+  std::vector<bool> all(count, true);
   std::vector<bool> keep = all;
   Alignment alignment = robust_alignment(common);
   for (int round = 0; round < 3; ++round) {

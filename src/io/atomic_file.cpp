@@ -110,6 +110,7 @@ void write_file(const fs::path& path, std::string_view content) {
 
 void write_files(const std::vector<std::pair<fs::path, std::string>>& files) {
   std::vector<Target> targets;
+  targets.reserve(files.size());
   for (const auto& [path, content] : files) targets.push_back(target_of(path, targets));
   std::vector<fs::path> temporaries;
   const auto clean_up = [&temporaries] {

@@ -60,7 +60,7 @@ class Attributes {
 
   [[nodiscard]] Matrix2 covariance() const {
     const double xy = number("c_xy");
-    const Matrix2 C = (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
+    Matrix2 C = (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
     const double rounding = 1e-12 * C(0, 0) * C(1, 1);
     if (C(0, 0) < 0.0 || C(1, 1) < 0.0 || C.determinant() < -rounding) {
       fail("c_xx, c_xy, c_yy are no covariance, expected a positive semidefinite matrix");

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 namespace trussmap {
@@ -105,7 +106,8 @@ class ModelReader {
       }
       const std::string name(key.str());
       if (known == nullptr) {
-        fail(key.source(), "key \"" + name + "\" in [noise] is unknown, expected one of " + names);
+        fail(key.source(),
+             fmt::format("key \"{}\" in [noise] is unknown, expected one of {}", name, names));
       }
       const double value = number(node, name);
       if (value < 0.0) fail(node.source(), name + " is negative, expected 0 or more");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -88,7 +89,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   }
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
-  double before = -INFINITY;
+  double before = -std::numeric_limits<double>::infinity();
   for (const Row& row : read_rows(file, 4)) {
     if (row[2] < 0.0) {
       throw InputError(

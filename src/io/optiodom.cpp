@@ -8,6 +8,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -102,7 +103,7 @@ OptiOdomRecording read_optiodom(const fs::path& file) {
       (positive_number(metadata, "ngear", about) * positive_number(metadata, "encRes", about));
   Recording& recording = result.recording;
   recording.name = file.string();
-  double before = -INFINITY;
+  double before = -std::numeric_limits<double>::infinity();
   for (const std::vector<double>& row : read_number_rows(file, 6, kCommas)) {
     if (!(row[0] > before)) {
       throw InputError(file.string(), recording.drive.rows() + 1,

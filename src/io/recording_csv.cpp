@@ -16,6 +16,8 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 namespace trussmap {
 namespace {
 
@@ -45,7 +47,7 @@ void refuse_other_columns(const CsvReader& csv, const std::vector<std::string_vi
     for (const std::string_view one : known) {
       expected += (expected.empty() ? "" : ",") + std::string(one);
     }
-    csv.fail("column \"" + name + "\" is unknown, expected " + expected);
+    csv.fail(fmt::format("column \"{}\" is unknown, expected {}", name, expected));
   }
 }
 

@@ -8,7 +8,7 @@
 //   delta     l - q
 //
 //   piece      R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a,  theta_i - m
-//   standing   delta
+//   standing   R(theta)' delta
 //   view       |delta| - range,  direction(delta) - theta - bearing
 //   near_view  R(theta)' delta - offset
 //   survey     l - s

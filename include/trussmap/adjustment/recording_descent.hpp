@@ -35,8 +35,8 @@ struct RecordingDescent {
 [[nodiscard]] std::vector<int> find_loose_nodes(RecordingSystem& system,
                                                 const RecordingProblem& problem);
 
-/// Coefficients that the measurements cannot determine, alone or together. The system must be
-/// factorised.
+/// Coefficients that the measurements cannot determine, alone or together. Call after factorise,
+/// also where that failed by the coefficients.
 [[nodiscard]] std::vector<int> find_undetermined(const RecordingSystem& system);
 
 }  // namespace trussmap

@@ -11,7 +11,7 @@
 //
 //   measurement          between                rows
 //     piece              pose, next pose        motion (3), mean compass innovation (0 or 1)
-//     standing           pose, landmark         landmark - position (2)                     m
+//     standing           pose, landmark         landmark in robot axes (2): 0 is exact      m
 //     view               pose, landmark         range, bearing (2), range alone (1)         m, rad
 //     near_view          pose, landmark         the same in robot axes (2): a range within three
 //                                               of its sds says nothing of a direction      m
