@@ -37,6 +37,14 @@ const char* name_of(PlainEffect effect) {
 
 }  // namespace
 
+std::vector<int> unknown_coefficients(const EffectBorder& border) {
+  std::vector<int> unknown;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    if (!border[k].held) unknown.push_back(static_cast<int>(k));
+  }
+  return unknown;
+}
+
 EffectPattern plain_effect(PlainEffect effect, const std::vector<Recording>& recordings,
                            const Robot& robot) {
   EffectPattern result;

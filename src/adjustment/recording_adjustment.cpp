@@ -42,9 +42,10 @@ std::string name_of(const RecordingProblem& problem, int node) {
 
 void refuse_undetermined(const EffectBorder& border, const std::vector<int>& coefficients) {
   if (coefficients.empty()) return;
+  const std::vector<int> unknown = unknown_coefficients(border);
   std::string names;
   for (const int k : coefficients) {
-    names += (names.empty() ? "" : ", ") + border[idx(k)].name;
+    names += (names.empty() ? "" : ", ") + border[idx(unknown[idx(k)])].name;
   }
   throw SolveError((coefficients.size() == 1 ? "the coefficient of " : "the coefficients of ") +
                    names +
@@ -61,11 +62,15 @@ void check_determined(RecordingSystem& system, const RecordingProblem& problem,
   } catch (const NotPositiveDefinite& error) {
     if (error.column() >= 0) throw SolveError("the map is too loosely tied together to be solved");
     const std::vector<int> known = find_undetermined(system);
-    std::vector<int> all(border.size());
+    std::vector<int> all(unknown_coefficients(border).size());
     std::iota(all.begin(), all.end(), 0);
     refuse_undetermined(border, known.empty() ? all : known);
   }
   refuse_undetermined(border, find_undetermined(system));
+}
+
+Eigen::VectorXd initial(const RecordingAdjustmentOptions& options, Eigen::Index count) {
+  return options.coefficients.size() == count ? options.coefficients : Eigen::VectorXd::Zero(count);
 }
 
 void add_warnings(RecordingAdjustment& result) {
@@ -104,9 +109,9 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
                                 const EffectBorder& border,
                                 const RecordingAdjustmentOptions& options) {
   RecordingSystem system(problem, border);
-  const auto coefficients = static_cast<Eigen::Index>(border.size());
+  const auto coefficients = static_cast<Eigen::Index>(unknown_coefficients(border).size());
   RecordingAdjustment result;
-  RecordingDescent fit{start, Eigen::VectorXd::Zero(coefficients), 0.0, 0, false};
+  RecordingDescent fit{start, initial(options, coefficients), 0.0, 0, false};
   const RecordingDescentOptions descent{options.max_iterations, options.tolerance};
   int rows = system.rows();
   try {
@@ -132,7 +137,9 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   result.coefficients = std::move(fit.coefficients);
   result.chi2 = fit.chi2;
   result.dof = rows - system.unknowns();
-  for (const EffectPattern& effect : border) result.dof += std::isfinite(effect.prior_sd) ? 1 : 0;
+  for (const EffectPattern& effect : border) {
+    result.dof += !effect.held && std::isfinite(effect.prior_sd) ? 1 : 0;
+  }
   result.p_value = chi2_p_value(result.chi2, result.dof);
   result.iterations = fit.iterations;
   result.converged = fit.converged;

@@ -19,15 +19,6 @@ namespace {
 constexpr double kLeastSd = 1e-6;   // m or rad: what is called exact is this exact
 constexpr double kNearRange = 3.0;  // sds
 
-/// Inverse Cholesky factor of the covariance's leading rows x rows.
-Matrix4 whitener_of(const Matrix4& covariance, int rows) {
-  Matrix4 result = Matrix4::Zero();
-  const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
-  const Eigen::LLT<Eigen::MatrixXd> factor(block);
-  result.topLeftCorner(rows, rows) = factor.matrixL().solve(Eigen::MatrixXd::Identity(rows, rows));
-  return result;
-}
-
 Matrix4 whitener_of_sds(std::initializer_list<double> sds) {
   Matrix4 result = Matrix4::Zero();
   Eigen::Index k = 0;
@@ -214,6 +205,14 @@ class Collector {
 };
 
 }  // namespace
+
+Matrix4 whitener_of(const Matrix4& covariance, int rows) {
+  Matrix4 result = Matrix4::Zero();
+  const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
+  const Eigen::LLT<Eigen::MatrixXd> factor(block);
+  result.topLeftCorner(rows, rows) = factor.matrixL().solve(Eigen::MatrixXd::Identity(rows, rows));
+  return result;
+}
 
 RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
                               const ProblemOptions& options) {

@@ -73,6 +73,7 @@ bool touches_drives(const EffectBorder& border) {
 RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectBorder& border)
     : problem_(problem),
       border_(border),
+      unknown_(unknown_coefficients(border)),
       gauge_(choose_gauge(problem)),
       root_weights_(problem.measurements.size(), 1.0),
       normal_(lay_out(problem, gauge_)),
@@ -85,7 +86,17 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectBo
   }
   residuals_.resize(rows_);
   squared_errors_.resize(problem.measurements.size());
-  M_.resize(rows_, static_cast<Eigen::Index>(border.size()));
+  M_.resize(rows_, static_cast<Eigen::Index>(unknown_.size()));
+}
+
+Eigen::VectorXd RecordingSystem::offsets(const Eigen::VectorXd& coefficients) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(border_.size()));
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < border_.size(); ++k) {
+    const double value = border_[k].held ? *border_[k].held : coefficients[next++];
+    result[static_cast<Eigen::Index>(k)] = value - border_[k].reference;
+  }
+  return result;
 }
 
 void RecordingSystem::set_weights(const std::vector<double>& weights) {
@@ -93,7 +104,7 @@ void RecordingSystem::set_weights(const std::vector<double>& weights) {
 }
 
 int RecordingSystem::unknowns() const {
-  return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) + static_cast<int>(border_.size());
+  return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) + static_cast<int>(unknown_.size());
 }
 
 double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
@@ -106,19 +117,21 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
   M_.setZero();
   const bool with_drives = touches_drives(border_);
+  const Eigen::VectorXd all = offsets(coefficients);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     Vector4 value = one.value;
     Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, 0);
     if (one.kind == MeasurementKind::piece && with_drives) {
-      const PieceWithEffects piece = piece_with(problem_, border_, coefficients, one);
+      const PieceWithEffects piece = piece_with(problem_, border_, all, one);
       const Pose& d = piece.motion.displacement;
       value.head<3>() = Eigen::Vector3d(d.x, d.y, d.heading);
       if (one.rows == 4) value[3] = piece.motion.mean_heading;
       slopes = piece.derivatives;
     }
+    value += one.bend;
     const MeasurementRows rows =
-        measurement_rows(problem_, one, state, value, view_of(border_, coefficients, one));
+        measurement_rows(problem_, one, state, value, view_of(border_, all, one));
     const Matrix4 W = root_weights_[k] * one.whitener;
     Whitened& J = J_[k];
     J.from = W * rows.by_from;
@@ -140,9 +153,9 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   B_ = transposed_times(M_);
   D_ = M_.transpose() * M_;
   border_gradient_ = M_.transpose() * residuals_;
-  for (std::size_t k = 0; k < border_.size(); ++k) {
-    const auto c = static_cast<Eigen::Index>(k);
-    const double information = 1.0 / (border_[k].prior_sd * border_[k].prior_sd);
+  for (Eigen::Index c = 0; c < D_.cols(); ++c) {
+    const double prior_sd = border_[idx(unknown_[idx(c)])].prior_sd;
+    const double information = 1.0 / (prior_sd * prior_sd);
     D_(c, c) += information;
     border_gradient_[c] += information * coefficients[c];
     chi2 += information * coefficients[c] * coefficients[c];
@@ -182,14 +195,16 @@ void RecordingSystem::evaluate_border(
   const Matrix4 W = root_weights_[k] * one.whitener;
   auto M = M_.middleRows(first_row_[k], one.rows);
   if (piece_slopes.cols() > 0) {
-    const Eigen::MatrixXd columns = -(W * piece_slopes);
-    M = columns.topRows(one.rows);
+    for (std::size_t c = 0; c < unknown_.size(); ++c) {
+      const Vector4 column = -(W * piece_slopes.col(unknown_[c]));
+      M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
+    }
     return;
   }
   if (one.session < 0 || one.kind == MeasurementKind::piece) return;
-  for (std::size_t c = 0; c < border_.size(); ++c) {
-    const auto& views =
-        one.kind == MeasurementKind::truth ? border_[c].truths : border_[c].sightings;
+  for (std::size_t c = 0; c < unknown_.size(); ++c) {
+    const EffectPattern& effect = border_[idx(unknown_[c])];
+    const auto& views = one.kind == MeasurementKind::truth ? effect.truths : effect.sightings;
     if (views.empty() || views[idx(one.session)].empty()) continue;
     const Vector4 column = W * rows.by_view * views[idx(one.session)][one.source].vector();
     M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
@@ -351,7 +366,7 @@ Eigen::MatrixXd RecordingSystem::scaled_schur() const {
   const Eigen::MatrixXd left = M_ - times(A_inverse_B_);
   Eigen::MatrixXd schur = left.transpose() * left;
   for (Eigen::Index k = 0; k < schur.cols(); ++k) {
-    const double prior_sd = border_[static_cast<std::size_t>(k)].prior_sd;
+    const double prior_sd = border_[idx(unknown_[idx(k)])].prior_sd;
     schur(k, k) += 1.0 / (prior_sd * prior_sd);
   }
   return scale.asDiagonal() * schur * scale.asDiagonal();

@@ -78,12 +78,6 @@ void change_motion(Channel channel, double g, double duration, double wheelbase,
   right += more_travel + 0.5 * wheelbase * more_turn;
 }
 
-/// The row in which the drive is at time t.
-std::size_t row_at(const Drive& drive, double t) {
-  const auto at = std::lower_bound(drive.t.begin(), drive.t.end(), t);
-  return std::min(static_cast<std::size_t>(at - drive.t.begin()), drive.rows() - 1);
-}
-
 void apply(const Effect& effect, Channel channel, const std::vector<double>& g, double wheelbase,
            Recording& recording) {
   Drive& drive = recording.drive;

@@ -118,10 +118,16 @@ const std::vector<std::string>& reserved_variables() {
   return names;
 }
 
-RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
-                           const std::vector<Pose>& path, int session) {
+std::size_t row_at(const Drive& drive, double t) {
+  const auto at = std::lower_bound(drive.t.begin(), drive.t.end(), t);
+  return std::min(static_cast<std::size_t>(at - drive.t.begin()), drive.rows() - 1);
+}
+
+namespace {
+
+/// Everything but the pose, in the middle of each row.
+RowVariables drive_variables(const Drive& drive, double wheelbase, int session) {
   const std::size_t rows = drive.rows();
-  if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   const std::vector<Span> spans = windows(drive, kinds);
   RowVariables variables;
@@ -129,9 +135,6 @@ RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& sta
   std::vector<double> turn(rows);
   std::vector<double>& t = variables["t"];
   std::vector<double>& distance = variables["distance"];
-  std::vector<double>& heading = variables["heading"];
-  std::vector<double>& x = variables["x"];
-  std::vector<double>& y = variables["y"];
   double driven = 0.0;
   for (std::size_t row = 0; row < rows; ++row) {
     travel[row] = 0.5 * (drive.left[row] + drive.right[row]);
@@ -139,10 +142,6 @@ RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& sta
     t.push_back(drive.t[row] - 0.5 * duration_of(drive, row) - drive.start());
     distance.push_back(driven + 0.5 * std::abs(travel[row]));
     driven += std::abs(travel[row]);
-    const Pose& before = row == 0 ? start : path[row - 1];
-    heading.push_back(before.heading + 0.5 * wrap_angle(path[row].heading - before.heading));
-    x.push_back(0.5 * (before.x + path[row].x));
-    y.push_back(0.5 * (before.y + path[row].y));
   }
   variables["speed"] = smoothed_rate(drive, spans, travel);
   variables["turn_rate"] = smoothed_rate(drive, spans, turn);
@@ -153,6 +152,62 @@ RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& sta
   variables["reverses_left"] = reversals(drive.left);
   variables["reverses_right"] = reversals(drive.right);
   for (const Covariate& covariate : drive.covariates) variables[covariate.name] = covariate.values;
+  return variables;
+}
+
+}  // namespace
+
+RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
+                           const std::vector<Pose>& path, int session) {
+  const std::size_t rows = drive.rows();
+  if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
+  RowVariables variables = drive_variables(drive, wheelbase, session);
+  std::vector<double>& heading = variables["heading"];
+  std::vector<double>& x = variables["x"];
+  std::vector<double>& y = variables["y"];
+  for (std::size_t row = 0; row < rows; ++row) {
+    const Pose& before = row == 0 ? start : path[row - 1];
+    heading.push_back(before.heading + 0.5 * wrap_angle(path[row].heading - before.heading));
+    x.push_back(0.5 * (before.x + path[row].x));
+    y.push_back(0.5 * (before.y + path[row].y));
+  }
+  return variables;
+}
+
+RowVariables instant_variables(const Drive& drive, double wheelbase,
+                               const std::vector<double>& instants, const std::vector<Pose>& poses,
+                               int session) {
+  if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");
+  const RowVariables by_row = drive_variables(drive, wheelbase, session);
+  const std::vector<MotionKind> kinds = motion_kinds(drive);
+  std::vector<std::size_t> rows;
+  rows.reserve(instants.size());
+  for (const double t : instants) rows.push_back(row_at(drive, t));
+  RowVariables variables;
+  for (const auto& [name, values] : by_row) {
+    std::vector<double>& here = variables[name];
+    here.reserve(rows.size());
+    const bool rate = name == "speed" || name == "turn_rate" || name == "acceleration";
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::size_t row = rows[k];
+      const bool meets_next =
+          instants[k] >= drive.t[row] && row + 1 < drive.rows() && kinds[row] == kinds[row + 1];
+      here.push_back(rate && meets_next ? 0.5 * (values[row] + values[row + 1]) : values[row]);
+    }
+  }
+  const std::vector<double>& middle = by_row.at("distance");
+  std::vector<double>& t = variables["t"];
+  std::vector<double>& distance = variables["distance"];
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::size_t row = rows[k];
+    const double length = 0.5 * std::abs(drive.left[row] + drive.right[row]);
+    const double share = 1.0 - (drive.t[row] - instants[k]) / duration_of(drive, row);
+    t[k] = instants[k] - drive.start();
+    distance[k] = middle[row] + (share - 0.5) * length;
+    variables["heading"].push_back(poses[k].heading);
+    variables["x"].push_back(poses[k].x);
+    variables["y"].push_back(poses[k].y);
+  }
   return variables;
 }
 

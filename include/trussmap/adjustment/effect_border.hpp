@@ -18,6 +18,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,10 +46,15 @@ struct EffectPattern {
   std::vector<std::vector<ViewPattern>> sightings;
   std::vector<std::vector<ViewPattern>> truths;
   double prior_sd = std::numeric_limits<double>::infinity();  ///< of the coefficient, about 0
+  std::optional<double> held = {};  ///< known at this value: acts, but is no unknown
+  double reference = 0.0;  ///< of the coefficient, where the patterns leave all as recorded
 };
 
-/// All coefficients, in order.
+/// All coefficients, in order. Those that are not held are the unknowns, in the same order.
 using EffectBorder = std::vector<EffectPattern>;
+
+/// Places in the border of the coefficients that are unknown.
+[[nodiscard]] std::vector<int> unknown_coefficients(const EffectBorder& border);
 
 /// Wheels' geometry as in formats.md: turn, dtheta (1 + g); difference, left (1 - g/2) and right
 /// (1 + g/2); wheels, both (1 + g); and the compass, reading = heading + g.

@@ -29,12 +29,13 @@ struct RecordingAdjustmentOptions {
   /// With a gate, sightings whose squared whitened error exceeds it at the best fit of the others
   /// are left out: 16 for one right sighting in 3000 (chi^2, 2 dof).
   std::optional<double> gate;
+  Eigen::VectorXd coefficients;  ///< to start from, the unknown ones; empty: 0
 };
 
 struct RecordingAdjustment {
   RecordingState state;
   std::vector<Matrix2> landmark_covariances;  ///< m^2, map frame; zero where held
-  Eigen::VectorXd coefficients;
+  Eigen::VectorXd coefficients;               ///< the unknown ones
   Eigen::MatrixXd coefficient_covariance;
   double chi2 = 0.0;     ///< of the measurements kept, and the coefficients' priors
   int dof = 0;           ///< measured values kept less unknowns

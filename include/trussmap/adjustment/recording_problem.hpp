@@ -42,6 +42,7 @@ struct Measurement {
   int to = -1;                         ///< node; -1: none
   int rows = 0;                        ///< 1 to 4
   Vector4 value = Vector4::Zero();     ///< measured; a piece's last is its mean heading
+  Vector4 bend = Vector4::Zero();      ///< added to a piece's value (piece_noise.hpp)
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
   int session = -1;                    ///< -1: survey
   std::size_t source = 0;  ///< sighting, survey point or truth row of the session; else the piece
@@ -74,6 +75,9 @@ struct ProblemOptions {
   double least_spin = 0.1;   ///< rad: a shorter spin is no change of motion
   double least_drive = 0.1;  ///< m: nor is a shorter drive
 };
+
+/// Inverse Cholesky factor of a covariance's leading rows x rows.
+[[nodiscard]] Matrix4 whitener_of(const Matrix4& covariance, int rows);
 
 /// Throws InputError where a recording has neither sightings nor truth in use.
 [[nodiscard]] RecordingProblem make_problem(const std::vector<Recording>& recordings,

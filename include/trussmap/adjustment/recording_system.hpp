@@ -39,8 +39,8 @@ class RecordingSystem {
   /// Keeps references to the problem and the border.
   RecordingSystem(const RecordingProblem& problem, const EffectBorder& border);
 
-  /// chi^2 (with priors), and with it r, J, M, A, B, D at these values. With headings held, a step
-  /// moves positions (and coefficients) only.
+  /// `coefficients` are the unknown ones. chi^2 (with priors), and with it r, J, M, A, B, D at
+  /// these values. With headings held, a step moves positions (and coefficients) only.
   double linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
                    bool hold_headings = false);
   /// Multiplies the information of each measurement from the next linearise on.
@@ -94,12 +94,15 @@ class RecordingSystem {
     RowsByNode from, to;
   };
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
+  /// How far every coefficient of the border is from its reference.
+  [[nodiscard]] Eigen::VectorXd offsets(const Eigen::VectorXd& coefficients) const;
   void evaluate_border(std::size_t k, const MeasurementRows& rows,
                        const Eigen::Matrix<double, 4, Eigen::Dynamic>& piece_slopes);
   void build_schur(double damping);
 
   const RecordingProblem& problem_;
   const EffectBorder& border_;
+  std::vector<int> unknown_;  ///< of the border
   RecordingGauge gauge_;
   std::vector<double> root_weights_;
   std::vector<int> first_row_;

@@ -44,4 +44,14 @@ using RowVariables = std::map<std::string, std::vector<double>, std::less<>>;
 [[nodiscard]] RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
                                          const std::vector<Pose>& path, int session);
 
+/// The same at any instants, in any order, with the pose there: what a compass reading at the end
+/// of its row, or a sighting, is made at. Rates are the mean of those of the two rows that meet at
+/// a row's end, within one kind of motion; events and covariates are those of the row.
+[[nodiscard]] RowVariables instant_variables(const Drive& drive, double wheelbase,
+                                             const std::vector<double>& instants,
+                                             const std::vector<Pose>& poses, int session);
+
+/// The row that contains time t; the last one that does where two meet.
+[[nodiscard]] std::size_t row_at(const Drive& drive, double t);
+
 }  // namespace trussmap

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Effects as columns of the adjustment's border: channel x shape, row by row.
+//
+// Each channel's action stands here, once. With f the shape's value, one unit of a coefficient adds
+//
+//   channel             per row of the drive                  shape taken at
+//   travel              path f                                middle of the row
+//   left, right         half the wheel's travel, and          middle
+//                       -+ travel/wheelbase of turn
+//   wheels              path f, turn f                        middle
+//   difference          (right - left)/4 f, path/wheelbase f  middle
+//   turn, drift, rotate turn f, duration f, f (turn)          middle
+//   advance             f (path)                              middle
+//   creep               path f, to the left                   middle
+//   compass             f                                     the reading's instant
+//   ... per sighting and truth row
+//   lever, lever_left   f ahead, to the left                  its instant
+//   range, range_scale, bearing   f (sightings only)          its instant
+//   delay               -speed f ahead, -turn rate f          its instant
+//
+// All act on the motion as recorded, so the order of effects does not matter. A delay is exact only
+// near its reference: the times of sightings and truth are to be moved back by that (retimed).
+#pragma once
+
+#include "trussmap/adjustment/effect_border.hpp"
+#include "trussmap/criticism/fitted_path.hpp"
+#include "trussmap/effects/channel.hpp"
+#include "trussmap/effects/row_variables.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// Where one coefficient of the border belongs.
+struct Coefficient {
+  std::size_t effect = 0;
+  std::size_t shape = 0;
+  std::size_t place = 0;  ///< in the effect's list of coefficients
+  double largest = 0.0;   ///< |f| over all rows or instants
+};
+
+struct EffectColumns {
+  EffectBorder border;
+  std::vector<Coefficient> coefficients;  ///< one per entry of the border
+};
+
+/// What shapes may speak of, for all sessions.
+class ShapeContext {
+ public:
+  /// Keeps references to the recordings.
+  ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
+               const std::vector<SessionPath>& paths);
+
+  /// Values of a shape per session, per row at its middle or end, per sighting, per truth row.
+  /// Throws std::invalid_argument like evaluate_shape.
+  enum class Instant { middle, end, sighting, truth };
+  [[nodiscard]] std::vector<std::vector<double>> values(const std::string& shape, Instant at) const;
+  [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
+
+  [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+
+ private:
+  const std::vector<Recording>& recordings_;
+  Robot robot_;
+  std::vector<RowVariables> middles_, ends_, sightings_, truths_;
+};
+
+/// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
+/// Throws std::invalid_argument on a shape that cannot be evaluated.
+[[nodiscard]] EffectPattern effect_column(Channel channel, const std::string& shape, int session,
+                                          const ShapeContext& context);
+
+/// Columns of all effects, which are resolved (catalogue.hpp). Throws std::invalid_argument, with
+/// the effect's name, on an unknown channel, a shape that cannot be evaluated, or a number of
+/// coefficients that does not match.
+[[nodiscard]] EffectColumns effect_columns(const std::vector<Effect>& effects,
+                                           const ShapeContext& context);
+
+/// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
+/// std::invalid_argument where their number is wrong for so many sessions.
+[[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);
+
+/// Sightings and truth rows moved back by the delays of the effects; those that fall out of the
+/// drive are dropped. Shapes of delays see no path: heading, x and y are 0.
+[[nodiscard]] std::vector<Recording> retimed(const std::vector<Recording>& recordings,
+                                             const std::vector<Effect>& effects,
+                                             const Robot& robot);
+
+}  // namespace trussmap

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Where the robot was in every row, as an adjustment has it.
+//
+//   node o~~~~~~~~~> * node      rows are reckoned from node to node, with the effects; what is
+//                      ^ missing  missing at the next node is spread evenly over the rows
+#pragma once
+
+#include "trussmap/adjustment/effect_border.hpp"
+#include "trussmap/adjustment/recording_problem.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+struct SessionPath {
+  Pose start;              ///< at the drive's start; map frame, heading not wrapped
+  std::vector<Pose> ends;  ///< at the end of each row
+};
+
+/// One path per session. `offsets` are the coefficients of the border less their references. Before
+/// the first node and after the last the robot is reckoned from there.
+[[nodiscard]] std::vector<SessionPath> fitted_paths(
+    const std::vector<Recording>& recordings, const Robot& robot, const RecordingProblem& problem,
+    const EffectBorder& border, const Eigen::VectorXd& offsets, const RecordingState& state);
+
+/// The pose at time t, along the row.
+[[nodiscard]] Pose pose_at(const Drive& drive, const SessionPath& path, double t);
+
+}  // namespace trussmap

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/adjustment/piece_noise.hpp"
+
+#include "trussmap/odometry/dead_reckoning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastSd = 1e-5;  // m and rad
+
+struct Path {
+  std::vector<Pose> poses;  ///< at the start of each row, and the end
+  Vector4 numbers = Vector4::Zero();
+};
+
+/// Lays the steps end to end; without readings the fourth number is 0.
+Path lay(const std::vector<PieceRow>& rows, const std::vector<Pose>& steps,
+         const std::vector<double>& offsets) {
+  Path path;
+  Pose pose;
+  path.poses.push_back(pose);
+  double first = 0.0;
+  double sum = 0.0;
+  int readings = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    pose = compose(pose, steps[k]);
+    path.poses.push_back(pose);
+    if (std::isnan(rows[k].reading)) continue;
+    const double angle = rows[k].reading - offsets[k] - pose.heading;
+    if (readings == 0) first = angle;
+    sum += wrap_angle(angle - first);
+    ++readings;
+  }
+  path.numbers << pose.x, pose.y, pose.heading,
+      readings == 0 ? 0.0 : wrap_angle(first + sum / readings);
+  return path;
+}
+
+}  // namespace
+
+PieceNoise piece_noise(const Drive& drive, const std::vector<PieceRow>& rows, const Robot& robot,
+                       const Noise& noise,
+                       const std::vector<const std::vector<DrivePattern>*>& patterns,
+                       const Eigen::VectorXd& offsets,
+                       const std::vector<Eigen::Vector3d>& missing) {
+  const int readings = readings_of(rows);
+  std::vector<Pose> steps;
+  std::vector<double> reading_offsets;
+  PieceNoise result;
+  for (const PieceRow& row : rows) {
+    const PieceWithEffects alone = piece_motion({row}, patterns, offsets);
+    steps.push_back(alone.motion.displacement);
+    reading_offsets.push_back(std::isnan(row.reading)
+                                  ? 0.0
+                                  : wrap_angle(row.reading - alone.motion.displacement.heading -
+                                               alone.motion.mean_heading));
+    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
+    result.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
+  }
+  result.recorded = lay(rows, steps, reading_offsets).numbers;
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    steps[k].x += missing[k][0];
+    steps[k].y += missing[k][1];
+    steps[k].heading += missing[k][2];
+  }
+  const Path path = lay(rows, steps, reading_offsets);
+  result.value = path.numbers;
+  result.H.resize(rows.size());
+  const Vector2 end = path.poses.back().position();
+  int after = 0;
+  for (std::size_t k = rows.size(); k-- > 0;) {
+    if (!std::isnan(rows[k].reading)) ++after;
+    Eigen::Matrix<double, 4, 3>& H = result.H[k];
+    H.setZero();
+    H.topLeftCorner<2, 2>() = rotation(path.poses[k].heading);
+    H.block<2, 1>(0, 2) = quarter_turn(end - path.poses[k + 1].position());
+    H(2, 2) = 1.0;
+    if (readings > 0) H(3, 2) = -static_cast<double>(after) / readings;
+    result.covariance += H * result.Q[k] * H.transpose();
+    if (k < missing.size()) result.value -= H * missing[k];
+  }
+  result.covariance.diagonal().head<3>().array() += kLeastSd * kLeastSd;
+  if (readings > 0) {
+    result.covariance(3, 3) += noise.compass * noise.compass / readings + kLeastSd * kLeastSd;
+  }
+  return result;
+}
+
+double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
+                   const Model& model, const EffectBorder& border, const Eigen::VectorXd& offsets,
+                   const RecordingState& state) {
+  double most = 0.0;
+  for (Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::piece) continue;
+    const std::vector<PieceRow>& rows = problem.pieces[one.source];
+    const Drive& drive = recordings[idx(one.session)].drive;
+    std::vector<const std::vector<DrivePattern>*> patterns;
+    for (const EffectPattern& effect : border) {
+      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
+    }
+    const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
+    const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
+    const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());
+    const Vector4 z(chord.x(), chord.y(), to.heading - from.heading, from.heading);
+    const auto noise_at = [&](const std::vector<Eigen::Vector3d>& missing) {
+      return piece_noise(drive, rows, model.robot, model.noise, patterns, offsets, missing);
+    };
+    // From n = 0; the second look takes H where the first found n.
+    std::vector<Eigen::Vector3d> missing;
+    PieceNoise at = noise_at(missing);
+    for (int look = 0; look < 2; ++look) {
+      Vector4 error = z - at.value;
+      error[3] = wrap_angle(error[3]);
+      const Matrix4 W = whitener_of(at.covariance, one.rows);
+      const Vector4 pull = W.transpose() * (W * error);
+      missing.resize(rows.size());
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        missing[k] = at.Q[k] * at.H[k].transpose() * pull;
+      }
+      at = noise_at(missing);
+    }
+    Vector4 bend = at.value - at.recorded;
+    bend[3] = one.rows == 4 ? wrap_angle(bend[3]) : 0.0;
+    const Vector4 change = one.whitener * (bend - one.bend);
+    most = std::max(most, change.cwiseAbs().maxCoeff());
+    one.bend = bend;
+    one.whitener = whitener_of(at.covariance, one.rows);
+  }
+  return most;
+}
+
+}  // namespace trussmap

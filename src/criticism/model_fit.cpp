@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/model_fit.hpp"
+
+#include "trussmap/adjustment/piece_noise.hpp"
+#include "trussmap/adjustment/recording_descent.hpp"
+#include "trussmap/adjustment/recording_start.hpp"
+#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/effects/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Rounds of fitting and looking at the path again.
+class Fitter {
+ public:
+  Fitter(const std::vector<Recording>& recordings, const Model& model,
+         const ModelFitOptions& options)
+      : recorded_(recordings), options_(options) {
+    fit_.model = model;
+    for (Effect& effect : fit_.model.effects) {
+      effect = resolved(effect);
+      effect.coefficients = coefficients_of(effect, recordings.size());
+    }
+    for (const Effect& effect : fit_.model.effects) {
+      why_not_.emplace_back(effect.coefficients.size());
+    }
+  }
+
+  ModelFit run() {
+    lay_out();
+    start();
+    for (int round = 0; round < options_.max_rounds; ++round) {
+      if (round > 0 && has_delays()) lay_out_again();
+      build_columns();
+      if (round == 0) hold_unobservable();
+      adjust_once();
+      if (hold_the_implausible()) continue;
+      fit_.settled = settled();
+      if (fit_.settled) break;
+    }
+    report();
+    return std::move(fit_);
+  }
+
+ private:
+  [[nodiscard]] bool has_delays() const {
+    return std::any_of(
+        fit_.model.effects.begin(), fit_.model.effects.end(),
+        [](const Effect& effect) { return parse_channel(effect.channel) == Channel::delay; });
+  }
+
+  void lay_out() {
+    fit_.recordings = retimed(recorded_, fit_.model.effects, fit_.model.robot);
+    fit_.problem = make_problem(fit_.recordings, fit_.model, options_.problem);
+  }
+
+  /// The poses of the new instants lie on the old path.
+  void lay_out_again() {
+    std::map<std::string, Vector2> landmarks;
+    for (std::size_t k = 0; k < fit_.problem.landmarks.size(); ++k) {
+      landmarks[fit_.problem.landmarks[k]] = state_.landmarks[k];
+    }
+    lay_out();
+    state_.landmarks.clear();
+    for (const std::string& name : fit_.problem.landmarks) {
+      state_.landmarks.push_back(landmarks[name]);
+    }
+    state_.poses.clear();
+    for (const PoseNode& node : fit_.problem.poses) {
+      const std::size_t session = idx(node.session);
+      state_.poses.push_back(pose_at(fit_.recordings[session].drive, fit_.paths[session], node.t));
+    }
+  }
+
+  void start() {
+    StartOptions how;
+    if (options_.gate) how.gate = *options_.gate;
+    static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
+    state_ = start_of(fit_.problem, how);
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, {}, {}, state_);
+  }
+
+  void build_columns() {
+    const ShapeContext context(fit_.recordings, fit_.model.robot, fit_.paths);
+    fit_.columns = effect_columns(fit_.model.effects, context);
+    for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[k];
+      if (!options_.fit_effects || !why_not_[one.effect][one.place].empty()) {
+        fit_.columns.border[k].held = fit_.model.effects[one.effect].coefficients[one.place];
+      }
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd unknown_values() const {
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(unknown.size()));
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      values[static_cast<Eigen::Index>(k)] = fit_.model.effects[one.effect].coefficients[one.place];
+    }
+    return values;
+  }
+
+  void hold(int coefficient, const std::string& why) {
+    const Coefficient& one = fit_.columns.coefficients[idx(coefficient)];
+    why_not_[one.effect][one.place] = why;
+    fit_.model.effects[one.effect].coefficients[one.place] = 0.0;
+    fit_.columns.border[idx(coefficient)].held = 0.0;
+  }
+
+  /// Coefficients that no measurement tells from the unknowns, looked for at the best fit without
+  /// them: far from it large residuals make anything look observable.
+  void hold_unobservable() {
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    if (unknown.empty()) return;
+    EffectBorder without = fit_.columns.border;
+    for (const int k : unknown) {
+      const Coefficient& one = fit_.columns.coefficients[idx(k)];
+      without[idx(k)].held = fit_.model.effects[one.effect].coefficients[one.place];
+    }
+    RecordingAdjustmentOptions how;
+    how.gate = options_.gate;
+    const RecordingAdjustment best = adjust_from(state_, fit_.problem, without, how);
+    state_ = best.state;
+    while (true) {
+      const std::vector<int> free = unknown_coefficients(fit_.columns.border);
+      RecordingSystem system(fit_.problem, fit_.columns.border);
+      system.linearise(state_, unknown_values());
+      try {
+        system.factorise();
+      } catch (const NotPositiveDefinite& error) {
+        if (error.column() >= 0) throw;
+      }
+      const std::vector<int> lost = find_undetermined(system);
+      if (lost.empty()) return;
+      // The one added last gives way: the others may be determined without it.
+      hold(free[idx(lost.back())], "no measurement tells it from the map, the poses or the rest");
+    }
+  }
+
+  void adjust_once() {
+    RecordingAdjustmentOptions how;
+    how.gate = options_.gate;
+    how.coefficients = unknown_values();
+    fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+    state_ = fit_.adjustment.state;
+    change_ = 0.0;
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      double& value = fit_.model.effects[one.effect].coefficients[one.place];
+      const auto at = static_cast<Eigen::Index>(k);
+      const double now = fit_.adjustment.coefficients[at];
+      const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+      change_ = std::max(change_, std::abs(now - value) / (1e-9 * std::abs(now) + 1e-6 * sd));
+      value = now;
+    }
+    take_paths();
+  }
+
+  /// Of all coefficients from their references.
+  [[nodiscard]] Eigen::VectorXd offsets() const {
+    Eigen::VectorXd result(static_cast<Eigen::Index>(fit_.columns.border.size()));
+    for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[k];
+      result[static_cast<Eigen::Index>(k)] =
+          fit_.model.effects[one.effect].coefficients[one.place] - fit_.columns.border[k].reference;
+    }
+    return result;
+  }
+
+  void take_paths() {
+    const std::vector<SessionPath> before = std::move(fit_.paths);
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
+                              offsets(), state_);
+    bent_ = relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border, offsets(),
+                        state_);
+    moved_ = 0.0;
+    for (std::size_t s = 0; s < before.size(); ++s) {
+      for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
+        const Pose& a = before[s].ends[row];
+        const Pose& b = fit_.paths[s].ends[row];
+        moved_ = std::max({moved_, (a.position() - b.position()).norm(),
+                           std::abs(wrap_angle(a.heading - b.heading))});
+      }
+    }
+  }
+
+  bool hold_the_implausible() {
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    int worst = -1;
+    double most = 1.0;
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      const Effect& effect = fit_.model.effects[one.effect];
+      const auto at = static_cast<Eigen::Index>(k);
+      const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+      const double plausible = facts_of(*parse_channel(effect.channel)).plausible;
+      const double share = sd * one.largest / plausible;
+      if (share > most) {
+        most = share;
+        worst = unknown[k];
+      }
+    }
+    if (worst < 0) return false;
+    hold(worst,
+         fmt::format("these data leave it uncertain by {:.1f} times its plausible size", most));
+    return true;
+  }
+
+  /// Neither a coefficient nor the path that the shapes saw has moved.
+  [[nodiscard]] bool settled() const {
+    if (bent_ > 1e-3) return false;
+    if (!sees_the_path()) return !has_delays() || change_ < 1.0;
+    return change_ < 1.0 || (fit_.columns.border.empty() && moved_ < 1e-9) ||
+           (!options_.fit_effects && moved_ < 1e-9);
+  }
+
+  [[nodiscard]] bool sees_the_path() const {
+    for (const Effect& effect : fit_.model.effects) {
+      for (const std::string& shape : effect.shape) {
+        for (const std::string& name : variables_of(shape)) {
+          if (name == "heading" || name == "x" || name == "y") return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  void report() {
+    for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
+      const Effect& effect = fit_.model.effects[e];
+      EffectEstimate estimate{effect, std::vector<double>(effect.coefficients.size(), 0.0), {}};
+      for (std::size_t place = 0; place < effect.coefficients.size(); ++place) {
+        if (why_not_[e][place].empty()) continue;
+        estimate.sd[place] = kInfinity;
+        estimate.not_fitted.push_back(fmt::format("{} ({}): not fitted, {}", effect.name,
+                                                  effect.shape[place % effect.shape.size()],
+                                                  why_not_[e][place]));
+      }
+      fit_.effects.push_back(std::move(estimate));
+    }
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      const auto at = static_cast<Eigen::Index>(k);
+      fit_.effects[one.effect].sd[one.place] =
+          std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+    }
+    if (!fit_.settled) {
+      fit_.adjustment.warnings.push_back(
+          fmt::format("shapes and path did not settle in {} rounds", options_.max_rounds));
+    }
+  }
+
+  const std::vector<Recording>& recorded_;
+  ModelFitOptions options_;
+  ModelFit fit_;
+  RecordingState state_;
+  std::vector<std::vector<std::string>> why_not_;  ///< per effect and place; empty: fitted
+  double change_ = 0.0;                            ///< of the coefficients, in what is negligible
+  double bent_ = 0.0;                              ///< of the pieces' values, in sds
+  double moved_ = 0.0;                             ///< of the path, m and rad
+};
+
+}  // namespace
+
+ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+                   const ModelFitOptions& options) {
+  return Fitter(recordings, model, options).run();
+}
+
+}  // namespace trussmap
