@@ -108,6 +108,25 @@ MeasurementRows truth_rows(const Pose& pose, const Vector4& value, const ViewPat
 
 }  // namespace
 
+ViewPattern view_of(const EffectBorder& border, const Eigen::VectorXd& offsets,
+                    const Measurement& one) {
+  ViewPattern sum;
+  if (one.session < 0) return sum;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    const auto& views = one.kind == MeasurementKind::truth ? border[k].truths : border[k].sightings;
+    if (views.empty() || views[idx(one.session)].empty()) continue;
+    const ViewPattern& unit = views[idx(one.session)][one.source];
+    const double a = offsets[static_cast<Eigen::Index>(k)];
+    sum.ahead += a * unit.ahead;
+    sum.left += a * unit.left;
+    sum.heading += a * unit.heading;
+    sum.range += a * unit.range;
+    sum.range_scale += a * unit.range_scale;
+    sum.bearing += a * unit.bearing;
+  }
+  return sum;
+}
+
 MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurement& measurement,
                                  const RecordingState& state, const Vector4& value,
                                  const ViewPattern& view) {

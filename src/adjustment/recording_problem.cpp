@@ -45,9 +45,11 @@ class Collector {
     add_poses(recording, truth);
     add_pieces(recording);
     for (std::size_t k = 0; k < recording.sightings.size(); ++k) {
-      add_sighting(recording.sightings[k], k);
+      if (pose_at_.contains(recording.sightings[k].t)) add_sighting(recording.sightings[k], k);
     }
-    for (const std::size_t k : truth) add_truth(recording.truth[k], k);
+    for (const std::size_t k : truth) {
+      if (pose_at_.contains(recording.truth[k].t)) add_truth(recording.truth[k], k);
+    }
   }
 
   /// After all sessions, so that every sighted landmark has its node.
@@ -108,9 +110,10 @@ class Collector {
     for (const std::size_t k : truth) times.push_back(recording.truth[k].t);
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
+    leave_out(times);
     pose_at_.clear();
     for (std::size_t k = 0; k < times.size(); ++k) {
-      if (k > 0) {
+      if (k > 0 && !is_left_out(times[k - 1], times[k])) {
         const std::vector<PieceRow> rows =
             piece_rows(recording.drive, times[k - 1], times[k], model_.robot);
         for (const double t : motion_changes(recording.drive, rows, model_.robot,
@@ -122,13 +125,39 @@ class Collector {
     }
   }
 
+  /// Whether nothing between two successive instants counts.
+  [[nodiscard]] bool is_left_out(double from, double to) const {
+    return std::any_of(spans_.begin(), spans_.end(),
+                       [&](const TimeSpan& span) { return span.from <= from && to <= span.to; });
+  }
+
+  /// Drops instants inside what is left out, and those that would stand alone.
+  void leave_out(std::vector<double>& times) {
+    spans_.clear();
+    if (!options_.left_out.empty()) spans_ = options_.left_out[idx(session_)];
+    if (spans_.empty()) return;
+    std::erase_if(times, [this](double t) {
+      return std::any_of(spans_.begin(), spans_.end(),
+                         [t](const TimeSpan& span) { return span.from < t && t < span.to; });
+    });
+    std::vector<double> kept;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const bool after = k > 0 && !is_left_out(times[k - 1], times[k]);
+      const bool before = k + 1 < times.size() && !is_left_out(times[k], times[k + 1]);
+      if (after || before) kept.push_back(times[k]);
+    }
+    times = std::move(kept);
+  }
+
   void add_pose(double t) {
     pose_at_[t] = static_cast<int>(problem_.poses.size());
     problem_.poses.push_back({session_, t});
   }
 
   void add_pieces(const Recording& recording) {
+    if (pose_at_.empty()) return;
     for (auto from = pose_at_.begin(), to = std::next(from); to != pose_at_.end(); from = to++) {
+      if (is_left_out(from->first, to->first)) continue;
       std::vector<PieceRow> rows =
           piece_rows(recording.drive, from->first, to->first, model_.robot);
       const PieceMotion motion = piece_motion(rows);
@@ -198,6 +227,7 @@ class Collector {
   const Model& model_;
   const ProblemOptions& options_;
   int session_ = 0;
+  std::vector<TimeSpan> spans_;  ///< left out of this session
   std::map<std::string, int> landmark_node_;
   std::map<double, int> pose_at_;  ///< of this session, by time
   std::vector<Measurement> surveyed_;

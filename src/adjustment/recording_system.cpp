@@ -31,26 +31,6 @@ BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge
   return {sizes_of(problem, gauge), pairs, elimination_order(problem.nodes(), pairs)};
 }
 
-/// The sum of the effects' patterns for one sighting or truth row.
-ViewPattern view_of(const EffectBorder& border, const Eigen::VectorXd& coefficients,
-                    const Measurement& one) {
-  ViewPattern sum;
-  if (one.session < 0) return sum;
-  for (std::size_t k = 0; k < border.size(); ++k) {
-    const auto& views = one.kind == MeasurementKind::truth ? border[k].truths : border[k].sightings;
-    if (views.empty() || views[idx(one.session)].empty()) continue;
-    const ViewPattern& unit = views[idx(one.session)][one.source];
-    const double a = coefficients[static_cast<Eigen::Index>(k)];
-    sum.ahead += a * unit.ahead;
-    sum.left += a * unit.left;
-    sum.heading += a * unit.heading;
-    sum.range += a * unit.range;
-    sum.range_scale += a * unit.range_scale;
-    sum.bearing += a * unit.bearing;
-  }
-  return sum;
-}
-
 PieceWithEffects piece_with(const RecordingProblem& problem, const EffectBorder& border,
                             const Eigen::VectorXd& coefficients, const Measurement& one) {
   std::vector<const std::vector<DrivePattern>*> patterns;

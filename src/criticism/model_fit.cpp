@@ -30,6 +30,7 @@ class Fitter {
       effect = resolved(effect);
       effect.coefficients = coefficients_of(effect, recordings.size());
     }
+    given_ = fit_.model.effects;
     for (const Effect& effect : fit_.model.effects) {
       why_not_.emplace_back(effect.coefficients.size());
     }
@@ -70,9 +71,13 @@ class Fitter {
       landmarks[fit_.problem.landmarks[k]] = state_.landmarks[k];
     }
     lay_out();
+    place(landmarks);
+  }
+
+  void place(const std::map<std::string, Vector2>& landmarks) {
     state_.landmarks.clear();
     for (const std::string& name : fit_.problem.landmarks) {
-      state_.landmarks.push_back(landmarks[name]);
+      state_.landmarks.push_back(landmarks.at(name));
     }
     state_.poses.clear();
     for (const PoseNode& node : fit_.problem.poses) {
@@ -82,6 +87,11 @@ class Fitter {
   }
 
   void start() {
+    if (options_.near != nullptr) {
+      fit_.paths = options_.near->paths;
+      place(landmark_places(*options_.near));
+      return;
+    }
     StartOptions how;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
@@ -113,8 +123,9 @@ class Fitter {
   void hold(int coefficient, const std::string& why) {
     const Coefficient& one = fit_.columns.coefficients[idx(coefficient)];
     why_not_[one.effect][one.place] = why;
-    fit_.model.effects[one.effect].coefficients[one.place] = 0.0;
-    fit_.columns.border[idx(coefficient)].held = 0.0;
+    const double value = given_[one.effect].coefficients[one.place];
+    fit_.model.effects[one.effect].coefficients[one.place] = value;
+    fit_.columns.border[idx(coefficient)].held = value;
   }
 
   /// Coefficients that no measurement tells from the unknowns, looked for at the best fit without
@@ -167,23 +178,12 @@ class Fitter {
     take_paths();
   }
 
-  /// Of all coefficients from their references.
-  [[nodiscard]] Eigen::VectorXd offsets() const {
-    Eigen::VectorXd result(static_cast<Eigen::Index>(fit_.columns.border.size()));
-    for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
-      const Coefficient& one = fit_.columns.coefficients[k];
-      result[static_cast<Eigen::Index>(k)] =
-          fit_.model.effects[one.effect].coefficients[one.place] - fit_.columns.border[k].reference;
-    }
-    return result;
-  }
-
   void take_paths() {
     const std::vector<SessionPath> before = std::move(fit_.paths);
     fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
-                              offsets(), state_);
-    bent_ = relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border, offsets(),
-                        state_);
+                              offsets_of(fit_), state_);
+    bent_ = relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
+                        offsets_of(fit_), state_);
     moved_ = 0.0;
     for (std::size_t s = 0; s < before.size(); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
@@ -266,6 +266,7 @@ class Fitter {
   ModelFitOptions options_;
   ModelFit fit_;
   RecordingState state_;
+  std::vector<Effect> given_;                      ///< with the coefficients at first
   std::vector<std::vector<std::string>> why_not_;  ///< per effect and place; empty: fitted
   double change_ = 0.0;                            ///< of the coefficients, in what is negligible
   double bent_ = 0.0;                              ///< of the pieces' values, in sds
@@ -273,6 +274,24 @@ class Fitter {
 };
 
 }  // namespace
+
+std::map<std::string, Vector2> landmark_places(const ModelFit& fit) {
+  std::map<std::string, Vector2> places;
+  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
+    places[fit.problem.landmarks[k]] = fit.adjustment.state.landmarks[k];
+  }
+  return places;
+}
+
+Eigen::VectorXd offsets_of(const ModelFit& fit) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(fit.columns.border.size()));
+  for (std::size_t k = 0; k < fit.columns.border.size(); ++k) {
+    const Coefficient& one = fit.columns.coefficients[k];
+    result[static_cast<Eigen::Index>(k)] =
+        fit.model.effects[one.effect].coefficients[one.place] - fit.columns.border[k].reference;
+  }
+  return result;
+}
 
 ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
                    const ModelFitOptions& options) {

@@ -29,6 +29,11 @@ struct MeasurementRows {
   Eigen::Matrix<double, 4, 6> by_view = Eigen::Matrix<double, 4, 6>::Zero();  ///< of ViewPattern
 };
 
+/// The sum of the effects' patterns for one sighting or truth row; `offsets` are all coefficients
+/// of the border less their references.
+[[nodiscard]] ViewPattern view_of(const EffectBorder& border, const Eigen::VectorXd& offsets,
+                                  const Measurement& measurement);
+
 /// `motion` is a piece's four numbers (with effects), `view` the sum of the effects' patterns.
 [[nodiscard]] MeasurementRows measurement_rows(const RecordingProblem& problem,
                                                const Measurement& measurement,

@@ -67,6 +67,12 @@ struct RecordingProblem {
   [[nodiscard]] int pose_node(int pose) const { return landmark_count() + pose; }
 };
 
+/// Part of a session's time.
+struct TimeSpan {
+  double from = 0.0;  ///< s
+  double to = 0.0;    ///< s
+};
+
 struct ProblemOptions {
   bool survey = true;        ///< use survey.csv
   bool truth = true;         ///< use truth.csv
@@ -74,6 +80,9 @@ struct ProblemOptions {
   double truth_turn = 0.5;   ///< rad turned between them, whichever comes first
   double least_spin = 0.1;   ///< rad: a shorter spin is no change of motion
   double least_drive = 0.1;  ///< m: nor is a shorter drive
+  /// Per session, in order of time (or none at all): what is driven there, and what is sighted or
+  /// known in between, is left out. A stretch of which one instant is left goes with it.
+  std::vector<std::vector<TimeSpan>> left_out = {};
 };
 
 /// Inverse Cholesky factor of a covariance's leading rows x rows.

@@ -10,7 +10,7 @@
 // Shapes see the path of the fit itself, so the two are repeated in turn until the coefficients
 // stay. A delay is taken out of the time stamps before each round.
 //
-// Nothing is fitted that the data cannot show: a coefficient is left at 0, and named, where no
+// Nothing is fitted that the data cannot show: a coefficient is left as it was, and named, where no
 // measurement tells it from the unknowns, or where its standard error times the shape's largest
 // value is above the channel's plausible size (channel.hpp).
 #pragma once
@@ -18,17 +18,22 @@
 #include "trussmap/adjustment/recording_adjustment.hpp"
 #include "trussmap/criticism/effect_columns.hpp"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace trussmap {
 
+struct ModelFit;
+
 struct ModelFitOptions {
   bool fit_effects = true;  ///< false: coefficients stay as the model has them (0 where absent)
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
   int max_rounds = 30;
+  /// Start from this fit of the same recordings (to more or fewer of their measurements).
+  const ModelFit* near = nullptr;
 };
 
 struct EffectEstimate {
@@ -52,5 +57,11 @@ struct ModelFit {
 /// that cannot be applied.
 [[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
                                  const ModelFitOptions& options = {});
+
+/// Where the fit has the landmarks, m, map frame.
+[[nodiscard]] std::map<std::string, Vector2> landmark_places(const ModelFit& fit);
+
+/// All coefficients of the border less their references.
+[[nodiscard]] Eigen::VectorXd offsets_of(const ModelFit& fit);
 
 }  // namespace trussmap
