@@ -4,6 +4,7 @@
 
 #include "trussmap/adjustment/recording_start.hpp"
 #include "trussmap/adjustment/recording_system.hpp"
+#include "trussmap/adjustment/truth_alignment.hpp"
 #include "trussmap/core/error.hpp"
 #include "trussmap/odometry/effect_correction.hpp"
 
@@ -28,13 +29,15 @@ bool is_one_of_three(const Effect& effect) {
   return std::find(kNames.begin(), kNames.end(), effect.name) != kNames.end();
 }
 
-/// A border of those of the three that are looked for.
+/// A border of those of the three that are looked for, and of how the truth sits on the drive.
 EffectBorder border_of(const std::array<bool, 3>& wanted, const std::vector<Recording>& recordings,
-                       const Robot& robot) {
+                       const Robot& robot, bool truth) {
   EffectBorder border;
   for (std::size_t k = 0; k < 3; ++k) {
     if (wanted[k]) border.push_back(plain_effect(kEffects[k], recordings, robot));
   }
+  if (!truth) return border;
+  for (EffectPattern& one : truth_alignment(recordings, robot)) border.push_back(std::move(one));
   return border;
 }
 
@@ -71,7 +74,7 @@ Fitted fit(const std::vector<Recording>& recordings, const Model& model,
   Fitted result;
   result.corrected = without_effects(recordings, model);
   result.problem = make_problem(result.corrected, model, options);
-  result.border = border_of(wanted, result.corrected, model.robot);
+  result.border = border_of(wanted, result.corrected, model.robot, options.truth);
   result.adjustment = adjust(result.problem, result.border);
   return result;
 }
@@ -195,6 +198,7 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   result.model = with(model, g);
   const std::array<bool, 3> wanted =
       determined(recordings, result.model, options.problem, result.undetermined);
+  const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
   for (const bool noise : {options.noise, false}) {
@@ -202,10 +206,8 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
       last = fit(recordings, result.model, wanted, options.problem);
       refine(g, wanted, last.adjustment.coefficients);
       result.model = with(result.model, g);
-      if (last.adjustment.coefficients.size() == 0 ||
-          last.adjustment.coefficients.cwiseAbs().maxCoeff() < kSettled) {
-        break;
-      }
+      const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
+      if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
     if (noise) find_noise(last, options.problem, result);
   }
