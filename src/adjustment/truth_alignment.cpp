@@ -43,14 +43,28 @@ EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior
   return result;
 }
 
+int session_of(const std::vector<int>& sessions, std::size_t recording) {
+  return sessions.empty() ? static_cast<int>(recording) : sessions[recording];
+}
+
+/// Sessions with truth, and when their drives start.
+std::map<int, TruthClock> clocks_of(const std::vector<Recording>& recordings,
+                                    const std::vector<int>& sessions) {
+  std::map<int, TruthClock> clocks;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    if (recordings[k].truth.empty()) continue;
+    clocks.try_emplace(session_of(sessions, k), TruthClock{0.0, 0.0, recordings[k].drive.start()});
+  }
+  return clocks;
+}
+
 }  // namespace
 
-EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Robot& robot) {
+EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Robot& robot,
+                             const std::vector<int>& sessions) {
   EffectBorder border;
-  if (std::all_of(recordings.begin(), recordings.end(),
-                  [](const Recording& one) { return one.truth.empty(); })) {
-    return border;
-  }
+  const std::map<int, TruthClock> clocks = clocks_of(recordings, sessions);
+  if (clocks.empty()) return border;
   ViewPattern unit;
   unit.ahead = 1.0;
   border.push_back(everywhere("truth's point, ahead", unit, kLeverSd, recordings));
@@ -60,9 +74,7 @@ EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Rob
   unit = {};
   unit.heading = 1.0;
   border.push_back(everywhere("truth's heading", unit, kHeadingSd, recordings));
-  for (std::size_t session = 0; session < recordings.size(); ++session) {
-    const Recording& recording = recordings[session];
-    if (recording.truth.empty()) continue;
+  for (const auto& [session, start] : clocks) {
     EffectPattern late;
     late.name = "truth late";
     late.prior_sd = kLateSd;
@@ -70,21 +82,60 @@ EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Rob
     EffectPattern clock = late;
     clock.name = "truth's clock";
     clock.prior_sd = kClockSd;
-    for (const TruthRow& row : recording.truth) {
-      const Rates rates = rates_at(recording.drive, row.t, robot);
-      ViewPattern behind;
-      behind.ahead = -rates.speed;
-      behind.heading = -rates.turn_rate;
-      late.truths[session].push_back(behind);
-      const double since = row.t - recording.drive.start();
-      behind.ahead *= since;
-      behind.heading *= since;
-      clock.truths[session].push_back(behind);
+    for (std::size_t k = 0; k < recordings.size(); ++k) {
+      if (session_of(sessions, k) != session) continue;
+      for (const TruthRow& row : recordings[k].truth) {
+        const Rates rates = rates_at(recordings[k].drive, row.t, robot);
+        ViewPattern behind;
+        behind.ahead = -rates.speed;
+        behind.heading = -rates.turn_rate;
+        late.truths[k].push_back(behind);
+        behind.ahead *= row.t - start.start;
+        behind.heading *= row.t - start.start;
+        clock.truths[k].push_back(behind);
+      }
     }
     border.push_back(std::move(late));
     border.push_back(std::move(clock));
   }
   return border;
+}
+
+TruthAlignment alignment_of(const std::vector<Recording>& recordings,
+                            const std::vector<int>& sessions, const Eigen::VectorXd& coefficients) {
+  TruthAlignment result;
+  result.clocks = clocks_of(recordings, sessions);
+  if (result.clocks.empty()) return result;
+  result.ahead = coefficients[0];
+  result.left = coefficients[1];
+  result.heading = coefficients[2];
+  Eigen::Index at = 3;
+  for (auto& [session, clock] : result.clocks) {
+    clock.late = coefficients[at++];
+    clock.drift = coefficients[at++];
+  }
+  return result;
+}
+
+std::vector<Recording> aligned(const std::vector<Recording>& recordings,
+                               const TruthAlignment& alignment, const Robot& robot) {
+  std::vector<Recording> result = recordings;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    const auto clock = alignment.clocks.find(static_cast<int>(k));
+    for (TruthRow& row : result[k].truth) {
+      double late = 0.0;
+      if (clock != alignment.clocks.end()) {
+        late = clock->second.late + clock->second.drift * (row.t - clock->second.start);
+      }
+      const Rates rates = rates_at(result[k].drive, row.t, robot);
+      row.heading = wrap_angle(row.heading - alignment.heading + rates.turn_rate * late);
+      const Vector2 lever =
+          rotation(row.heading) * Vector2(alignment.ahead - rates.speed * late, alignment.left);
+      row.x -= lever.x();
+      row.y -= lever.y();
+    }
+  }
+  return result;
 }
 
 }  // namespace trussmap
