@@ -3,6 +3,7 @@
 #include "trussmap/adjustment/truth_alignment.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trussmap {
 namespace {
@@ -11,25 +12,51 @@ namespace {
 constexpr double kLeverSd = 0.1;    // m
 constexpr double kHeadingSd = 0.1;  // rad
 constexpr double kLateSd = 0.3;     // s
-constexpr double kClockSd = 0.003;  // s/s
+constexpr double kClockSd = 0.001;  // s/s
 
-struct Rates {
-  double speed = 0.0;      // m/s, signed
-  double turn_rate = 0.0;  // rad/s
-};
+/// Where the robot was `late` seconds before time t, seen from where it is at t; at rest outside
+/// of the drive.
+Pose way_back(const Drive& drive, double t, double late, const Robot& robot) {
+  const auto inside = [&drive](double at) { return std::clamp(at, drive.start(), drive.t.back()); };
+  const double from = inside(std::min(t, t - late));
+  const double to = inside(std::max(t, t - late));
+  if (!(to > from)) return {};
+  const Pose way = piece_motion(piece_rows(drive, from, to, robot)).displacement;
+  return late > 0.0 ? inverse(way) : way;
+}
 
-/// Means over a moment about time t, short against the motion, long against a row's jitter.
-Rates rates_at(const Drive& drive, double t, const Robot& robot) {
-  constexpr double kHalf = 0.15;  // s
-  const double from = std::max(t - kHalf, drive.start());
-  const double to = std::min(t + kHalf, drive.t.back());
-  Rates sum;
-  if (!(to > from)) return sum;
-  for (const PieceRow& row : piece_rows(drive, from, to, robot)) {
-    sum.speed += row.path / (to - from);
-    sum.turn_rate += row.turn / (to - from);
+/// What one second of lateness does to a truth row: the way back over its lateness as it is
+/// believed to be, which is exact there; while nothing is believed, that of a moment about the row.
+ViewPattern per_second(const Drive& drive, double t, double late, const Robot& robot) {
+  constexpr double kMoment = 0.15;     // s: longer than a row's jitter
+  constexpr double kTellable = 0.005;  // s
+  Pose back;
+  double seconds = late;
+  if (std::abs(late) < kTellable) {
+    back = way_back(drive, t + 0.5 * kMoment, kMoment, robot);
+    seconds = kMoment;
+  } else {
+    back = way_back(drive, t, late, robot);
   }
-  return sum;
+  ViewPattern result;
+  result.ahead = back.x / seconds;
+  result.left = back.y / seconds;
+  result.heading = back.heading / seconds;
+  return result;
+}
+
+ViewPattern times(const ViewPattern& pattern, double factor) {
+  ViewPattern result;
+  result.ahead = factor * pattern.ahead;
+  result.left = factor * pattern.left;
+  result.heading = factor * pattern.heading;
+  return result;
+}
+
+double lateness(const TruthAlignment& alignment, int session, double t) {
+  const auto found = alignment.clocks.find(session);
+  if (found == alignment.clocks.end()) return 0.0;
+  return found->second.late + found->second.drift * (t - found->second.start);
 }
 
 EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior_sd,
@@ -61,7 +88,7 @@ std::map<int, TruthClock> clocks_of(const std::vector<Recording>& recordings,
 }  // namespace
 
 EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Robot& robot,
-                             const std::vector<int>& sessions) {
+                             const std::vector<int>& sessions, const TruthAlignment& believed) {
   EffectBorder border;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, sessions);
   if (clocks.empty()) return border;
@@ -85,14 +112,10 @@ EffectBorder truth_alignment(const std::vector<Recording>& recordings, const Rob
     for (std::size_t k = 0; k < recordings.size(); ++k) {
       if (session_of(sessions, k) != session) continue;
       for (const TruthRow& row : recordings[k].truth) {
-        const Rates rates = rates_at(recordings[k].drive, row.t, robot);
-        ViewPattern behind;
-        behind.ahead = -rates.speed;
-        behind.heading = -rates.turn_rate;
-        late.truths[k].push_back(behind);
-        behind.ahead *= row.t - start.start;
-        behind.heading *= row.t - start.start;
-        clock.truths[k].push_back(behind);
+        const ViewPattern back =
+            per_second(recordings[k].drive, row.t, lateness(believed, session, row.t), robot);
+        late.truths[k].push_back(back);
+        clock.truths[k].push_back(times(back, row.t - start.start));
       }
     }
     border.push_back(std::move(late));
@@ -121,16 +144,12 @@ std::vector<Recording> aligned(const std::vector<Recording>& recordings,
                                const TruthAlignment& alignment, const Robot& robot) {
   std::vector<Recording> result = recordings;
   for (std::size_t k = 0; k < result.size(); ++k) {
-    const auto clock = alignment.clocks.find(static_cast<int>(k));
     for (TruthRow& row : result[k].truth) {
-      double late = 0.0;
-      if (clock != alignment.clocks.end()) {
-        late = clock->second.late + clock->second.drift * (row.t - clock->second.start);
-      }
-      const Rates rates = rates_at(result[k].drive, row.t, robot);
-      row.heading = wrap_angle(row.heading - alignment.heading + rates.turn_rate * late);
+      const double late = lateness(alignment, static_cast<int>(k), row.t);
+      const Pose back = way_back(result[k].drive, row.t, late, robot);
+      row.heading = wrap_angle(row.heading - alignment.heading - back.heading);
       const Vector2 lever =
-          rotation(row.heading) * Vector2(alignment.ahead - rates.speed * late, alignment.left);
+          rotation(row.heading) * Vector2(alignment.ahead + back.x, alignment.left + back.y);
       row.x -= lever.x();
       row.y -= lever.y();
     }

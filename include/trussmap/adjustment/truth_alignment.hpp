@@ -10,8 +10,9 @@
 //                 session's start,
 //   clock         and by so much more per second                 s/s               each session
 //
-// A late row shows the robot where it was: g late is g times the speed behind and g times the turn
-// rate back. That is exact while both are steady, so rates are those of a moment about the row.
+// A late row shows the robot where it was: its pose less the way driven since, by the wheels. That
+// is linear in the lateness while the motion is steady; about a lateness believed already it is
+// exact everywhere, so fits are repeated.
 #pragma once
 
 #include "trussmap/adjustment/effect_border.hpp"
@@ -36,9 +37,11 @@ struct TruthAlignment {
 
 /// Coefficients of all that, in this order, late and clock by turns, sessions in rising order. Weak
 /// priors keep what a motion does not show near 0. None where no recording has truth. `sessions`:
-/// of each recording, where several are stretches of one drive; empty: 0, 1, 2 ...
+/// of each recording, where several are stretches of one drive; empty: 0, 1, 2 ... `believed`: what
+/// an earlier fit has found.
 [[nodiscard]] EffectBorder truth_alignment(const std::vector<Recording>& recordings,
-                                           const Robot& robot, const std::vector<int>& sessions);
+                                           const Robot& robot, const std::vector<int>& sessions,
+                                           const TruthAlignment& believed = {});
 
 /// The coefficients of that border, read.
 [[nodiscard]] TruthAlignment alignment_of(const std::vector<Recording>& recordings,
