@@ -191,8 +191,9 @@ std::string text(const Tested& test) {
   const auto line = [](const char* what, double before, double after, const char* unit) {
     return fmt::format("  {}  {:8.1f} -> {:.1f} {}\n", what, 1000.0 * before, 1000.0 * after, unit);
   };
-  return fmt::format("\n{} drives kept for the test, nominal -> calibrated (rms):\n",
-                     test.names.size()) +
+  return fmt::format(
+             "\n{} kept for the test, nominal -> calibrated (rms):\n",
+             test.names.size() == 1 ? "1 drive" : fmt::format("{} drives", test.names.size())) +
          line("end point off by        ", rms_end(test.nominal), rms_end(test.calibrated), "mm") +
          line("heading off by, per metre", rms_heading(test.nominal), rms_heading(test.calibrated),
               "mrad/m");
