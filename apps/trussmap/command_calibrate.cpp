@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -200,8 +201,8 @@ std::string text(const Tested& test) {
 }
 
 std::string text(const TruthAlignment& truth) {
-  double first = INFINITY;
-  double last = -INFINITY;
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
   for (const auto& [session, clock] : truth.clocks) {
     first = std::min(first, clock.late);
     last = std::max(last, clock.late);
