@@ -11,7 +11,10 @@
 #include "trussmap/report/table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -32,13 +35,22 @@ struct CalibrateOptions {
   std::string json;
   double holdout = 0.3;
   double leg = 1.0;  // m
+  std::vector<std::string> test;
   std::vector<std::string> without;
 };
 
 struct HeldOut {
-  int legs = 0;
-  double nominal = 0.0;     // m
-  double calibrated = 0.0;  // m
+  ArrivalErrors nominal;
+  ArrivalErrors calibrated;
+
+  [[nodiscard]] int legs() const { return calibrated.legs(); }
+};
+
+/// Drives that the calibration has not seen.
+struct Tested {
+  std::vector<std::string> names;
+  std::vector<DriveError> nominal;
+  std::vector<DriveError> calibrated;
 };
 
 WheelCalibrationOptions calibration_options(const CalibrateOptions& options) {
@@ -58,23 +70,66 @@ HeldOut held_out(const std::vector<Recording>& recordings, const Model& model,
   WheelCalibrationOptions how = calibration_options(options);
   if (!how.problem.truth || !(options.holdout > 0.0)) return result;
   const std::vector<TruthLeg> legs = truth_legs(recordings, options.holdout, options.leg);
-  const ArrivalErrors nominal = arrival_errors(recordings, legs, model);
-  if (nominal.legs == 0) return result;
-  how.noise = false;
-  try {
-    const WheelCalibration other = calibrate_wheels(without_held_out(recordings, legs), model, how);
-    result.calibrated = arrival_errors(recordings, legs, other.model).rms;
-  } catch (const SolveError&) {  // too few legs are left to calibrate by
-    return result;
-  } catch (const InputError&) {
+  const Stretches stretches = without_held_out(recordings, legs);
+  if (stretches.recordings.empty() ||
+      std::none_of(legs.begin(), legs.end(), [](const TruthLeg& leg) { return leg.held_out; })) {
     return result;
   }
-  result.legs = nominal.legs;
-  result.nominal = nominal.rms;
+  how.noise = false;
+  how.sessions = stretches.sessions;
+  try {
+    const WheelCalibration other = calibrate_wheels(stretches.recordings, model, how);
+    const std::vector<Recording> straight = aligned(recordings, other.truth, model.robot);
+    result.nominal = arrival_errors(straight, legs, model);
+    result.calibrated = arrival_errors(straight, legs, other.model);
+  } catch (const SolveError&) {  // too few legs are left to calibrate by
+    return {};
+  } catch (const InputError&) {
+    return {};
+  }
   return result;
 }
 
-ordered_json json(const WheelCalibration& found, const HeldOut& held) {
+Tested tested(const std::vector<Recording>& recordings, const Model& nominal,
+              const Model& calibrated) {
+  Tested result;
+  for (const Recording& one : recordings) result.names.push_back(one.name);
+  result.nominal = drive_errors(recordings, nominal);
+  result.calibrated = drive_errors(recordings, calibrated);
+  return result;
+}
+
+double rms_end(const std::vector<DriveError>& errors) {
+  double sum = 0.0;
+  for (const DriveError& one : errors) sum += one.end * one.end;
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+double rms_heading(const std::vector<DriveError>& errors) {
+  double sum = 0.0;
+  for (const DriveError& one : errors) sum += one.heading_per_metre() * one.heading_per_metre();
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+ordered_json json(const Tested& test) {
+  ordered_json out = {{"recordings", test.names.size()},
+                      {"end_rms_m", rms_end(test.calibrated)},
+                      {"end_rms_nominal_m", rms_end(test.nominal)},
+                      {"heading_rms_rad_per_m", rms_heading(test.calibrated)},
+                      {"heading_rms_nominal_rad_per_m", rms_heading(test.nominal)}};
+  for (std::size_t k = 0; k < test.names.size(); ++k) {
+    out["each"].push_back({{"recording", test.names[k]},
+                           {"driven_m", test.nominal[k].driven},
+                           {"end_m", test.calibrated[k].end},
+                           {"end_nominal_m", test.nominal[k].end},
+                           {"heading_rad_per_m", test.calibrated[k].heading_per_metre()},
+                           {"heading_nominal_rad_per_m", test.nominal[k].heading_per_metre()}});
+  }
+  return out;
+}
+
+ordered_json json(const WheelCalibration& found, const HeldOut& held,
+                  const std::optional<Tested>& test) {
   ordered_json out;
   const auto add = [&out](const char* name, const std::optional<Calibrated>& one) {
     out[name] = one ? ordered_json(one->value) : ordered_json();
@@ -87,25 +142,81 @@ ordered_json json(const WheelCalibration& found, const HeldOut& held) {
   add("k_right", found.noise_right);
   out["chi2"] = found.chi2;
   out["dof"] = found.dof;
-  const bool judged = held.legs > 0;
+  const bool judged = held.legs() > 0;
   out["heldout"] = {
-      {"legs", held.legs},
-      {"arrival_rms_m", judged ? ordered_json(held.calibrated) : ordered_json()},
-      {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal) : ordered_json()}};
+      {"legs", held.legs()},
+      {"arrival_rms_m", judged ? ordered_json(held.calibrated.rms()) : ordered_json()},
+      {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
+  if (test) out["test"] = json(*test);
+  if (!found.truth.clocks.empty()) {
+    ordered_json clocks = ordered_json::array();
+    for (const auto& [session, clock] : found.truth.clocks) {
+      clocks.push_back({{"session", session}, {"late_s", clock.late}, {"drift", clock.drift}});
+    }
+    out["truth"] = {{"ahead_m", found.truth.ahead},
+                    {"left_m", found.truth.left},
+                    {"heading_rad", found.truth.heading},
+                    {"clocks", clocks}};
+  }
   out["undetermined"] = found.undetermined;
   return out;
 }
 
-std::string text(const WheelCalibration& found, const HeldOut& held) {
-  std::string out =
-      held.legs == 0 ? std::string("calibrated; no legs with truth are held out to judge it by\n")
-      : held.calibrated < held.nominal
-          ? fmt::format("calibrated: held-out legs end {:.1f} mm off (rms), nominal {:.1f} mm\n",
-                        1000.0 * held.calibrated, 1000.0 * held.nominal)
-          : fmt::format(
-                "calibration does not help: held-out legs end {:.1f} mm off (rms), nominal "
-                "{:.1f} mm\n",
-                1000.0 * held.calibrated, 1000.0 * held.nominal);
+/// What the held-out legs say of the calibration: nothing that their scatter does not bear out.
+std::string verdict(const HeldOut& held) {
+  if (held.legs() == 0) {
+    return "calibrated; no legs with truth could be held out to judge it by\n";
+  }
+  const std::string figures =
+      fmt::format("{} held-out legs end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
+                  1000.0 * held.calibrated.rms(), 1000.0 * held.nominal.rms());
+  constexpr int kFewest = 5;
+  const double n = held.legs();
+  double sum = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < held.nominal.distances.size(); ++k) {
+    const double gain =
+        std::pow(held.nominal.distances[k], 2) - std::pow(held.calibrated.distances[k], 2);
+    sum += gain;
+    squares += gain * gain;
+  }
+  const double gain = sum / n;
+  const double sd = n > 1.0 ? std::sqrt(std::max(0.0, squares / n - gain * gain) / (n - 1.0)) : 0.0;
+  if (held.legs() < kFewest || std::abs(gain) < 2.0 * sd) {
+    return "calibrated: " + figures + "; too few legs, or too short, to tell which is better\n";
+  }
+  return (gain > 0.0 ? "calibrated: " : "calibration does not help: ") + figures + "\n";
+}
+
+std::string text(const Tested& test) {
+  const auto line = [](const char* what, double before, double after, const char* unit) {
+    return fmt::format("  {}  {:8.1f} -> {:.1f} {}\n", what, 1000.0 * before, 1000.0 * after, unit);
+  };
+  return fmt::format(
+             "\n{} kept for the test, nominal -> calibrated (rms):\n",
+             test.names.size() == 1 ? "1 drive" : fmt::format("{} drives", test.names.size())) +
+         line("end point off by        ", rms_end(test.nominal), rms_end(test.calibrated), "mm") +
+         line("heading off by, per metre", rms_heading(test.nominal), rms_heading(test.calibrated),
+              "mrad/m");
+}
+
+std::string text(const TruthAlignment& truth) {
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (const auto& [session, clock] : truth.clocks) {
+    first = std::min(first, clock.late);
+    last = std::max(last, clock.late);
+  }
+  return fmt::format(
+      "  truth: the point tracked is {:.1f} mm ahead and {:.1f} mm left of the axle's centre, its\n"
+      "  heading is off by {:.1f} mrad, its rows are late by {:.0f} to {:.0f} ms at the start\n",
+      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, 1000.0 * first,
+      1000.0 * last);
+}
+
+std::string text(const WheelCalibration& found, const HeldOut& held,
+                 const std::optional<Tested>& test) {
+  std::string out = verdict(held);
   TextTable table;
   table.columns = {Align::left, Align::right, Align::left};
   const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
@@ -123,6 +234,8 @@ std::string text(const WheelCalibration& found, const HeldOut& held) {
   out += "\n" + format_table(table);
   out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n",
                      found.dof > 0 ? found.chi2 / found.dof : 0.0, found.dof);
+  if (!found.truth.clocks.empty()) out += text(found.truth);
+  if (test) out += text(*test);
   for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";
   return out;
 }
@@ -132,22 +245,26 @@ void run_calibrate(const CalibrateOptions& options) {
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
   }
+  std::vector<Recording> unseen;
+  for (const std::string& folder : options.test) unseen.push_back(read_recording(folder));
   const Model model = read_model(options.model);
   WheelCalibration found;
   HeldOut held;
+  std::optional<Tested> test;
   try {
     found = calibrate_wheels(recordings, model, calibration_options(options));
     held = held_out(recordings, model, options);
+    if (!unseen.empty()) test = tested(unseen, model, found.model);
   } catch (const std::invalid_argument& error) {
     throw InputError(options.model, 0, error.what());
   }
   std::vector<std::pair<std::filesystem::path, std::string>> files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(found.model));
   if (!options.json.empty()) {
-    files.emplace_back(options.json, json(found, held).dump(2) + "\n");
+    files.emplace_back(options.json, json(found, held, test).dump(2) + "\n");
   }
   write_files(files);
-  fmt::print("{}", text(found, held));
+  fmt::print("{}", text(found, held, test));
 }
 
 }  // namespace
@@ -172,6 +289,10 @@ void setup_calibrate(CLI::App& app) {
   command->add_option("--leg", options->leg, "Length of such a leg [m of driven path]")
       ->check(above_zero())
       ->capture_default_str();
+  command
+      ->add_option("--test", options->test,
+                   "Recordings with truth, not calibrated by, to test the calibration on")
+      ->type_name("RECORDING...");
   command->add_option("--without", options->without, "Do not use the survey, or the truth")
       ->delimiter(',')
       ->check(CLI::IsMember({"survey", "truth"}))
@@ -179,7 +300,13 @@ void setup_calibrate(CLI::App& app) {
   command->footer(
       "E_d, E_b and E_s become the model's effects wheel diameter ratio, wheelbase and wheel\n"
       "scale. Standard errors hold for the noise that the model states for truth, survey and\n"
-      "sightings; chi2/dof should be near 1.");
+      "sightings; chi2/dof should be near 1. Where truth tracks the robot, and how late, is found "
+      "too.\n"
+      "\n"
+      "--test dead-reckons each recording from its first truth pose to its last, with the given\n"
+      "model (nominal) and with the calibrated one: how far the end is off, and how far the "
+      "change\n"
+      "of heading, per metre of the wheels' mean travel (so that turns on the spot count).");
   command->callback([options] { run_calibrate(*options); });
 }
 

@@ -88,6 +88,7 @@ class Collector {
     double path = 0.0;
     double turn = 0.0;
     double from = drive.start();
+    std::size_t last = 0;
     for (std::size_t k = 0; k < recording.truth.size(); ++k) {
       const double t = recording.truth[k].t;
       if (t < drive.start() || t > drive.t.back()) continue;
@@ -96,11 +97,14 @@ class Collector {
         turn += std::abs(row.turn);
       }
       from = t;
+      last = k;
       if (used.empty() || path >= options_.truth_path || turn >= options_.truth_turn) {
         used.push_back(k);
         path = turn = 0.0;
       }
     }
+    // At rest again, the end tells a late clock from a short way.
+    if (!used.empty() && used.back() != last) used.push_back(last);
     return used;
   }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/adjustment/truth_holdout.hpp"
 
+#include "trussmap/core/error.hpp"
 #include "trussmap/core/index.hpp"
 #include "trussmap/odometry/effect_correction.hpp"
 #include "trussmap/odometry/merge.hpp"
@@ -49,7 +50,42 @@ Recording cut(const Recording& whole, double from, double to) {
   return part;
 }
 
+/// Dead reckoning from a pose.
+Pose reckoned(const Drive& drive, Pose pose, double from, double to, double wheelbase) {
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    pose = compose(pose, arc_displacement(travel_of(drive, row), wheelbase));
+  }
+  return pose;
+}
+
+Pose pose_of(const TruthRow& row) {
+  return {row.x, row.y, row.heading};
+}
+
+/// The heading at truth row `at` by all rows of the second before it.
+double settled_heading(const Recording& recording, std::size_t at, double wheelbase) {
+  constexpr double kSecond = 1.0;  // s
+  const TruthRow& last = recording.truth[at];
+  double sum = 0.0;
+  int rows = 0;
+  for (std::size_t k = at; recording.truth[k].t > last.t - kSecond; --k) {
+    const TruthRow& row = recording.truth[k];
+    if (row.t < recording.drive.start()) break;
+    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t, wheelbase);
+    sum += wrap_angle(there.heading - last.heading);
+    ++rows;
+    if (k == 0) break;
+  }
+  return last.heading + (rows > 0 ? sum / rows : 0.0);
+}
+
 }  // namespace
+
+double ArrivalErrors::rms() const {
+  double sum = 0.0;
+  for (const double one : distances) sum += one * one;
+  return distances.empty() ? 0.0 : std::sqrt(sum / legs());
+}
 
 std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, double share,
                                  double leg) {
@@ -75,9 +111,9 @@ std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, doubl
   return legs;
 }
 
-std::vector<Recording> without_held_out(const std::vector<Recording>& recordings,
-                                        const std::vector<TruthLeg>& legs) {
-  std::vector<Recording> stretches;
+Stretches without_held_out(const std::vector<Recording>& recordings,
+                           const std::vector<TruthLeg>& legs) {
+  Stretches stretches;
   for (std::size_t k = 0; k < legs.size();) {
     if (legs[k].held_out) {
       ++k;
@@ -90,7 +126,10 @@ std::vector<Recording> without_held_out(const std::vector<Recording>& recordings
     }
     const Recording& whole = recordings[idx(legs[k].session)];
     Recording part = cut(whole, whole.truth[legs[k].from].t, whole.truth[legs[last].to].t);
-    if (part.drive.rows() >= 2) stretches.push_back(std::move(part));
+    if (part.drive.rows() >= 2) {
+      stretches.recordings.push_back(std::move(part));
+      stretches.sessions.push_back(legs[k].session);
+    }
     k = last + 1;
   }
   return stretches;
@@ -100,21 +139,45 @@ ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
                              const std::vector<TruthLeg>& legs, const Model& model) {
   const std::vector<Recording> corrected = without_effects(recordings, model);
   ArrivalErrors result;
-  double sum = 0.0;
   for (const TruthLeg& leg : legs) {
     if (!leg.held_out) continue;
     const Recording& recording = corrected[idx(leg.session)];
     const TruthRow& from = recording.truth[leg.from];
     const TruthRow& to = recording.truth[leg.to];
-    Pose pose{from.x, from.y, from.heading};
-    for (const DriveRow& row : rows_between(recording.drive, from.t, to.t)) {
-      pose =
-          compose(pose, arc_displacement(travel_of(recording.drive, row), model.robot.wheelbase));
-    }
-    sum += (pose.position() - Vector2(to.x, to.y)).squaredNorm();
-    ++result.legs;
+    const double heading = settled_heading(recording, leg.from, model.robot.wheelbase);
+    const Pose end =
+        reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot.wheelbase);
+    result.distances.push_back((end.position() - Vector2(to.x, to.y)).norm());
   }
-  if (result.legs > 0) result.rms = std::sqrt(sum / result.legs);
+  return result;
+}
+
+std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
+  std::vector<DriveError> result;
+  const std::vector<Recording> corrected = without_effects(recordings, model);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Drive& drive = corrected[k].drive;
+    std::vector<TruthRow> truth = recordings[k].truth;
+    std::erase_if(truth, [&](const TruthRow& row) {
+      return row.t < drive.start() || row.t > drive.t.back();
+    });
+    if (truth.size() < 2) {
+      throw InputError(recordings[k].name, 0,
+                       "has no two truth rows within its drive, expected them to judge it by");
+    }
+    const TruthRow& from = truth.front();
+    const TruthRow& to = truth.back();
+    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot.wheelbase);
+    DriveError one;
+    one.end = (end.position() - Vector2(to.x, to.y)).norm();
+    one.heading = wrap_angle(end.heading - to.heading);
+    // Metres as recorded, so that they are the same for every model.
+    for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
+      const WheelTravel travel = travel_of(recordings[k].drive, row);
+      one.driven += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+    }
+    result.push_back(one);
+  }
   return result;
 }
 

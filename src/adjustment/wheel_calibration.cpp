@@ -17,7 +17,7 @@
 namespace trussmap {
 namespace {
 
-using Found = std::array<std::optional<Calibrated>, 3>;  // coefficients g: difference, turn, wheels
+constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
 
 constexpr std::array<PlainEffect, 3> kEffects{PlainEffect::difference, PlainEffect::turn,
                                               PlainEffect::wheels};
@@ -28,12 +28,17 @@ bool is_one_of_three(const Effect& effect) {
   return std::find(kNames.begin(), kNames.end(), effect.name) != kNames.end();
 }
 
-/// A border of those of the three that are looked for.
+/// A border of those of the three that are looked for, and of how the truth sits on the drive.
 EffectBorder border_of(const std::array<bool, 3>& wanted, const std::vector<Recording>& recordings,
-                       const Robot& robot) {
+                       const Robot& robot, const WheelCalibrationOptions& options,
+                       const TruthAlignment& believed) {
   EffectBorder border;
   for (std::size_t k = 0; k < 3; ++k) {
     if (wanted[k]) border.push_back(plain_effect(kEffects[k], recordings, robot));
+  }
+  if (!options.problem.truth) return border;
+  for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, believed)) {
+    border.push_back(std::move(one));
   }
   return border;
 }
@@ -67,11 +72,12 @@ struct Fitted {
 };
 
 Fitted fit(const std::vector<Recording>& recordings, const Model& model,
-           const std::array<bool, 3>& wanted, const ProblemOptions& options) {
+           const std::array<bool, 3>& wanted, const WheelCalibrationOptions& options,
+           const TruthAlignment& believed) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
-  result.problem = make_problem(result.corrected, model, options);
-  result.border = border_of(wanted, result.corrected, model.robot);
+  result.problem = make_problem(result.corrected, model, options.problem);
+  result.border = border_of(wanted, result.corrected, model.robot, options, believed);
   result.adjustment = adjust(result.problem, result.border);
   return result;
 }
@@ -152,33 +158,64 @@ void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibra
   result.model.noise.right = k[1];
 }
 
+/// Whether anything in use measures a distance.
+bool measures_distance(const std::vector<Recording>& recordings, const ProblemOptions& options) {
+  return std::any_of(recordings.begin(), recordings.end(), [&options](const Recording& one) {
+    return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
+           std::any_of(one.sightings.begin(), one.sightings.end(),
+                       [](const Sighting& sighting) { return !sighting.standing(); });
+  });
+}
+
+/// What is missing for coefficient k, in the user's terms.
+std::string why_not(std::size_t k, const std::vector<Recording>& recordings,
+                    const ProblemOptions& options) {
+  switch (k) {
+    case 0:
+      return "E_d (right wheel / left wheel): the drive is too short to show one wheel larger than "
+             "the other; drive straight lines of several metres";
+    case 1:
+      return "E_b (wheelbase / nominal): the robot hardly turns; drive turns, both ways";
+    default:
+      return measures_distance(recordings, options)
+                 ? "E_s (true / measured travel): the robot hardly gets anywhere, and turns on "
+                   "the spot cannot tell larger wheels from a smaller wheelbase; drive "
+                   "straight lines"
+                 : "E_s (true / measured travel): nothing in use measures a distance; add a "
+                   "survey or truth";
+  }
+}
+
 /// Which of the three the motion determines: each alone, then together.
 std::array<bool, 3> determined(const std::vector<Recording>& recordings, const Model& model,
-                               const ProblemOptions& options,
+                               const WheelCalibrationOptions& options,
                                std::vector<std::string>& undetermined) {
-  std::array<bool, 3> wanted{true, true, true};
+  // By the letter a smaller map would do better: its errors are smaller, too.
+  const bool scale = measures_distance(recordings, options.problem);
+  std::array<bool, 3> wanted{true, true, scale};
   const auto can = [&](const std::array<bool, 3>& these) {
     try {
-      static_cast<void>(fit(recordings, model, these, options));
-      return true;
+      const Fitted one = fit(recordings, model, these, options, {});
+      const Eigen::Index count = std::count(these.begin(), these.end(), true);
+      const Eigen::VectorXd variances = one.adjustment.coefficient_covariance.diagonal();
+      return variances.head(count).maxCoeff() < kUseless * kUseless;
     } catch (const SolveError&) {
       return false;
     }
   };
+  if (!scale) undetermined.push_back(why_not(2, recordings, options.problem));
   if (can(wanted)) return wanted;
   // Nothing at all: let the reason through.
-  static_cast<void>(fit(recordings, model, {false, false, false}, options));
+  static_cast<void>(fit(recordings, model, {false, false, false}, options, {}));
   wanted = {false, false, false};
   for (const std::size_t k : {0U, 1U, 2U}) {
+    if (k == 2 && !scale) continue;
     std::array<bool, 3> more = wanted;
     more[k] = true;
     if (can(more)) {
       wanted = more;
     } else {
-      undetermined.push_back(
-          std::string(kNames[k]) +
-          ": this motion cannot determine it; drive turns both ways and straight "
-          "lines, with a survey or truth");
+      undetermined.push_back(why_not(k, recordings, options.problem));
     }
   }
   return wanted;
@@ -194,18 +231,21 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   std::array<double, 3> g = in_force(model);
   result.model = with(model, g);
   const std::array<bool, 3> wanted =
-      determined(recordings, result.model, options.problem, result.undetermined);
+      determined(recordings, result.model, options, result.undetermined);
+  const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
-      last = fit(recordings, result.model, wanted, options.problem);
+      last = fit(recordings, result.model, wanted, options, result.truth);
       refine(g, wanted, last.adjustment.coefficients);
       result.model = with(result.model, g);
-      if (last.adjustment.coefficients.size() == 0 ||
-          last.adjustment.coefficients.cwiseAbs().maxCoeff() < kSettled) {
-        break;
+      if (options.problem.truth) {
+        const Eigen::VectorXd& all = last.adjustment.coefficients;
+        result.truth = alignment_of(recordings, options.sessions, all.tail(all.size() - geometry));
       }
+      const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
+      if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
     if (noise) find_noise(last, options.problem, result);
   }

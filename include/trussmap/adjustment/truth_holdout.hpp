@@ -5,7 +5,12 @@
 //
 // A leg ends at the first truth row that lies `leg` metres of driven path after its start. Legs are
 // counted on through all sessions and taken in blocks of five; which blocks are held out depends on
-// their number alone, spread evenly. A held-out leg is predicted from the truth at its start.
+// their number alone, spread evenly. A held-out leg is predicted from its true start; the start's
+// heading is the mean of what the truth rows of the last second say, brought there by the wheels,
+// for one row's noise would hide what a leg is off by.
+//
+// Whole drives are judged too: dead reckoning from the first truth row's pose, as it stands, to the
+// time of the last.
 #pragma once
 
 #include "trussmap/effects/model.hpp"
@@ -27,16 +32,36 @@ struct TruthLeg {
                                                double share, double leg = 1.0);
 
 /// What is left to fit: each unbroken stretch of legs that are not held out, as a recording.
-[[nodiscard]] std::vector<Recording> without_held_out(const std::vector<Recording>& recordings,
-                                                      const std::vector<TruthLeg>& legs);
+struct Stretches {
+  std::vector<Recording> recordings;
+  std::vector<int> sessions;  ///< which recording each was cut from
+};
+[[nodiscard]] Stretches without_held_out(const std::vector<Recording>& recordings,
+                                         const std::vector<TruthLeg>& legs);
 
 struct ArrivalErrors {
-  int legs = 0;
-  double rms = 0.0;  ///< of the distance between predicted and true end, m; 0 without legs
+  std::vector<double> distances;  ///< between predicted and true end, m, per held-out leg
+
+  [[nodiscard]] int legs() const { return static_cast<int>(distances.size()); }
+  /// m; 0 without legs.
+  [[nodiscard]] double rms() const;
 };
 
 /// Of the held-out legs, with the model's effects taken out of the rows.
 [[nodiscard]] ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
                                            const std::vector<TruthLeg>& legs, const Model& model);
+
+/// Of one whole drive.
+struct DriveError {
+  double end = 0.0;      ///< m, between reckoned and true end
+  double heading = 0.0;  ///< rad: reckoned less true change of heading from start to end
+  double driven = 0.0;   ///< m, mean of the wheels' travels, each counted forwards: turns count too
+
+  [[nodiscard]] double heading_per_metre() const { return driven > 0.0 ? heading / driven : 0.0; }
+};
+
+/// One per recording. Throws InputError where one has no two truth rows in its drive.
+[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+                                                   const Model& model);
 
 }  // namespace trussmap

@@ -14,10 +14,15 @@
 //
 //   -2 log L = sum log det C + log det (J' C^-1 J) + chi^2
 //
-// all other noise as the model has it. What the motion cannot determine is named, not guessed.
+// all other noise as the model has it. What the motion cannot determine is named, not guessed: what
+// would have a standard error above a tenth counts as that.
+//
+// How the truth sits on the drive (truth_alignment.hpp) is estimated along with it: a truth that is
+// late, or whose clock drifts, bends all of the above.
 #pragma once
 
 #include "trussmap/adjustment/recording_adjustment.hpp"
+#include "trussmap/adjustment/truth_alignment.hpp"
 
 #include <optional>
 #include <string>
@@ -37,6 +42,7 @@ struct WheelCalibration {
   std::optional<Calibrated> noise_left;       ///< k_L, m^(1/2)
   std::optional<Calibrated> noise_right;
   Model model;  ///< the given one with all of that in it
+  TruthAlignment truth;
   double chi2 = 0.0;
   int dof = 0;
   std::vector<std::string> undetermined;  ///< what could not be found, and why
@@ -45,6 +51,8 @@ struct WheelCalibration {
 struct WheelCalibrationOptions {
   ProblemOptions problem;
   bool noise = true;  ///< find k_L and k_R too
+  /// Of each recording, where several are stretches of one drive; empty: each is its own.
+  std::vector<int> sessions;
 };
 
 /// Effects of `model` other than the three are taken out of the recordings first. Throws SolveError
