@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "further_columns.hpp"
 #include "leg_shape.hpp"
 
 namespace trussmap {
@@ -279,6 +280,7 @@ void check_style(const DrivingStyle& style) {
           "a share must lie between 0 and 1");
   require(is_range(style.shortest_rest, style.longest_rest),
           "rests must last above 0 s, shortest first");
+  check_covariates(style.covariates);
   require(style.full_spins >= 0, "the number of stops with full spins must not be negative");
   require(std::isfinite(style.standing) && style.standing >= 0.0,
           "how exactly the robot stands on a landmark must be 0 m or more");
@@ -286,28 +288,6 @@ void check_style(const DrivingStyle& style) {
     require(std::isfinite(value) && value >= 0.0,
             "a rest, an overrun and a ramp must be 0 or more, in s, m and s");
   }
-}
-
-/// Each further column, anew at one stop in two.
-std::vector<Covariate> further_columns(const TrueMotion& motion,
-                                       const std::vector<std::string>& names, std::uint64_t seed) {
-  std::mt19937_64 random = random_stream(seed, Stream::covariates);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Covariate> columns;
-  for (const std::string& name : names) {
-    Covariate column{name, {}};
-    double level = 0.0;
-    for (std::size_t stop = 0; stop < motion.stops.size(); ++stop) {
-      const bool changes = stop == 0 || uniform(random) < 0.5;
-      const double drawn = std::round(100.0 * uniform(random)) / 100.0;
-      if (changes) level = drawn;
-      const std::size_t end =
-          stop + 1 < motion.stops.size() ? motion.stops[stop + 1].rows : motion.rows.size();
-      column.values.resize(end, level);
-    }
-    columns.push_back(std::move(column));
-  }
-  return columns;
 }
 
 void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing) {

@@ -100,7 +100,9 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
                             const ChannelGains& gains, Dice& dice) {
   const std::size_t row = stop.rows == 0 ? 0 : stop.rows - 1;
   const auto g = [&](Channel channel) { return gain(gains, channel, row); };
-  const double t = stop.t + g(Channel::delay);
+  // In whole nanoseconds, as all times of a path.
+  const double delay = g(Channel::delay);
+  const double t = delay == 0.0 ? stop.t : std::round((stop.t + delay) * 1e9) / 1e9;
   std::vector<Sighting> sightings = {{t, landmark_name(mesh, stop.landmark)}};
   if (!robot.range_sensor) return sightings;
   const Vector2 sensor =
