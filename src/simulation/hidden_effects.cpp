@@ -133,6 +133,8 @@ class Draw {
     const double size = entry.detectable * uniform(kLeastFactor, kLargestFactor) *
                         std::max(1.0, std::sqrt(kUsualLegs / legs));
     effect.coefficients = {angle < std::numbers::pi ? -1.0 : 1.0};
+    // A loss is one: the wheels turn, the robot does not follow.
+    if (entry.channel == Channel::advance) effect.coefficients = {-1.0};
     if (effect.shape.size() == 2) effect.coefficients = {std::cos(angle), std::sin(angle)};
     const std::vector<double> g = channel_gains({effect}, variables_).at(entry.channel);
     const auto [least, most] = std::minmax_element(g.begin(), g.end());
