@@ -6,22 +6,27 @@
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/recording_csv.hpp"
+#include "trussmap/simulation/hidden_effects.hpp"
 #include "trussmap/simulation/random_stream.hpp"
 #include "trussmap/simulation/tours.hpp"
 #include "trussmap/simulation/wheeled_robot.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "effect_options.hpp"
 #include "option_checks.hpp"
+#include "sealed_answer.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -47,6 +52,14 @@ struct SimulateOptions {
   double reach = 8.0;  // m
   bool rests = false;
   int full_turns = 0;
+  std::vector<double> speeds = {0.25, 0.9};     // m/s
+  std::vector<double> turn_rates = {0.3, 1.1};  // rad/s
+  double ramp = 0.0;                            // s
+  double overrun = -1.0;                        // m; negative: 0, or what a delay needs
+  std::vector<std::string> covariates;
+  EffectOptions effects;
+  bool true_rates = false;
+  bool hide = false;
   std::string out;
   std::string json;
 };
@@ -54,6 +67,7 @@ struct SimulateOptions {
 constexpr double kGapSpread = 0.4;     // uneven: gaps of 1 -+ this times the spacing,
 constexpr double kJitterShare = 0.06;  // and landmarks moved by up to this times the spacing
 constexpr double kRestShare = 0.1;
+constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
 
 Mesh make_mesh(const SimulateOptions& options) {
   const MeshSize size = parse_mesh_size(options.mesh);
@@ -80,8 +94,17 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   return robot;
 }
 
-DrivingStyle make_style(const SimulateOptions& options) {
+DrivingStyle make_style(const SimulateOptions& options, const std::vector<Effect>& effects) {
   DrivingStyle style;
+  style.slowest = options.speeds.at(0);
+  style.fastest = options.speeds.at(1);
+  style.slowest_turn = options.turn_rates.at(0);
+  style.fastest_turn = options.turn_rates.at(1);
+  style.ramp = options.ramp;
+  style.covariates = options.covariates;
+  const bool delayed = std::any_of(effects.begin(), effects.end(),
+                                   [](const Effect& one) { return one.channel == "delay"; });
+  style.overrun = options.overrun >= 0.0 ? options.overrun : delayed ? kDelayOverrun : 0.0;
   style.standing = options.noise_free ? 0.0 : options.sighting_noise;
   style.rest_share = options.rests ? kRestShare : 0.0;
   style.full_spins = options.full_turns;
@@ -104,43 +127,72 @@ Model nominal_model(const SimulateOptions& options) {
   return model;
 }
 
+/// A recording and what was simulated in it.
+struct Simulated {
+  Mesh mesh;
+  SimulatedDrive drive;
+  std::vector<Effect> effects;
+};
+
 /// The walk, driven. What the library refuses is an option out of place.
-SimulatedDrive simulate(const SimulateOptions& options, Mesh& mesh) {
+Simulated simulate(const SimulateOptions& options) {
+  Simulated result;
+  result.effects = effects_of(options.effects);
   try {
-    mesh = make_mesh(options);
+    result.mesh = make_mesh(options);
     std::mt19937_64 random = random_stream(options.seed, Stream::walk);
-    const Tours tours = make_tours(mesh, parse_walk_kind(options.walk), options.tours, random);
-    SimulatedDrive drive =
-        simulate_drive(mesh, tours.walk, make_style(options), make_robot(options), options.seed);
-    if (options.no_survey) drive.recording.survey.clear();
-    return drive;
+    const Tours tours =
+        make_tours(result.mesh, parse_walk_kind(options.walk), options.tours, random);
+    const WheeledRobot robot = make_robot(options);
+    if (options.hide) {
+      const TrueMotion motion =
+          lay_path(result.mesh, tours.walk, make_style(options, {}), options.seed);
+      result.effects =
+          draw_hidden_effects(motion, result.mesh, robot, !options.no_survey, options.seed);
+    }
+    result.drive = simulate_drive(
+        result.mesh, tours.walk, make_style(options, result.effects), robot, options.seed,
+        {result.effects, options.true_rates ? Rates::true_motion : Rates::as_recorded});
+    if (options.no_survey) result.drive.recording.survey.clear();
+    return result;
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
 }
 
-void write_folder(const fs::path& folder, const SimulatedDrive& drive, const Model& model) {
-  write_recording(folder, drive.recording, "", {{"model.toml", format_model(model)}});
+/// An answer of an earlier recording must not stay beside a new one.
+void write_folder(const SimulateOptions& options, const Simulated& simulated) {
+  std::vector<std::pair<std::string, std::string>> beside = {
+      {"model.toml", format_model(nominal_model(options))}};
+  if (options.hide) {
+    beside.emplace_back(kSealedName, sealed({{"seed", options.seed},
+                                             {"effects", effects_json(simulated.effects)}}));
+  }
+  write_recording(options.out, simulated.drive.recording, "", beside);
+  if (!options.hide) fs::remove(fs::path(options.out) / kSealedName);
 }
 
-nlohmann::json summary(const SimulateOptions& options, const Mesh& mesh,
-                       const SimulatedDrive& drive) {
+nlohmann::json summary(const SimulateOptions& options, const Simulated& simulated) {
+  const Mesh& mesh = simulated.mesh;
+  const SimulatedDrive& drive = simulated.drive;
   double length = 0.0;
   for (const TrueRow& row : drive.motion.rows) length += row.speed * row.duration;
-  return {{"recording", options.out},
-          {"mesh", options.mesh},
-          {"walk", options.walk},
-          {"tours", options.tours},
-          {"seed", options.seed},
-          {"landmarks", mesh.landmarks()},
-          {"routes", mesh.routes.size()},
-          {"legs", drive.motion.stops.size() - 1},
-          {"rows", drive.motion.rows.size()},
-          {"sightings", drive.recording.sightings.size()},
-          {"length_m", length},
-          {"duration_s", drive.motion.rows.back().t},
-          {"compass", drive.recording.drive.has_compass()},
-          {"surveyed", drive.recording.survey.size()}};
+  nlohmann::json results = {{"recording", options.out},
+                            {"mesh", options.mesh},
+                            {"walk", options.walk},
+                            {"tours", options.tours},
+                            {"seed", options.seed},
+                            {"landmarks", mesh.landmarks()},
+                            {"routes", mesh.routes.size()},
+                            {"legs", drive.motion.stops.size() - 1},
+                            {"rows", drive.motion.rows.size()},
+                            {"sightings", drive.recording.sightings.size()},
+                            {"length_m", length},
+                            {"duration_s", drive.motion.rows.back().t},
+                            {"compass", drive.recording.drive.has_compass()},
+                            {"surveyed", drive.recording.survey.size()}};
+  if (!options.hide) results["effects"] = effects_json(simulated.effects);
+  return results;
 }
 
 void print(const nlohmann::json& s) {
@@ -160,12 +212,44 @@ void print(const nlohmann::json& s) {
 }
 
 void run_simulate(const SimulateOptions& options) {
-  Mesh mesh;
-  const SimulatedDrive drive = simulate(options, mesh);
-  write_folder(options.out, drive, nominal_model(options));
-  const nlohmann::json results = summary(options, mesh, drive);
+  const Simulated simulated = simulate(options);
+  write_folder(options, simulated);
+  const nlohmann::json results = summary(options, simulated);
   if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
   print(results);
+  if (options.hide) {
+    fmt::print("\n  Effects are hidden in it; `trussmap reveal {}` names them.\n", options.out);
+  } else if (!simulated.effects.empty()) {
+    fmt::print("\n{}", effects_table(effects_json(simulated.effects)));
+  }
+}
+
+void add_driving_options(CLI::App& command, SimulateOptions& options) {
+  const auto add_pair = [&](const char* name, std::vector<double>& value, const char* help) {
+    command.add_option(name, value, help)
+        ->delimiter(',')
+        ->expected(2)
+        ->check(above_zero())
+        ->capture_default_str();
+  };
+  add_pair("--speeds", options.speeds, "Slowest and fastest leg [m/s], like 0.25,0.9");
+  add_pair("--turn-rates", options.turn_rates,
+           "Slowest and fastest turn on the spot [rad/s], like 0.3,1.1");
+  command
+      .add_option("--ramp", options.ramp,
+                  "Time in which a drive reaches its speed and leaves it [s]")
+      ->check(zero_or_more())
+      ->capture_default_str();
+  command
+      .add_option("--overrun", options.overrun,
+                  "How far the robot drives on before it turns, so that it sees landmarks in "
+                  "passing [m]; 0.4 with a delay of the sightings, else 0")
+      ->check(zero_or_more());
+  command
+      .add_option("--covariate", options.covariates,
+                  "A further column, between 0 and 1, anew at one stop in two; payload_kg, lights "
+                  "and temperature_C are always there; again for more")
+      ->allow_extra_args(false);
 }
 
 void add_world_options(CLI::App& command, SimulateOptions& options) {
@@ -193,6 +277,7 @@ void add_world_options(CLI::App& command, SimulateOptions& options) {
                   "Stops at which the robot turns round twice to the left and twice to the right")
       ->check(whole_number(0))
       ->capture_default_str();
+  add_driving_options(command, options);
 }
 
 void add_robot_options(CLI::App& command, SimulateOptions& options) {
@@ -228,6 +313,16 @@ void setup_simulate(CLI::App& app) {
       "that tours a square mesh of landmarks, with a survey and the robot's model.");
   add_world_options(command, *options);
   add_robot_options(command, *options);
+  add_effect_options(command, options->effects);
+  command.add_flag("--true-rates", options->true_rates,
+                   "Let effects of speed and turn_rate follow the true rates; otherwise the "
+                   "recorded ones, so that a fit finds their values exactly");
+  command
+      .add_flag("--hide", options->hide,
+                "Draw one or two effects from the catalogue; truth.json seals which (see reveal)")
+      ->excludes("--effect")
+      ->excludes("--effects");
+  command.footer(catalogue_text());
   command.add_flag("--no-survey", options->no_survey, "Write no survey.csv");
   command
       .add_option("--out", options->out,

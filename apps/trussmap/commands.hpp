@@ -24,6 +24,7 @@ void setup_build(CLI::App& app);
 void setup_calibrate(CLI::App& app);
 void setup_convert(CLI::App& app);
 void setup_noise(CLI::App& app);
+void setup_reveal(CLI::App& app);
 void setup_simulate(CLI::App& app);
 void setup_tour(CLI::App& app);
 void setup_umbmark(CLI::App& app);

@@ -44,6 +44,7 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_calibrate(app);
   trussmap::app::setup_convert(app);
   trussmap::app::setup_noise(app);
+  trussmap::app::setup_reveal(app);
   trussmap::app::setup_simulate(app);
   trussmap::app::setup_tour(app);
   trussmap::app::setup_umbmark(app);

@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/effects/catalogue.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
-std::string replaced(std::string text, std::string_view by) {
-  for (std::size_t at = text.find("{}"); at != std::string::npos; at = text.find("{}", at)) {
-    text.replace(at, 2, by);
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
+    text.replace(at, what.size(), by);
     at += by.size();
   }
   return text;
@@ -20,7 +24,7 @@ std::string replaced(std::string text, std::string_view by) {
 /// "load on both wheels (payload_kg)" -> "load on both wheels", "payload_kg".
 struct Named {
   std::string_view name;
-  std::string_view covariate;
+  std::string_view brackets;
 };
 
 Named taken_apart(std::string_view name) {
@@ -29,160 +33,105 @@ Named taken_apart(std::string_view name) {
   return {name.substr(0, open), name.substr(open + 2, name.size() - open - 3)};
 }
 
+/// Effects of a variable that once had entries of their own.
+std::string_view present_name(std::string_view name) {
+  if (name == "tyre drift with time") return "tyre drift (t)";
+  if (name == "tyre drift with distance") return "tyre drift (distance)";
+  return name;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return text;
+}
+
+/// The pattern of a name: "slippery patch (x=..., y=..., r=3)".
+std::string expected_name(const CatalogueEntry& entry) {
+  if (entry.of_covariate()) return fmt::format("{} (COLUMN)", entry.name);
+  std::string text;
+  for (const InnerParameter& one : entry.parameters) {
+    text += text.empty() ? "" : ", ";
+    text += one.usual == 0.0 ? fmt::format("{}=...", one.name)
+                             : fmt::format("{}={:g}", one.name, one.usual);
+  }
+  return fmt::format("{} ({})", entry.name, text);
+}
+
+/// The shapes with the parameters that stand in the brackets.
+std::vector<std::string> with_parameters(const CatalogueEntry& entry, const Effect& effect) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::invalid_argument(
+        fmt::format("effect \"{}\" {}, expected \"{}\"; or a channel and a shape of its own",
+                    effect.name, why, expected_name(entry)));
+  };
+  std::vector<std::string> shapes = entry.shape;
+  std::vector<std::string_view> given;
+  std::string_view rest = taken_apart(effect.name).brackets;
+  while (!trimmed(rest).empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view item = rest.substr(0, comma);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::string_view name = trimmed(item.substr(0, equals));
+    const std::string_view number = trimmed(item.substr(std::min(equals + 1, item.size())));
+    const auto is_it = [name](const InnerParameter& one) { return one.name == name; };
+    if (std::none_of(entry.parameters.begin(), entry.parameters.end(), is_it) ||
+        std::find(given.begin(), given.end(), name) != given.end()) {
+      refuse(fmt::format("has no parameter \"{}\", or has it twice", name));
+    }
+    double value = 0.0;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (read.ec != std::errc{} || read.ptr != number.data() + number.size() ||
+        !std::isfinite(value)) {
+      refuse(fmt::format("has {} = \"{}\", which is no number", name, number));
+    }
+    given.push_back(name);
+    const std::string text = value < 0.0 ? fmt::format("({})", number) : std::string(number);
+    for (std::string& shape : shapes) shape = replaced(shape, fmt::format("{{{}}}", name), text);
+  }
+  if (given.size() < entry.parameters.size()) refuse("lacks a place or threshold");
+  return shapes;
+}
+
+std::vector<std::string> shapes_of(const CatalogueEntry& entry, const Effect& effect) {
+  if (entry.has_parameters()) return with_parameters(entry, effect);
+  if (!entry.of_covariate()) return entry.shape;
+  const std::string_view covariate = taken_apart(present_name(effect.name)).brackets;
+  if (covariate.empty()) {
+    throw std::invalid_argument(fmt::format("effect \"{}\" needs a covariate, expected \"{}\"",
+                                            effect.name, expected_name(entry)));
+  }
+  std::vector<std::string> shapes;
+  for (const std::string& shape : entry.shape) shapes.push_back(replaced(shape, "{}", covariate));
+  return shapes;
+}
+
 }  // namespace
 
 bool CatalogueEntry::of_covariate() const {
   return !shape.empty() && shape.front().find("{}") != std::string::npos;
 }
 
-const std::vector<CatalogueEntry>& catalogue() {
-  using enum Channel;
-  static const std::vector<CatalogueEntry> entries{
-      {"wheel diameter ratio",
-       difference,
-       {"1"},
-       "wheels that are not equally large",
-       "multiply each wheel's travel by its factor"},
-      {"wheelbase",
-       turn,
-       {"1"},
-       "a wheelbase other than believed, contact points that move",
-       "correct the wheelbase in the robot's software"},
-      {"travel scale",
-       travel,
-       {"1"},
-       "wheels larger or smaller than believed, as drives show it",
-       "correct the distance per tick"},
-      {"wheel scale",
-       wheels,
-       {"1"},
-       "both wheels larger or smaller than believed",
-       "correct the wheel diameter"},
-      {"sighting delay",
-       delay,
-       {"1"},
-       "sightings or truth that are stamped late",
-       "synchronise the clocks"},
-      {"constant creep", creep, {"1"}, "toe-in, a sensor frame that is turned", "align the wheels"},
-      {"cross-slope creep",
-       creep,
-       {"sin(heading)", "cos(heading)"},
-       "a floor that slopes sideways",
-       "level the floor, or map its slope"},
-      {"centrifugal side-slip",
-       creep,
-       {"speed*turn_rate"},
-       "tyres that slip outwards in bends",
-       "drive bends more slowly"},
-      {"slope",
-       travel,
-       {"sin(heading)", "cos(heading)"},
-       "a floor that slopes: slip differs up and down",
-       "level the floor, or map its slope"},
-      {"slip with speed", travel, {"speed"}, "tyres that slip more when fast", "drive more slowly"},
-      {"loss per start",
-       advance,
-       {"starts"},
-       "wheels that slip when they start",
-       "accelerate gently"},
-      {"turn scrub",
-       turn,
-       {"abs(turn_rate)"},
-       "tyres that scrub more when turning fast",
-       "turn more slowly"},
-      {"turn asymmetry",
-       turn,
-       {"sign(turn_rate)"},
-       "castors or loads that favour one side",
-       "look at the castors and the load"},
-      {"twist per spin",
-       rotate,
-       {"spins"},
-       "castors that swing at the start of a turn",
-       "turn less often, or with a run-up"},
-      {"load on both wheels", wheels, {"{}"}, "tyres that give under a load", "inflate the tyres"},
-      {"load on one wheel", left, {"{}"}, "a load that lies off the middle", "centre the load"},
-      {"tyre drift",
-       wheels,
-       {"{}"},
-       "wear, pressure or temperature of the tyres",
-       "calibrate again from time to time"},
-      {"tyre drift with time",
-       wheels,
-       {"t"},
-       "pressure or temperature of the tyres",
-       "calibrate again from time to time"},
-      {"tyre drift with distance",
-       wheels,
-       {"distance"},
-       "wear of the tyres",
-       "calibrate again from time to time"},
-      {"backlash of the left wheel",
-       advance,
-       {"reverses_left"},
-       "play in the left wheel's gear",
-       "tighten the gear"},
-      {"backlash of the right wheel",
-       advance,
-       {"reverses_right"},
-       "play in the right wheel's gear",
-       "tighten the gear"},
-      {"missed ticks",
-       wheels,
-       {"max(0, abs(speed)-0.5)"},
-       "encoders that miss ticks when fast",
-       "drive more slowly, or look at the encoder"},
-      {"sampling skew",
-       difference,
-       {"acceleration"},
-       "wheels that are read one after the other",
-       "read both encoders at once"},
-      {"heading drift", drift, {"1"}, "a gyroscope with an offset", "measure its offset at rest"},
-      {"compass offset", compass, {"1"}, "declination, mounting", "subtract it"},
-      {"hard iron",
-       compass,
-       {"sin(heading)", "cos(heading)"},
-       "magnets and steel on the robot, or a body that is tilted",
-       "calibrate the compass by a full turn"},
-      {"soft iron",
-       compass,
-       {"sin(2*heading)", "cos(2*heading)"},
-       "iron on the robot that is magnetised by the earth",
-       "calibrate the compass by a full turn"},
-      {"compass lag", compass, {"turn_rate"}, "a compass that is read late", "stamp its readings"},
-      {"motor current",
-       compass,
-       {"speed*sin(heading)", "speed*cos(heading)"},
-       "the motors' currents",
-       "move the compass away from the motors"},
-      {"compass disturbance",
-       compass,
-       {"{}"},
-       "something that is switched",
-       "move the compass away from it"},
-      {"lever arm",
-       lever,
-       {"1"},
-       "a sensor that is not where it is believed, ahead",
-       "measure its place"},
-      {"lever arm to the left",
-       lever_left,
-       {"1"},
-       "a sensor that is not where it is believed, sideways",
-       "measure its place"},
-      {"range bias", range, {"1"}, "a range sensor with an offset", "subtract it"},
-      {"range scale", range_scale, {"1"}, "a range sensor with a wrong scale", "correct the scale"},
-      {"bearing offset", bearing, {"1"}, "a sensor that is mounted askew", "subtract it"}};
-  return entries;
-}
-
 const CatalogueEntry* find_entry(std::string_view name) {
+  name = present_name(name);
   for (const CatalogueEntry& entry : catalogue()) {
-    if (entry.name == name || (entry.of_covariate() && entry.name == taken_apart(name).name)) {
-      return &entry;
-    }
+    const bool open = entry.of_covariate() || entry.has_parameters();
+    if (entry.name == name || (open && entry.name == taken_apart(name).name)) return &entry;
   }
   return nullptr;
+}
+
+std::string name_of(const CatalogueEntry& entry, std::string_view covariate) {
+  return fmt::format("{} ({})", entry.name, covariate);
+}
+
+std::string name_of(const CatalogueEntry& entry, const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t k = 0; k < entry.parameters.size(); ++k) {
+    text += fmt::format("{}{}={:.10g}", k == 0 ? "" : ", ", entry.parameters[k].name, values.at(k));
+  }
+  return fmt::format("{} ({})", entry.name, text);
 }
 
 Effect resolved(const Effect& effect) {
@@ -193,14 +142,8 @@ Effect resolved(const Effect& effect) {
       throw std::invalid_argument(fmt::format(
           "effect \"{}\" is not in the catalogue, expected a channel and a shape", effect.name));
     }
-    const std::string_view covariate = taken_apart(effect.name).covariate;
-    if (entry->of_covariate() && covariate.empty()) {
-      throw std::invalid_argument(fmt::format(
-          "effect \"{}\" needs a covariate, expected \"{} (COLUMN)\"", effect.name, entry->name));
-    }
     result.channel = facts_of(entry->channel).name;
-    for (const std::string& shape : entry->shape)
-      result.shape.push_back(replaced(shape, covariate));
+    result.shape = shapes_of(*entry, effect);
   }
   if (!parse_channel(result.channel)) {
     throw std::invalid_argument(

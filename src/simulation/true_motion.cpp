@@ -6,7 +6,6 @@
 #include "trussmap/simulation/random_stream.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -16,43 +15,13 @@
 
 #include <fmt/format.h>
 
+#include "further_columns.hpp"
+#include "leg_shape.hpp"
+
 namespace trussmap {
 namespace {
 
 using std::numbers::pi;
-
-/// Where a row of unit length leads whose heading changes evenly from `first` to `last`: five-point
-/// Gauss-Legendre quadrature, exact to rounding for turns below a radian.
-Vector2 unit_step(double first, double last) {
-  constexpr std::array<double, 5> kNodes = {-0.9061798459386640, -0.5384693101056831, 0.0,
-                                            0.5384693101056831, 0.9061798459386640};
-  constexpr std::array<double, 5> kWeights = {0.2369268850561891, 0.4786286704993665,
-                                              0.5688888888888889, 0.4786286704993665,
-                                              0.2369268850561891};
-  Vector2 sum = Vector2::Zero();
-  for (std::size_t k = 0; k < kNodes.size(); ++k) {
-    const double heading = 0.5 * (first + last) + 0.5 * (last - first) * kNodes[k];
-    sum += 0.5 * kWeights[k] * Vector2(std::cos(heading), std::sin(heading));
-  }
-  return sum;
-}
-
-/// Headings at the ends of a leg's rows, against the direction in which it set out to be driven.
-struct LegShape {
-  std::vector<double> headings;   ///< rad, one more than there are rows
-  Vector2 end = Vector2::Zero();  ///< where it leads if it is 1 m long, m
-};
-
-LegShape leg_shape(const std::array<double, 3>& bends, int rows) {
-  LegShape shape;
-  for (int k = 0; k <= rows; ++k) {
-    const double u = static_cast<double>(k) / rows;
-    shape.headings.push_back(bends[0] * std::sin(2.0 * pi * u) + bends[1] * std::cos(pi * u) +
-                             bends[2] * std::cos(2.0 * pi * u));
-    if (k > 0) shape.end += unit_step(shape.headings[idx(k - 1)], shape.headings[idx(k)]) / rows;
-  }
-  return shape;
-}
 
 int whole_rows(double seconds, double row_duration) {
   return static_cast<int>(std::max(1L, std::lround(seconds / row_duration)));
@@ -61,16 +30,17 @@ int whole_rows(double seconds, double row_duration) {
 /// The path so far, to which pieces are added.
 class Path {
  public:
-  Path(const Mesh& mesh, const DrivingStyle& style, std::uint64_t seed)
-      : mesh_(mesh), style_(style), random_(random_stream(seed, Stream::path)) {
+  Path(const Mesh& mesh, const DrivingStyle& style, std::uint64_t seed, const PathBias& bias)
+      : mesh_(mesh), style_(style), bias_(bias), random_(random_stream(seed, Stream::path)) {
     warm_at_ = uniform(0.0, 2.0 * pi);
   }
 
   void start_at(int landmark) {
     pose_ = {0.0, 0.0, 0.0};
-    set_position(stop_near(landmark));
+    set_position(stop_near(landmark) - sensor());
     motion_.start = pose_;
     change_surroundings();
+    if (style_.first_rest > 0.0) rest(style_.first_rest);
     stop(landmark);
   }
 
@@ -90,12 +60,18 @@ class Path {
       const Vector2 way = target - pose_.position();
       drive(pose_.position() + 0.5 * way + side * style_.corner_reach * quarter_turn(way), speed);
     }
+    arriving_ = true;
     drive(target, speed);
+    arriving_ = false;
     stop(landmark);
+    if (style_.overrun > 0.0) drive_on(style_.overrun, speed);
     change_surroundings();
   }
 
-  [[nodiscard]] TrueMotion take() { return std::move(motion_); }
+  [[nodiscard]] TrueMotion take() {
+    if (style_.last_rest > 0.0) rest(style_.last_rest);
+    return std::move(motion_);
+  }
 
  private:
   double uniform(double low, double high) {
@@ -107,6 +83,29 @@ class Path {
     const double dx = normal_(random_);
     const double dy = normal_(random_);
     return mesh_.positions[idx(landmark)] + style_.standing * Vector2(dx, dy);
+  }
+
+  /// The next stop's sensor as seen from the axle, in the axes of a robot of heading 0.
+  [[nodiscard]] Vector2 sensor() const {
+    const std::size_t stop = motion_.stops.size();
+    return stop < bias_.sensor.size() ? bias_.sensor[stop] : Vector2::Zero();
+  }
+
+  /// How many rows the next piece has: as many as are wanted, or as an earlier path's.
+  int rows_of_piece(int wanted) {
+    const std::size_t piece = motion_.pieces.size();
+    motion_.pieces.push_back(piece < bias_.pieces.size() ? bias_.pieces[piece] : wanted);
+    return motion_.pieces.back();
+  }
+
+  [[nodiscard]] double slip_of(std::size_t row) const {
+    return row < bias_.slip.size() ? bias_.slip[row] : 0.0;
+  }
+
+  /// A step as the slip of the row (of all rows of the drive) makes it.
+  [[nodiscard]] Vector2 slipped(const Vector2& step, std::size_t row) const {
+    if (bias_.slip.empty()) return step;
+    return step + slip_of(row) * quarter_turn(step);
   }
 
   void set_position(const Vector2& position) {
@@ -143,19 +142,21 @@ class Path {
   void add_row(Activity activity, double speed, double turn_rate) {
     const double t = time_after(motion_.rows.size() + 1);
     surroundings_.temperature_C = temperature(t);
+    const double slip_speed = slip_of(motion_.rows.size()) * speed;
     motion_.rows.push_back(
-        {t, style_.row_duration, speed, turn_rate, activity, pose_, surroundings_});
+        {t, style_.row_duration, speed, turn_rate, activity, pose_, surroundings_, slip_speed});
   }
 
   void rest(double seconds) {
-    const int rows = whole_rows(seconds, style_.row_duration);
+    const int rows = rows_of_piece(whole_rows(seconds, style_.row_duration));
     for (int k = 0; k < rows; ++k) add_row(Activity::rest, 0.0, 0.0);
   }
 
   void spin(double angle) {
     const double wanted_rate = uniform(style_.slowest_turn, style_.fastest_turn);
-    if (angle == 0.0) return;
-    const int rows = whole_rows(std::abs(angle) / wanted_rate, style_.row_duration);
+    int rows = rows_of_piece(
+        angle == 0.0 ? 0 : whole_rows(std::abs(angle) / wanted_rate, style_.row_duration));
+    if (rows == 0 && angle != 0.0) rows = motion_.pieces.back() = 1;
     const double before = pose_.heading;
     for (int k = 1; k <= rows; ++k) {
       pose_.heading = before + angle * k / rows;
@@ -164,41 +165,91 @@ class Path {
   }
 
   /// A bend that leaves the leg a leg: not so large that it leads back to where it began.
-  LegShape draw_shape(int rows) {
+  LegShape draw_shape(const std::vector<double>& profile) {
     LegShape shape;
     do {
       const double bow = style_.bend * normal_(random_);
       const double sweep = style_.bend * normal_(random_);
       const double ess = style_.bend * normal_(random_);
-      shape = leg_shape({bow, sweep, ess}, rows);
+      shape = leg_shape({bow, sweep, ess}, profile);
     } while (shape.end.norm() < 0.5);
     return shape;
   }
 
   void drive(const Vector2& target, double wanted_speed) {
-    const Vector2 way = target - pose_.position();
-    const int rows = whole_rows(way.norm() / wanted_speed, style_.row_duration);
-    const LegShape shape = draw_shape(rows);
+    const double dt = style_.row_duration;
+    const Vector2 straight = target - pose_.position();
+    const std::size_t piece = motion_.pieces.size() + 1;  // after the spin
+    const int rows = piece < bias_.pieces.size() ? bias_.pieces[piece]
+                                                 : whole_rows(straight.norm() / wanted_speed, dt);
+    const int ramp_rows = std::min(static_cast<int>(std::lround(style_.ramp / dt)), rows / 2);
+    const std::vector<double> profile = speed_profile(rows, ramp_rows);
+    LegShape shape = draw_shape(profile);
+    shape.end = end_with_slip(shape, profile);
+    const Vector2 way = way_to(target, shape);
     const double length = way.norm() / shape.end.norm();
     const double turned = direction(way) - direction(shape.end);
     spin(wrap_angle(turned + shape.headings.front() - pose_.heading));
 
     const double offset = pose_.heading - shape.headings.front();
-    const double speed = length / (rows * style_.row_duration);
+    const double speed = length / (rows * dt);
+    rows_of_piece(rows);
     for (int k = 1; k <= rows; ++k) {
       const double first = offset + shape.headings[idx(k - 1)];
       const double last = offset + shape.headings[idx(k)];
-      set_position(pose_.position() + length / rows * unit_step(first, last));
+      const Vector2 step = length / rows * profile[idx(k - 1)] * unit_step(first, last);
+      set_position(pose_.position() + slipped(step, motion_.rows.size()));
       pose_.heading = last;
-      add_row(Activity::drive, speed, (last - first) / style_.row_duration);
+      add_row(Activity::drive, speed * profile[idx(k - 1)], (last - first) / dt);
+    }
+  }
+
+  /// Where the leg leads if it is 1 m long, the slip of its rows considered.
+  [[nodiscard]] Vector2 end_with_slip(const LegShape& shape,
+                                      const std::vector<double>& profile) const {
+    if (bias_.slip.empty()) return shape.end;
+    const std::size_t spin = motion_.pieces.size();
+    const std::size_t first =
+        motion_.rows.size() + (spin < bias_.pieces.size() ? idx(bias_.pieces[spin]) : 0);
+    Vector2 end = Vector2::Zero();
+    for (std::size_t k = 0; k < profile.size(); ++k) {
+      const Vector2 step = unit_step(shape.headings[k], shape.headings[k + 1]);
+      end += profile[k] / static_cast<double>(profile.size()) * slipped(step, first + k);
+    }
+    return end;
+  }
+
+  /// From here to where the axle must stop for the sensor to be on the target: that depends on the
+  /// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
+  [[nodiscard]] Vector2 way_to(const Vector2& target, const LegShape& shape) const {
+    const Vector2 straight = target - pose_.position();
+    const Vector2 ahead = arriving_ ? sensor() : Vector2::Zero();
+    if (ahead.isZero(0.0)) return straight;
+    Vector2 way = straight;
+    for (int pass = 0; pass < 60; ++pass) {
+      const double arrival = direction(way) - direction(shape.end) + shape.headings.back();
+      way = straight - rotation(arrival) * ahead;
+    }
+    return way;
+  }
+
+  /// Straight ahead.
+  void drive_on(double length, double wanted_speed) {
+    const int rows = rows_of_piece(whole_rows(length / wanted_speed, style_.row_duration));
+    const Vector2 step = length / rows * unit_step(pose_.heading, pose_.heading);
+    for (int k = 0; k < rows; ++k) {
+      set_position(pose_.position() + slipped(step, motion_.rows.size()));
+      add_row(Activity::drive, length / (rows * style_.row_duration), 0.0);
     }
   }
 
   const Mesh& mesh_;
   const DrivingStyle& style_;
+  const PathBias& bias_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
-  double warm_at_ = 0.0;  ///< phase of the temperature, rad
+  double warm_at_ = 0.0;   ///< phase of the temperature, rad
+  bool arriving_ = false;  ///< driving to a landmark, not to a corner
   Pose pose_;
   Surroundings surroundings_;
   TrueMotion motion_;
@@ -229,9 +280,14 @@ void check_style(const DrivingStyle& style) {
           "a share must lie between 0 and 1");
   require(is_range(style.shortest_rest, style.longest_rest),
           "rests must last above 0 s, shortest first");
+  check_covariates(style.covariates);
   require(style.full_spins >= 0, "the number of stops with full spins must not be negative");
   require(std::isfinite(style.standing) && style.standing >= 0.0,
           "how exactly the robot stands on a landmark must be 0 m or more");
+  for (const double value : {style.first_rest, style.last_rest, style.overrun, style.ramp}) {
+    require(std::isfinite(value) && value >= 0.0,
+            "a rest, an overrun and a ramp must be 0 or more, in s, m and s");
+  }
 }
 
 void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing) {
@@ -247,19 +303,21 @@ void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing)
 }  // namespace
 
 TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const DrivingStyle& style,
-                    std::uint64_t seed) {
+                    std::uint64_t seed, const PathBias& bias) {
   check_style(style);
   check_walk(mesh, walk, style.standing);
   const std::size_t legs = walk.size() - 1;
   const auto spins_until = [&](std::size_t leg) {
     return leg * static_cast<std::size_t>(style.full_spins) / legs;
   };
-  Path path(mesh, style, seed);
+  Path path(mesh, style, seed, bias);
   path.start_at(walk.front());
   for (std::size_t k = 0; k < legs; ++k) {
     path.go(walk[k + 1], spins_until(k + 1) > spins_until(k));
   }
-  return path.take();
+  TrueMotion motion = path.take();
+  motion.further = further_columns(motion, style.covariates, seed);
+  return motion;
 }
 
 }  // namespace trussmap

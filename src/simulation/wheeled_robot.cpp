@@ -5,13 +5,19 @@
 #include "trussmap/core/index.hpp"
 #include "trussmap/simulation/random_stream.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
+
+constexpr double kPatience = 1.5;  // of the rests round a drive whose sightings are stamped late
 
 /// Chance, of one kind.
 class Dice {
@@ -35,13 +41,35 @@ struct SensorRow {
   double heading = 0.0;  ///< rad, not wrapped
 };
 
+/// The gain of a channel in a row.
+double gain(const ChannelGains& gains, Channel channel, std::size_t row) {
+  const auto found = gains.find(channel);
+  return found == gains.end() ? 0.0 : found->second[row];
+}
+
 SensorRow sense(const TrueRow& row, const WheeledRobot& robot) {
   const double speed_about_centre = row.turn_rate * 0.5 * robot.wheelbase;
   return {(row.speed - speed_about_centre) * row.duration,
           (row.speed + speed_about_centre) * row.duration, row.pose.heading};
 }
 
-Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed) {
+std::vector<SensorRow> sense(const TrueMotion& motion, const WheeledRobot& robot,
+                             const ChannelGains& gains) {
+  std::vector<SensorRow> seen;
+  for (const TrueRow& row : motion.rows) seen.push_back(sense(row, robot));
+  if (gains.empty()) return seen;
+  const std::vector<WheelTravels> wheels = wheels_under(motion, gains, robot.wheelbase);
+  for (std::size_t row = 0; row < seen.size(); ++row) {
+    seen[row].left = wheels[row].left;
+    seen[row].right = wheels[row].right;
+    seen[row].heading += gain(gains, Channel::compass, row);
+  }
+  return seen;
+}
+
+Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
+                   const ChannelGains& gains) {
+  const std::vector<SensorRow> sensed = sense(motion, robot, gains);
   Dice wheels(seed, Stream::wheels);
   Dice compass(seed, Stream::compass);
   Drive drive;
@@ -49,7 +77,7 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
   Covariate lights{"lights", {}};
   Covariate temperature{"temperature_C", {}};
   for (const TrueRow& row : motion.rows) {
-    const SensorRow seen = sense(row, robot);
+    const SensorRow& seen = sensed[drive.rows()];
     drive.t.push_back(row.t);
     drive.left.push_back(seen.left +
                          wheels.deviation(robot.noise.left * std::sqrt(std::abs(seen.left))));
@@ -63,23 +91,33 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
     temperature.values.push_back(row.surroundings.temperature_C);
   }
   drive.covariates = {payload, lights, temperature};
+  drive.covariates.insert(drive.covariates.end(), motion.further.begin(), motion.further.end());
   return drive;
 }
 
 /// Standing on the landmark first, then what the range sensor sees from there.
 std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const WheeledRobot& robot,
-                            Dice& dice) {
-  std::vector<Sighting> sightings = {{stop.t, landmark_name(mesh, stop.landmark)}};
+                            const ChannelGains& gains, Dice& dice) {
+  const std::size_t row = stop.rows == 0 ? 0 : stop.rows - 1;
+  const auto g = [&](Channel channel) { return gain(gains, channel, row); };
+  // In whole nanoseconds, as all times of a path.
+  const double delay = g(Channel::delay);
+  const double t = delay == 0.0 ? stop.t : std::round((stop.t + delay) * 1e9) / 1e9;
+  std::vector<Sighting> sightings = {{t, landmark_name(mesh, stop.landmark)}};
   if (!robot.range_sensor) return sightings;
+  const Vector2 sensor =
+      stop.pose.position() +
+      rotation(stop.pose.heading) * Vector2(g(Channel::lever), g(Channel::lever_left));
   for (int k = 0; k < mesh.landmarks(); ++k) {
-    const Vector2 view = mesh.positions[idx(k)] - stop.pose.position();
+    const Vector2 view = mesh.positions[idx(k)] - sensor;
     if (k == stop.landmark || view.norm() > robot.reach) continue;
     const bool recognised = dice.falls(robot.recognition);
-    const double range = view.norm() + dice.deviation(robot.noise.range);
-    const double bearing =
-        wrap_angle(direction(view) - stop.pose.heading + dice.deviation(robot.noise.bearing));
+    const double range = view.norm() * (1.0 + g(Channel::range_scale)) + g(Channel::range) +
+                         dice.deviation(robot.noise.range);
+    const double bearing = wrap_angle(direction(view) - stop.pose.heading + g(Channel::bearing) +
+                                      dice.deviation(robot.noise.bearing));
     if (recognised && range > 0.0) {
-      sightings.push_back({stop.t, landmark_name(mesh, k), range, bearing});
+      sightings.push_back({t, landmark_name(mesh, k), range, bearing});
     }
   }
   return sightings;
@@ -103,16 +141,25 @@ void check(const WheeledRobot& robot) {
 }  // namespace
 
 Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot& robot,
-                 std::uint64_t seed) {
+                 std::uint64_t seed, const ChannelGains& gains) {
   check(robot);
   Dice dice(seed, Stream::range);
   Recording recording;
   recording.name = "simulation";
-  recording.drive = record_drive(motion, robot, seed);
+  recording.drive = record_drive(motion, robot, seed, gains);
   for (const TrueStop& stop : motion.stops) {
-    for (const Sighting& sighting : sight(stop, mesh, robot, dice)) {
+    for (const Sighting& sighting : sight(stop, mesh, robot, gains, dice)) {
+      if (sighting.t < 0.0 || sighting.t > motion.rows.back().t) {
+        throw std::invalid_argument(
+            fmt::format("a sighting would be stamped {:g} s, outside the drive (0 to {:g} s)",
+                        sighting.t, motion.rows.back().t));
+      }
       recording.sightings.push_back(sighting);
     }
+  }
+  if (gains.contains(Channel::delay)) {
+    std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
+                     [](const Sighting& a, const Sighting& b) { return a.t < b.t; });
   }
   return recording;
 }
@@ -134,11 +181,24 @@ std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed)
 
 SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                               const DrivingStyle& style, const WheeledRobot& robot,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, const SimulatedEffects& effects) {
+  DrivingStyle patient = style;
+  double latest = 0.0;
+  for (const Effect& effect : effects.effects) {
+    if (effect.channel != facts_of(Channel::delay).name) continue;
+    for (const double coefficient : effect.coefficients) latest += std::abs(coefficient);
+  }
+  if (latest > 0.0) {
+    patient.first_rest = std::max(style.first_rest, kPatience * (1.0 + latest));
+    patient.last_rest = std::max(style.last_rest, kPatience * (1.0 + latest));
+  }
+  check(robot);
+  MotionUnderEffects laid =
+      lay_path_under(mesh, walk, patient, robot.wheelbase, effects.effects, effects.rates, seed);
   SimulatedDrive drive;
-  drive.motion = lay_path(mesh, walk, style, seed);
-  drive.recording = record(drive.motion, mesh, robot, seed);
+  drive.recording = record(laid.motion, mesh, robot, seed, laid.gains);
   drive.recording.survey = survey(mesh, robot.noise.survey, seed);
+  drive.motion = std::move(laid.motion);
   return drive;
 }
 

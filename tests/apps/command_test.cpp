@@ -25,7 +25,7 @@ json read_json(const std::filesystem::path& path) {
 }
 
 TEST(Command, HelpIsThereForEveryCommand) {
-  for (const char* name : {"", "simulate", "tour", "build", "convert"}) {
+  for (const char* name : {"", "simulate", "reveal", "tour", "build", "convert"}) {
     const Ran ran = run_trussmap(std::string(name) + " --help");
     EXPECT_EQ(ran.status, 0) << name;
     EXPECT_NE(ran.output.find("--help"), std::string::npos) << name;
@@ -136,7 +136,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
             "trussmap: \"polish\" is no command, expected one of adjust, build, calibrate, "
-            "convert, noise, "
+            "convert, noise, reveal, "
             "simulate, tour, umbmark\n");
 }
 

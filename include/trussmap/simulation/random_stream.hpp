@@ -10,7 +10,17 @@
 
 namespace trussmap {
 
-enum class Stream : std::uint32_t { mesh = 1, walk, path, wheels, compass, range, survey };
+enum class Stream : std::uint32_t {
+  mesh = 1,
+  walk,
+  path,
+  wheels,
+  compass,
+  range,
+  survey,
+  covariates,
+  hidden
+};
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U),

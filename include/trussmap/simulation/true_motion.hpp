@@ -13,14 +13,18 @@
 // turned so that it ends at its stop; positions come from quadrature of the headings.
 //
 // Whatever disturbs odometry acts between a TrueRow and the sensors (see wheeled_robot.hpp): the
-// row has all that an effect may depend on.
+// row has all that an effect may depend on. Two kinds of effect change the path itself: wheels that
+// creep sideways, and a sensor beside the axle with which the robot stops on its landmarks
+// (PathBias).
 #pragma once
 
 #include "trussmap/core/planar.hpp"
+#include "trussmap/recording/recording.hpp"
 #include "trussmap/simulation/mesh_world.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace trussmap {
@@ -43,6 +47,7 @@ struct TrueRow {
   Activity activity = Activity::rest;
   Pose pose;  ///< at t; heading not wrapped
   Surroundings surroundings;
+  double slip_speed = 0.0;  ///< m/s to its left, constant within the row
 };
 
 /// The robot at a landmark.
@@ -50,13 +55,22 @@ struct TrueStop {
   double t = 0.0;        ///< s, the end of a row, or the start of the first
   int landmark = -1;     ///< of the mesh
   std::size_t rows = 0;  ///< rows driven until then
-  Pose pose;             ///< true pose; its position is off the landmark's
+  Pose pose;             ///< true pose of the axle; its position is off the landmark's
 };
 
 struct TrueMotion {
   Pose start;  ///< before the first row, at time 0
   std::vector<TrueRow> rows;
-  std::vector<TrueStop> stops;  ///< one per landmark of the walk
+  std::vector<TrueStop> stops;     ///< one per landmark of the walk
+  std::vector<Covariate> further;  ///< what else was the case, one value per row
+  std::vector<int> pieces;         ///< rows of each rest, spin and drive, in order
+};
+
+/// What a path gives way to. Empty lists: to nothing.
+struct PathBias {
+  std::vector<double> slip;     ///< per row, sideways (to the left) for every forward metre
+  std::vector<Vector2> sensor;  ///< per stop: what meets the landmark, from the axle; robot axes, m
+  std::vector<int> pieces;      ///< rows of each piece, of an earlier path of the same seed
 };
 
 /// How the robot drives. Ranges are drawn from uniformly, anew for each leg or spin.
@@ -76,13 +90,20 @@ struct DrivingStyle {
   double standing = 0.005;         ///< m per coordinate, standard deviation of stop - landmark
   double load_change_share = 0.7;  ///< chance of another payload for the next leg
   double lights_change_share = 0.5;
+  double first_rest = 0.0;  ///< s, before the first sighting
+  double last_rest = 0.0;   ///< s, after the last
+  double overrun = 0.0;     ///< m driven straight on after each landmark, before the spin
+  double ramp = 0.0;        ///< s in which a drive reaches its speed, and leaves it
+  std::vector<std::string> covariates;  ///< further columns: anew at one stop in two, from 0 to 1
 };
 
 /// Lays the path along a walk (landmarks of the mesh, successive ones different). The robot starts
 /// on the first landmark with heading 0 at time 0. Throws std::invalid_argument on a walk of fewer
 /// than two landmarks, on a style that makes no sense, and on landmarks so near each other (below
-/// 20 `standing`, or 1 cm) that a leg would have no direction. The same seed gives the same path.
+/// 20 `standing`, or 1 cm) that a leg would have no direction. The same seed gives the same path;
+/// with a bias, the same style of driving on a path that gives way to it.
 [[nodiscard]] TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk,
-                                  const DrivingStyle& style, std::uint64_t seed);
+                                  const DrivingStyle& style, std::uint64_t seed,
+                                  const PathBias& bias = {});
 
 }  // namespace trussmap

@@ -12,9 +12,13 @@
 // the robot sights the landmark it stands on, and with a range sensor some of the others in reach.
 // Each kind of noise has a random stream of its own: leaving one sensor out, or its noise, changes
 // nothing in the others, and a noise-free twin follows the same path (but see DrivingStyle).
+//
+// Physical effects (effect_gains.hpp) change what the sensors say of the true motion. A coefficient
+// is exact: without noise, the same effect in a model explains the recording fully.
 #pragma once
 
 #include "trussmap/recording/recording.hpp"
+#include "trussmap/simulation/effect_gains.hpp"
 #include "trussmap/simulation/true_motion.hpp"
 
 #include <cstdint>
@@ -48,16 +52,26 @@ struct SimulatedDrive {
 };
 
 /// What the robot records on this motion, without the survey. Throws std::invalid_argument on
-/// noise that is negative or not finite, and on a wheelbase or reach that is not positive.
+/// noise that is negative or not finite, on a wheelbase or reach that is not positive, and on
+/// effects that leave a range of 0 or less or a sighting outside the drive.
 [[nodiscard]] Recording record(const TrueMotion& motion, const Mesh& mesh,
-                               const WheeledRobot& robot, std::uint64_t seed);
+                               const WheeledRobot& robot, std::uint64_t seed,
+                               const ChannelGains& gains = {});
 
 /// Every landmark's position as surveyed with this standard deviation [m per coordinate].
 [[nodiscard]] std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed);
 
-/// Lays the path, records it and adds the survey.
+/// Physical effects on a simulated drive; each with channel, shape and coefficients.
+struct SimulatedEffects {
+  std::vector<Effect> effects;
+  Rates rates = Rates::as_recorded;
+};
+
+/// Lays the path, records it and adds the survey. Under a delay the robot rests before the first
+/// and after the last sighting, so that they stay within the drive.
 [[nodiscard]] SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                                             const DrivingStyle& style, const WheeledRobot& robot,
-                                            std::uint64_t seed);
+                                            std::uint64_t seed,
+                                            const SimulatedEffects& effects = {});
 
 }  // namespace trussmap

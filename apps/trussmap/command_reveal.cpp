@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap reveal: what simulate --hide has hidden.
+#include "trussmap/io/atomic_file.hpp"
+
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "effect_options.hpp"
+#include "sealed_answer.hpp"
+
+namespace trussmap::app {
+namespace {
+
+struct RevealOptions {
+  std::string folder;
+  std::string json;
+};
+
+void run_reveal(const RevealOptions& options) {
+  const nlohmann::ordered_json answer = opened(options.folder);
+  if (!options.json.empty()) write_file(options.json, answer.dump(2) + "\n");
+  fmt::print("revealed: what is hidden in {}\n\n{}", options.folder,
+             effects_table(answer.at("effects")));
+}
+
+}  // namespace
+
+void setup_reveal(CLI::App& app) {
+  auto options = std::make_shared<RevealOptions>();
+  CLI::App& command =
+      *app.add_subcommand("reveal", "Open the answer that simulate --hide sealed: the effects.");
+  command.add_option("recording", options->folder, "Folder that simulate --hide wrote")->required();
+  command.add_option("--json", options->json, "Write the answer to this file as JSON");
+  command.callback([options] { run_reveal(*options); });
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "effect_options.hpp"
+
+#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+namespace trussmap::app {
+namespace {
+
+/// "-0.02,0.1".
+std::vector<double> numbers(const std::string& option, std::string_view text) {
+  std::vector<double> values;
+  while (true) {
+    const std::string_view one = text.substr(0, text.find(','));
+    double value = 0.0;
+    const auto read = std::from_chars(one.data(), one.data() + one.size(), value);
+    if (read.ec != std::errc{} || read.ptr != one.data() + one.size() || !std::isfinite(value)) {
+      throw UsageError(
+          fmt::format("--effect \"{}\": \"{}\" is no number, expected NAME=VALUE or "
+                      "NAME=VALUE,VALUE",
+                      option, one));
+    }
+    values.push_back(value);
+    if (one.size() == text.size()) return values;
+    text.remove_prefix(one.size() + 1);
+  }
+}
+
+/// A name may hold "=" in its brackets, so the last one counts.
+Effect named_effect(const std::string& option) {
+  const std::size_t equals = option.rfind('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw UsageError(
+        fmt::format("--effect \"{}\": expected NAME=VALUE or NAME=VALUE,VALUE", option));
+  }
+  Effect effect;
+  effect.name = option.substr(0, equals);
+  effect.coefficients = numbers(option, std::string_view(option).substr(equals + 1));
+  if (find_entry(effect.name) == nullptr) {
+    throw UsageError(
+        fmt::format("--effect \"{}\": \"{}\" is not in the catalogue, whose names "
+                    "trussmap simulate --help lists",
+                    option, effect.name));
+  }
+  return effect;
+}
+
+Effect applicable(const Effect& effect) {
+  Effect result = resolved(effect);
+  if (result.coefficients.empty()) {
+    throw UsageError(
+        fmt::format("effect \"{}\" has no coefficients, expected one per shape", effect.name));
+  }
+  // A simulated recording is one session, the first.
+  if (result.per_session) {
+    if (result.coefficients.size() < result.shape.size()) {
+      throw UsageError(fmt::format("effect \"{}\" has {} coefficients, expected {}, one per shape",
+                                   effect.name, result.coefficients.size(), result.shape.size()));
+    }
+    result.coefficients.resize(result.shape.size());
+    result.per_session = false;
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_effect_options(CLI::App& command, EffectOptions& options) {
+  command
+      .add_option("--effect", options.named,
+                  "NAME=VALUE[,VALUE...]: a physical effect of the catalogue (its names: below), "
+                  "with a coefficient per shape; again for more effects")
+      ->allow_extra_args(false);
+  command.add_option("--effects", options.model,
+                     "Model file whose [[effect]]s, with their coefficients, act too: any channel "
+                     "and shape");
+}
+
+std::vector<Effect> effects_of(const EffectOptions& options) {
+  std::vector<Effect> effects;
+  if (!options.model.empty()) effects = read_model(options.model).effects;
+  for (const std::string& option : options.named) effects.push_back(named_effect(option));
+  try {
+    for (Effect& effect : effects) effect = applicable(effect);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  return effects;
+}
+
+std::string catalogue_text() {
+  std::string text = "Effects, with the unit of their coefficients (channel x shape):\n";
+  for (const CatalogueEntry& entry : catalogue()) {
+    std::string name(entry.name);
+    if (entry.of_covariate()) name = name_of(entry, "COLUMN");
+    if (entry.has_parameters()) {
+      std::string inner;
+      for (const InnerParameter& one : entry.parameters) {
+        inner += fmt::format("{}{}=..", inner.empty() ? "" : ", ", one.name);
+      }
+      name = name_of(entry, inner);
+    }
+    std::string shapes;
+    for (const std::string& shape : entry.shape) shapes += (shapes.empty() ? "" : "; ") + shape;
+    text += fmt::format("  {:<42} {:<10} {} x {}\n", name, entry.unit.empty() ? "-" : entry.unit,
+                        facts_of(entry.channel).name, shapes);
+  }
+  return text;
+}
+
+nlohmann::ordered_json effects_json(const std::vector<Effect>& effects) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Effect& effect : effects) {
+    list.push_back({{"name", effect.name},
+                    {"channel", effect.channel},
+                    {"shape", effect.shape},
+                    {"coefficients", effect.coefficients}});
+  }
+  return list;
+}
+
+std::string effects_table(const nlohmann::ordered_json& effects) {
+  TextTable table;
+  table.columns = {Align::left, Align::left, Align::right, Align::left, Align::left};
+  table.has_heading = true;
+  table.rows = {{"effect", "channel", "coefficient", "unit", "shape"}};
+  for (const auto& effect : effects) {
+    const std::string name = effect.at("name");
+    const CatalogueEntry* entry = find_entry(name);
+    for (std::size_t k = 0; k < effect.at("shape").size(); ++k) {
+      table.rows.push_back({k == 0 ? name : "", k == 0 ? effect.at("channel") : "",
+                            fmt::format("{:g}", effect.at("coefficients").at(k).get<double>()),
+                            entry == nullptr ? "" : std::string(entry->unit),
+                            effect.at("shape").at(k)});
+    }
+  }
+  return format_table(table);
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Effects as a user names them on the command line: --effect NAME=VALUE[,VALUE...], and the
+// effects of a model file.
+#pragma once
+
+#include "trussmap/effects/model.hpp"
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+
+struct EffectOptions {
+  std::vector<std::string> named;  ///< NAME=VALUE[,VALUE...]
+  std::string model;               ///< file; "" = none
+};
+
+void add_effect_options(CLI::App& command, EffectOptions& options);
+
+/// The model's effects, then the named ones: each with channel, shape and coefficients. Throws
+/// UsageError, in one line.
+[[nodiscard]] std::vector<Effect> effects_of(const EffectOptions& options);
+
+/// The catalogue's names with the unit of their coefficients, for --help.
+[[nodiscard]] std::string catalogue_text();
+
+/// [{"name", "channel", "shape", "coefficients"}].
+[[nodiscard]] nlohmann::ordered_json effects_json(const std::vector<Effect>& effects);
+
+/// A table with a heading, a line per coefficient.
+[[nodiscard]] std::string effects_table(const nlohmann::ordered_json& effects);
+
+}  // namespace trussmap::app

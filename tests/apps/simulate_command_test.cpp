@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Effects in simulated recordings, from the command line: named, taken from a model, or hidden.
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch_folder.hpp"
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+using testing::Ran;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+
+json read_json(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  return json::parse(stream);
+}
+
+/// How far build's map is from the survey under a model, m.
+double map_error(const ScratchFolder& scratch, const std::string& folder,
+                 const std::string& model) {
+  const std::string at = scratch.path().string() + "/";
+  const Ran built = run_trussmap("build " + at + folder + " --model " + at + model +
+                                 " --method adjustment --json " + at + "m.json");
+  EXPECT_EQ(built.status, 0) << built.output;
+  return read_json(scratch.path() / "m.json")["survey"]["rms_m"].get<double>();
+}
+
+TEST(SimulateCommand, AModelWithTheSameEffectsExplainsTheRecording) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string effects =
+      "[[effect]]\nname = \"one wheel under load\"\nchannel = \"left\"\n"
+      "shape = [\"payload_kg\"]\ncoefficients = [0.0004]\n"
+      "[[effect]]\nname = \"turn asymmetry\"\ncoefficients = [-0.03]\n";
+  scratch.write("effects.toml", effects);
+  const Ran ran = run_trussmap("simulate --mesh 4x4 --uneven --noise-free --no-compass --effects " +
+                               at + "effects.toml --out " + at + "r");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("one wheel under load"), std::string::npos);
+  // Two effects side by side, which build takes out one after the other: 1e-5 of a turn is left.
+  EXPECT_LT(map_error(scratch, "r", "effects.toml"), 0.002);
+  EXPECT_GT(map_error(scratch, "r", "r/model.toml"), 0.02);
+}
+
+TEST(SimulateCommand, ANamedEffectIsThatOfAModel) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  scratch.write("e.toml",
+                "[[effect]]\nname = \"hard iron\"\ncoefficients = [0.2, -0.1]\n"
+                "[[effect]]\nname = \"slippery patch (x=5, y=5, r=3)\"\ncoefficients = [-0.03]\n");
+  ASSERT_EQ(
+      run_trussmap("simulate --mesh 3x3 --seed 4 --effects " + at + "e.toml --out " + at + "a")
+          .status,
+      0);
+  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --seed 4 --effect 'hard iron=0.2,-0.1' --effect "
+                         "'slippery patch (x=5, y=5, r=3)=-0.03' --out " +
+                         at + "b --json " + at + "b.json")
+                .status,
+            0);
+  const auto files = scratch.contents();
+  EXPECT_EQ(files.at("a/drive.csv"), files.at("b/drive.csv"));
+  EXPECT_EQ(files.at("a/model.toml").find("[[effect]]"), std::string::npos);
+  EXPECT_EQ(read_json(scratch.path() / "b.json")["effects"][1]["channel"], "wheels");
+}
+
+TEST(SimulateCommand, WhatIsHiddenIsSealedAndRevealed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string simulate = "simulate --mesh 4x4 --tours 1 --seed 11 --hide --out " + at;
+  const Ran ran = run_trussmap(simulate + "a --json " + at + "a.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  ASSERT_EQ(run_trussmap(simulate + "b").status, 0);
+  auto files = scratch.contents();
+  EXPECT_EQ(files.at("a/drive.csv"), files.at("b/drive.csv"));
+  EXPECT_EQ(files.at("a/truth.json"), files.at("b/truth.json"));
+
+  const Ran revealed = run_trussmap("reveal " + at + "a --json " + at + "answer.json");
+  ASSERT_EQ(revealed.status, 0) << revealed.output;
+  const json answer = read_json(scratch.path() / "answer.json");
+  ASSERT_GE(answer["effects"].size(), 1U);
+  for (const json& effect : answer["effects"]) {
+    const std::string name = effect["name"];
+    EXPECT_NE(revealed.output.find(name), std::string::npos) << revealed.output;
+    for (const char* file : {"a/truth.json", "a/model.toml", "a.json"}) {
+      EXPECT_EQ(files.at(file).find(name), std::string::npos) << file;
+    }
+    EXPECT_EQ(ran.output.find(name), std::string::npos) << ran.output;
+  }
+
+  // The answer is the recording's: the same effects, given openly, make the same drive.
+  std::string open = "simulate --mesh 4x4 --tours 1 --seed 11 --out " + at + "c";
+  for (const json& effect : answer["effects"]) {
+    std::string values;
+    for (const json& value : effect["coefficients"]) {
+      values += (values.empty() ? "" : ",") + value.dump();
+    }
+    open += " --effect '" + effect["name"].get<std::string>() + "=" + values + "'";
+  }
+  ASSERT_EQ(run_trussmap(open).status, 0);
+  files = scratch.contents();
+  EXPECT_EQ(files.at("a/drive.csv"), files.at("c/drive.csv"));
+}
+
+TEST(SimulateCommand, AnAnswerGoesWithItsRecordingAndAgainstTampering) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --hide --out " + at + "r").status, 0);
+  std::string text = scratch.contents().at("r/truth.json");
+  const std::size_t middle = text.find("\"sealed\": \"") + 30;
+  text[middle] = text[middle] == 'A' ? 'B' : 'A';
+  scratch.write("r/truth.json", text);
+  Ran ran = run_trussmap("reveal " + at + "r");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find("truth.json: is broken"), std::string::npos) << ran.output;
+  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --out " + at + "r").status, 0);
+  ran = run_trussmap("reveal " + at + "r");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find("truth.json: there is none"), std::string::npos) << ran.output;
+}
+
+TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  scratch.write("fitless.toml", "[[effect]]\nname = \"wheelbase\"\n");
+  scratch.write("channel.toml",
+                "[[effect]]\nname = \"x\"\nchannel = \"lift\"\nshape = [\"1\"]\n"
+                "coefficients = [1]\n");
+  const auto before = scratch.contents();
+  struct Bad {
+    std::string arguments;
+    const char* says;
+  };
+  for (const Bad& bad :
+       std::vector<Bad>{{"--effect gremlins=1", "\"gremlins\" is not in the catalogue"},
+                        {"--effect wheelbase", "expected NAME=VALUE"},
+                        {"--effect wheelbase=", "is no number"},
+                        {"--effect wheelbase=0.1x", "\"0.1x\" is no number"},
+                        {"--effect wheelbase=nan", "\"nan\" is no number"},
+                        {"--effect wheelbase=0.1,", "\"\" is no number"},
+                        {"--effect wheelbase=0.1,0.2", "has 2 coefficients, expected 1"},
+                        {"--effect slope=0.1", "has 1 coefficients, expected 2"},
+                        {"--effect 'slippery patch=0.1'", "lacks a place or threshold"},
+                        {"--effect 'tyre drift=0.1'", "needs a covariate"},
+                        {"--effect 'tyre drift (fuel)=0.1'", "names \"fuel\", which is unknown"},
+                        {"--effect 'travel scale=-1'", "leave no wheel travels"},
+                        {"--effects " + at + "none.toml", "cannot be opened"},
+                        {"--effects " + at + "fitless.toml", "has no coefficients"},
+                        {"--effects " + at + "channel.toml", "channel \"lift\", which is unknown"},
+                        {"--hide --effect wheelbase=0.1", "excludes"},
+                        {"--covariate speed", "\"speed\", which is taken"},
+                        {"--covariate 2b", "expected a letter"},
+                        {"--speeds 0.9,0.2", "slowest first"},
+                        {"--ramp -1", "not a number of 0 or more"}}) {
+    const Ran ran = run_trussmap("simulate --mesh 3x3 --out " + at + "r " + bad.arguments);
+    EXPECT_EQ(ran.status, 2) << bad.arguments << "\n" << ran.output;
+    EXPECT_NE(ran.output.find(bad.says), std::string::npos) << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_EQ(ran.output.rfind("trussmap: ", 0), 0U) << ran.output;
+  }
+  EXPECT_EQ(scratch.contents(), before);
+}
+
+TEST(SimulateCommand, HelpListsTheCatalogue) {
+  const Ran ran = run_trussmap("simulate --help");
+  for (const char* name : {"wheel diameter ratio", "tyre drift (COLUMN)", "slippery patch (x=.."}) {
+    EXPECT_NE(ran.output.find(name), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace trussmap
