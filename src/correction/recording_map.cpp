@@ -95,8 +95,8 @@ RecordingMap map_recordings(const std::vector<Recording>& recordings, const Mode
       std::all_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_compass(); });
   RecordingMap result;
-  Guide guide;
-  for (int n = 0; n < (compass ? 1 : options.looks); ++n) {
+  Guide guide = options.guide;
+  for (int n = 0; n < (compass || !guide.empty() ? 1 : options.looks); ++n) {
     result = look(in_order(recordings), model, options, guide);
     guide = guide_of(result.map);
   }
