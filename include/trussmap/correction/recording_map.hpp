@@ -37,7 +37,10 @@ namespace trussmap {
 
 struct RecordingMapOptions {
   MapBuilderOptions builder{.eta = {.hold_first = false}};
-  double min_drive = kDefaultMinDrive;   ///< m
+  double min_drive = kDefaultMinDrive;  ///< m
+  /// Without a compass headings rest on single sightings; one that comes late while the robot turns
+  /// is off by more than its noise. Added to that, rad.
+  double bearing_slack = 0.1;
   double gate = 8.0;                     ///< standard deviations; infinity: no gate
   double map_sd = 0.3;                   ///< m per coordinate: how wrong the map itself may be
   int confirmations = 3;                 ///< of a landmark that is only seen from afar
