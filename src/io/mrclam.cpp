@@ -153,7 +153,7 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
 /// noise in how far they drove goes with time, in how far they turned with the turn. All figures
 /// are for the five robots of sets 6, 1 and 4 alike. Drive: chi^2 is 0.9 (forward) and 1.0 (turn)
 /// of what is redundant, with one camera frame in 3 s. Sightings: their chi^2 is 0.7 (range) and
-/// 0.3 (bearing); they are believed less because in the 10 frames per second errors last for
+/// 0.3 (bearing); they are believed less because at 4 frames per second errors last for
 /// seconds, and because the frames come 0.25 s late, which while turning is a bearing error.
 Model create_model() {
   Model model;
