@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap build: a landmark map from recordings.
-#include "trussmap/adjustment/linear_truss.hpp"
 #include "trussmap/core/error.hpp"
 #include "trussmap/correction/recording_map.hpp"
 #include "trussmap/graph/survey_comparison.hpp"
@@ -16,6 +15,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,6 +24,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "adjusted_map.hpp"
 #include "commands.hpp"
 #include "map_files.hpp"
 #include "option_checks.hpp"
@@ -40,7 +41,7 @@ struct BuildOptions {
   std::string method = "elastic";
   std::string eta = "50";
   double min_drive = kDefaultMinDrive;  // m
-  double gate = RecordingMapOptions{}.gate;
+  std::optional<double> gate;           // standard deviations; none: the method's own
   std::string out;
   std::string json_file;
   std::string svg;
@@ -48,7 +49,10 @@ struct BuildOptions {
 
 constexpr std::size_t kRejectedShown = 10;
 
-/// How the map is made: "adjustment" is the elastic builder's legs, everything at once.
+/// A sighting of the adjustment is weighed against all others, which leaves less room for doubt.
+constexpr double kAdjustmentGate = 4.0;
+
+/// The map builder's part; an adjustment takes only legs and routes from it.
 RecordingMapOptions map_options(const BuildOptions& options) {
   RecordingMapOptions result;
   result.builder.method = options.method == "elastic-printed" ? Method::elastic_printed
@@ -58,7 +62,7 @@ RecordingMapOptions map_options(const BuildOptions& options) {
   result.builder.eta = parse_eta(options.eta);
   result.builder.eta.hold_first = false;
   result.min_drive = options.min_drive;
-  result.gate = options.gate;
+  if (options.gate && options.method != "adjustment") result.gate = *options.gate;
   return result;
 }
 
@@ -110,6 +114,14 @@ json result_json(const RecordingMap& built, const std::string& method) {
           {"unconfirmed", built.unconfirmed}};
 }
 
+json fit_json(const AdjustedMap& adjusted) {
+  return {{"chi2", adjusted.chi2},
+          {"dof", adjusted.dof},
+          {"p_value", adjusted.p_value},
+          {"iterations", adjusted.iterations},
+          {"converged", adjusted.converged}};
+}
+
 void print_survey(const Judged& judged) {
   const SurveyComparison& map = judged.map;
   fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
@@ -133,8 +145,9 @@ void print_survey(const Judged& judged) {
   }
 }
 
-void print_result(const RecordingMap& built, const BuildOptions& options, bool judged_too,
-                  const Judged& judged, const std::vector<std::string>& warnings) {
+void print_result(const RecordingMap& built, const std::optional<AdjustedMap>& adjusted,
+                  const BuildOptions& options, bool judged_too, const Judged& judged,
+                  const std::vector<std::string>& warnings) {
   fmt::print("map of {} landmarks and {} routes, method {}\n\n", built.map.landmarks(),
              built.map.routes(), options.method);
   const auto line = [](const char* what, std::size_t number) {
@@ -144,6 +157,10 @@ void print_result(const RecordingMap& built, const BuildOptions& options, bool j
   line("loops closed at first sight", static_cast<std::size_t>(built.first_sight));
   line("known routes driven again", static_cast<std::size_t>(built.refinements));
   line("sightings beside a leg's end", static_cast<std::size_t>(built.side_sightings));
+  if (adjusted) {
+    fmt::print("  {:<28} {:>8.1f}  of {} degrees of freedom\n", "chi^2 of the adjustment",
+               adjusted->chi2, adjusted->dof);
+  }
   line("sightings kept out", built.rejected.size());
   for (std::size_t k = 0; k < std::min(built.rejected.size(), kRejectedShown); ++k) {
     const RejectedSighting& one = built.rejected[k];
@@ -259,15 +276,22 @@ void run_build(const BuildOptions& options) {
       throw InputError(options.model, 0, error.what());
     }
   }
-  RecordingMap built = map_recordings(recordings, model, map_options(options));
-  if (options.method == "adjustment") built.map = adjust_linear(built.map).map;
+  std::optional<AdjustedMap> adjusted;
+  if (options.method == "adjustment") {
+    adjusted = map_by_adjustment(recordings, model, options.gate.value_or(kAdjustmentGate),
+                                 map_options(options));
+  }
+  const RecordingMap built =
+      adjusted ? adjusted->map : map_recordings(recordings, model, map_options(options));
 
   const std::vector<SurveyPoint> survey = survey_of(recordings);
   Judged judged;
   judged.map = compare_with_survey(positions_of(built.map), survey);
   judged.rms_dead_reckoning = survey_rms(built.dead_reckoned, survey, judged.map.contradicting);
   const bool judged_too = judged.map.landmarks >= 3;
-  const std::vector<std::string> warnings = doubts_of(built, recordings, model, options);
+  std::vector<std::string> warnings = doubts_of(built, recordings, model, options);
+  if (adjusted)
+    warnings.insert(warnings.end(), adjusted->warnings.begin(), adjusted->warnings.end());
 
   std::vector<std::pair<fs::path, std::string>> files;
   if (!options.out.empty()) {
@@ -276,6 +300,7 @@ void run_build(const BuildOptions& options) {
   }
   if (!options.json_file.empty()) {
     json result = result_json(built, options.method);
+    if (adjusted) result.update(fit_json(*adjusted));
     if (judged_too) result["survey"] = survey_json(judged);
     result["warnings"] = warnings;
     files.emplace_back(options.json_file, result.dump(2) + "\n");
@@ -284,7 +309,7 @@ void run_build(const BuildOptions& options) {
     files.emplace_back(options.svg, draw_map(picture_of(built, survey, judged, options.method)));
   }
   write_files(files);
-  print_result(built, options, judged_too, judged, warnings);
+  print_result(built, adjusted, options, judged_too, judged, warnings);
 }
 
 }  // namespace
@@ -295,15 +320,20 @@ void setup_build(CLI::App& app) {
       "build", "Build a landmark map from recordings (several folders: several sessions)");
   command->add_option("RECORDING", options->recordings, "Folders of CSV streams")->required();
   command->add_option("--model", options->model, "The robot and its noise (TOML)")->required();
-  command->add_option("--method", options->method, "How the map is made")
+  command
+      ->add_option(
+          "--method", options->method,
+          "How the map is made: leg by leg, or by an adjustment of all measurements at once")
       ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "The map (.graphml, .g2o, .geojson or .dot)");
   command->add_option("--json", options->json_file, "The figures, complete (JSON)");
   command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
   command
-      ->add_option("--eta", options->eta,
-                   "How many landmarks a refinement may move: a number, all, or auto")
+      ->add_option(
+          "--eta", options->eta,
+          "How many landmarks a refinement of the elastic methods may move: a number, all, "
+          "or auto")
       ->check(eta_text())
       ->capture_default_str();
   command
@@ -313,9 +343,10 @@ void setup_build(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--gate", options->gate,
-                   "Keep out sightings that contradict the map by more standard deviations")
-      ->check(above_zero())
-      ->capture_default_str();
+                   "Keep out sightings that contradict the map by more standard deviations; by "
+                   "default 8, of the sighting, the reckoning and the map together, and for "
+                   "adjustment 4, of the sighting alone")
+      ->check(above_zero());
   command->callback([options] { run_build(*options); });
 }
 

@@ -75,7 +75,8 @@ Guide guide_of(const LandmarkGraph& map) {
 void check(const std::vector<Recording>& recordings, const RecordingMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
   if (!(options.gate > 0.0) || !(options.map_sd >= 0.0) || options.looks < 1 ||
-      options.settle < 0 || options.confirmations < 1 || !(options.min_drive >= 0.0)) {
+      options.settle < 0 || options.confirmations < 1 || !(options.bearing_slack >= 0.0) ||
+      !(options.min_drive >= 0.0)) {
     throw std::invalid_argument("a recording map's option is out of range");
   }
   for (const Recording& recording : recordings) {
@@ -95,8 +96,9 @@ RecordingMap map_recordings(const std::vector<Recording>& recordings, const Mode
       std::all_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_compass(); });
   RecordingMap result;
-  Guide guide;
-  for (int n = 0; n < (compass ? 1 : options.looks); ++n) {
+  Guide guide = options.guide;
+  const int looks = compass || !guide.empty() ? 1 : options.looks;
+  for (int n = 0; n < looks; ++n) {
     result = look(in_order(recordings), model, options, guide);
     guide = guide_of(result.map);
   }

@@ -105,7 +105,11 @@ void Session::resume(const Stop& stop) {
 }
 
 LandmarkOffset Session::offset_of(const Sighting& sighting) const {
-  return landmark_offset(sighting, model_.noise);
+  Noise noise = model_.noise;
+  if (!recording_.drive.has_compass()) {
+    noise.bearing = std::hypot(noise.bearing, options_.bearing_slack);
+  }
+  return landmark_offset(sighting, noise);
 }
 
 /// Where a landmark is thought to be: by the earlier look, else by the map so far.

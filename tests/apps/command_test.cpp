@@ -165,6 +165,40 @@ TEST(Command, AMapThatContradictsItsRoutesIsDoubted) {
   }
 }
 
+/// Positions with covariances, what was kept out by name, and how well all fits.
+TEST(Command, TheAdjustmentKeepsAMisreadLabelOutAndSaysSo) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --range-sensor --seed 5 --out " + at +
+               "/r");
+  const auto files = scratch.contents();
+  std::string sightings = files.at("r/sightings.csv");
+  const std::size_t row = sightings.rfind('\n', sightings.size() - 2) + 1;
+  const std::size_t name = sightings.find(',', row) + 1;
+  const std::size_t end = sightings.find(',', name);
+  const std::string time = sightings.substr(row, name - 1 - row);
+  const std::string wrong = sightings.substr(name, end - name) == "L0_0" ? "L3_3" : "L0_0";
+  sightings.replace(name, end - name, wrong);
+  scratch.write("r/sightings.csv", sightings);
+  const std::string build = "build " + at + "/r --model " + at + "/r/model.toml --out " + at +
+                            "/m.graphml --json " + at + "/m.json --method adjustment";
+  const Ran ran = run_trussmap(build);
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json result = read_json(scratch.path() / "m.json");
+  EXPECT_EQ(result["method"], "adjustment");
+  bool named = false;
+  for (const json& one : result["rejected"]) named = named || one["landmark"] == wrong;
+  EXPECT_TRUE(named) << result["rejected"].dump() << " at t = " << time;
+  EXPECT_LE(result["rejected"].size(), 5U);
+  EXPECT_TRUE(result["converged"].get<bool>());
+  EXPECT_GT(result["p_value"].get<double>(), 1e-4);
+  EXPECT_NE(scratch.contents().at("m.graphml").find("c_xx"), std::string::npos);
+  EXPECT_LT(result["survey"]["rms_m"].get<double>(), 0.1);
+  for (const char* key : {"rms_similarity_m", "scale"}) {
+    EXPECT_TRUE(result["survey"].contains(key)) << key;
+  }
+}
+
 TEST(Command, UnitsThatNoRobotHasAreDoubted) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string();

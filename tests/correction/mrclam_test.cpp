@@ -4,7 +4,8 @@
 // Maps of real robots (UTIAS MRCLAM sets 6, 1 and 4, five robots each) against the survey.
 #include "trussmap/io/mrclam.hpp"
 
-#include "trussmap/adjustment/linear_truss.hpp"
+#include "trussmap/adjustment/recording_adjustment.hpp"
+#include "trussmap/adjustment/recording_start.hpp"
 #include "trussmap/correction/recording_map.hpp"
 #include "trussmap/graph/survey_comparison.hpp"
 
@@ -66,6 +67,57 @@ TEST(SlowMrclam, TheElasticMapBeatsDeadReckoningForEveryRobot) {
   EXPECT_GE(ratios[ratios.size() / 2], 5.0);
 }
 
+/// What build's method adjustment does: gate of 4 standard deviations, survey and truth not used.
+SurveyComparison adjusted_against_survey(const std::vector<Recording>& recordings,
+                                         const Model& model) {
+  ProblemOptions measured;
+  measured.survey = measured.truth = false;
+  const RecordingProblem problem = make_problem(recordings, model, measured);
+  RecordingAdjustmentOptions robust;
+  robust.gate = 16.0;
+  const RecordingAdjustment fit = adjust(problem, {}, robust);
+  EXPECT_TRUE(fit.converged);
+  EXPECT_LE(fit.left_out.size(), 31U);  // misread labels, of some thousand sightings
+  LandmarkPositions positions;
+  for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
+    positions[problem.landmarks[k]] = fit.state.landmarks[k];
+  }
+  return compare_with_survey(positions, recordings.front().survey);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+TEST(SlowMrclam, TheAdjustedMapIsRightForEveryRobot) {
+  TRUSSMAP_NEEDS_SHARED("data/mrclam");
+  std::vector<double> rigid;
+  std::vector<double> similarity;
+  for (const int set : {6, 1, 4}) {
+    for (int number = 1; number <= 5; ++number) {
+      const MrclamRecording read = robot(set, number);
+      const SurveyComparison survey = adjusted_against_survey({read.recording}, read.model);
+      const RecordingProblem problem = make_problem({read.recording}, read.model, {false, false});
+      LandmarkPositions reckoned;
+      const RecordingState dead = dead_reckoned(problem);
+      for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
+        reckoned[problem.landmarks[k]] = dead.landmarks[k];
+      }
+      const double rms = survey_rms(reckoned, read.recording.survey, survey.contradicting);
+      const std::string name = std::to_string(set) + "/" + std::to_string(number);
+      EXPECT_LE(survey.rigid.rms, 0.16) << name;
+      EXPECT_LE(survey.similarity.rms, 0.12) << name;
+      EXPECT_GE(rms, 5.0 * survey.rigid.rms) << name;
+      EXPECT_EQ(survey.contradicting.size(), set == 1 ? 2U : 0U) << name;
+      rigid.push_back(survey.rigid.rms);
+      similarity.push_back(survey.similarity.rms);
+    }
+  }
+  EXPECT_LE(median(rigid), 0.11);
+  EXPECT_LE(median(similarity), 0.045);
+}
+
 /// Each robot starts at a place and in a direction of its own, without a compass.
 TEST(SlowMrclam, FiveRobotsMakeOneMap) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
@@ -82,6 +134,7 @@ TEST(SlowMrclam, FiveRobotsMakeOneMap) {
         compare_with_survey(positions_of(built.map), recordings.front().survey);
     EXPECT_LE(survey.rigid.rms, 0.3) << set;
     EXPECT_EQ(survey.contradicting.size(), set == 1 ? 2U : 0U) << set;
+    EXPECT_LE(adjusted_against_survey(recordings, model).rigid.rms, 0.11) << set;
   }
 }
 

@@ -20,7 +20,8 @@
 // taken from the map of the look before. A further session begins where it first sights a landmark
 // of the map; without a compass its heading there follows from the next landmarks of the map that
 // it meets. Sessions with a compass come first. At the end an elastic map is settled in `settle`
-// rounds with falling gain (MapBuilder::settle).
+// rounds with falling gain (MapBuilder::settle). Where a better map is known (`guide`), one look is
+// enough: headings and gate come from there, as do the legs' and routes' directions.
 #pragma once
 
 #include "trussmap/correction/map_builder.hpp"
@@ -37,11 +38,15 @@ namespace trussmap {
 struct RecordingMapOptions {
   MapBuilderOptions builder{.eta = {.hold_first = false}};
   double min_drive = kDefaultMinDrive;  ///< m
-  double gate = 8.0;                    ///< standard deviations; infinity: no gate
-  double map_sd = 0.3;                  ///< m per coordinate: how wrong the map itself may be
-  int confirmations = 3;                ///< of a landmark that is only seen from afar
-  int looks = 2;                        ///< without a compass; with one, one look is enough
-  int settle = 5;                       ///< rounds of settling at the end
+  /// Without a compass headings rest on single sightings; one that comes late while the robot turns
+  /// is off by more than its noise. Added to that, rad.
+  double bearing_slack = 0.1;
+  double gate = 8.0;                     ///< standard deviations; infinity: no gate
+  double map_sd = 0.3;                   ///< m per coordinate: how wrong the map itself may be
+  int confirmations = 3;                 ///< of a landmark that is only seen from afar
+  int looks = 2;                         ///< without a compass; with one, one look is enough
+  int settle = 5;                        ///< rounds of settling at the end
+  std::map<std::string, Vector2> guide;  ///< m, landmarks as an adjustment has them; may be empty
 };
 
 struct RejectedSighting {
