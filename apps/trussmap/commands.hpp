@@ -19,10 +19,13 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void setup_add(CLI::App& app);
 void setup_adjust(CLI::App& app);
 void setup_build(CLI::App& app);
 void setup_calibrate(CLI::App& app);
+void setup_compare(CLI::App& app);
 void setup_convert(CLI::App& app);
+void setup_fit(CLI::App& app);
 void setup_noise(CLI::App& app);
 void setup_reveal(CLI::App& app);
 void setup_simulate(CLI::App& app);

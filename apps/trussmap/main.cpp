@@ -39,10 +39,13 @@ int main(int argc, char** argv) try {
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
   app.require_subcommand(1);
   app.set_version_flag("--version", "trussmap " TRUSSMAP_VERSION);
+  trussmap::app::setup_add(app);
   trussmap::app::setup_adjust(app);
   trussmap::app::setup_build(app);
   trussmap::app::setup_calibrate(app);
+  trussmap::app::setup_compare(app);
   trussmap::app::setup_convert(app);
+  trussmap::app::setup_fit(app);
   trussmap::app::setup_noise(app);
   trussmap::app::setup_reveal(app);
   trussmap::app::setup_simulate(app);

@@ -110,17 +110,6 @@ double duration_of(const Drive& drive, std::size_t row) {
   return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
 }
 
-std::vector<DrivePattern> drive_patterns(Channel channel, const std::vector<double>& f,
-                                         const Drive& drive, double wheelbase) {
-  std::vector<DrivePattern> result;
-  result.reserve(f.size());
-  for (std::size_t row = 0; row < f.size(); ++row) {
-    result.push_back(row_pattern(channel, f[row], drive.left[row], drive.right[row],
-                                 duration_of(drive, row), wheelbase));
-  }
-  return result;
-}
-
 double largest(const std::vector<std::vector<double>>& values) {
   double most = 0.0;
   for (const std::vector<double>& session : values) {
@@ -150,6 +139,7 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const Recording& one = recordings[s];
     const int session = static_cast<int>(s);
+    missing_.push_back(paths[s].missing);
     middles_.push_back(
         row_variables(one.drive, robot.wheelbase, paths[s].start, paths[s].ends, session));
     ends_.push_back(
@@ -157,6 +147,16 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
     sightings_.push_back(event_variables(one, robot, paths[s], one.sightings, session));
     truths_.push_back(event_variables(one, robot, paths[s], one.truth, session));
   }
+}
+
+WheelTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
+  const Drive& drive = recordings_[session].drive;
+  WheelTravel travel{drive.left[row], drive.right[row]};
+  if (missing_[session].empty()) return travel;
+  const Vector2& lacks = missing_[session][row];
+  travel.left += lacks[0] - 0.5 * robot_.wheelbase * lacks[1];
+  travel.right += lacks[0] + 0.5 * robot_.wheelbase * lacks[1];
+  return travel;
 }
 
 const RowVariables& ShapeContext::variables(std::size_t session, Instant at) const {
@@ -217,8 +217,14 @@ Column make_column(Channel channel, const std::string& shape, int session,
   auto values = context.values(shape, readings ? Instant::end : Instant::middle);
   keep_session(values, session);
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    column.pattern.drives.push_back(
-        drive_patterns(channel, values[s], recordings[s].drive, context.robot().wheelbase));
+    std::vector<DrivePattern>& patterns = column.pattern.drives.emplace_back();
+    patterns.reserve(values[s].size());
+    for (std::size_t row = 0; row < values[s].size(); ++row) {
+      const WheelTravel travel = context.travel(s, row);
+      patterns.push_back(row_pattern(channel, values[s][row], travel.left, travel.right,
+                                     duration_of(recordings[s].drive, row),
+                                     context.robot().wheelbase));
+    }
   }
   column.largest = largest(values);
   return column;

@@ -41,24 +41,30 @@ class Reckoner {
 /// Fills the ends of the rows that lie between two nodes.
 void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckoner,
                   const PoseNode& from, const Pose& at_from, const PoseNode& to, const Pose& at_to,
-                  std::vector<Pose>& ends) {
+                  SessionPath& path) {
   const std::vector<PieceRow> rows = piece_rows(drive, from.t, to.t, robot);
   std::vector<Pose> reached;
+  std::vector<Pose> steps;
   Pose pose = at_from;
   for (const PieceRow& row : rows) {
-    pose = compose(pose, reckoner.motion(std::vector<PieceRow>{row}));
+    steps.push_back(reckoner.motion(std::vector<PieceRow>{row}));
+    pose = compose(pose, steps.back());
     reached.push_back(pose);
   }
   if (rows.empty()) return;
   const Vector2 missing = at_to.position() - pose.position();
   const double missing_turn = wrap_angle(at_to.heading - pose.heading);
+  Pose before = at_from;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double share = static_cast<double>(k + 1) / static_cast<double>(rows.size());
-    Pose& end = ends[rows[k].row];
+    Pose& end = path.ends[rows[k].row];
     end = reached[k];
     end.x += share * missing.x();
     end.y += share * missing.y();
     end.heading += share * missing_turn;
+    const Pose step = relative(before, end);
+    path.missing[rows[k].row] += Vector2(step.x - steps[k].x, step.heading - steps[k].heading);
+    before = end;
   }
 }
 
@@ -90,6 +96,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
     const Reckoner reckoner(drive, robot, border, offsets, static_cast<int>(s));
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
+    path.missing.assign(drive.rows(), Vector2::Zero());
     if (first[s] < 0) continue;
     const PoseNode& first_node = problem.poses[idx(first[s])];
     path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));
@@ -100,7 +107,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
     }
     for (int k = first[s]; k < last[s]; ++k) {
       fill_between(drive, robot, reckoner, problem.poses[idx(k)], state.poses[idx(k)],
-                   problem.poses[idx(k + 1)], state.poses[idx(k + 1)], path.ends);
+                   problem.poses[idx(k + 1)], state.poses[idx(k + 1)], path);
     }
     pose = state.poses[idx(last[s])];
     for (const PieceRow& row :

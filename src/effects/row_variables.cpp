@@ -198,15 +198,18 @@ RowVariables instant_variables(const Drive& drive, double wheelbase,
   const std::vector<double>& middle = by_row.at("distance");
   std::vector<double>& t = variables["t"];
   std::vector<double>& distance = variables["distance"];
+  std::vector<double>& heading = variables["heading"];
+  std::vector<double>& x = variables["x"];
+  std::vector<double>& y = variables["y"];
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::size_t row = rows[k];
     const double length = 0.5 * std::abs(drive.left[row] + drive.right[row]);
     const double share = 1.0 - (drive.t[row] - instants[k]) / duration_of(drive, row);
     t[k] = instants[k] - drive.start();
     distance[k] = middle[row] + (share - 0.5) * length;
-    variables["heading"].push_back(poses[k].heading);
-    variables["x"].push_back(poses[k].x);
-    variables["y"].push_back(poses[k].y);
+    heading.push_back(poses[k].heading);
+    x.push_back(poses[k].x);
+    y.push_back(poses[k].y);
   }
   return variables;
 }

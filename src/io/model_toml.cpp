@@ -150,6 +150,7 @@ class ModelReader {
       }
     }
     check(effect, table);
+    effect.line = static_cast<int>(table.source().begin.line);
     return effect;
   }
 

@@ -105,6 +105,7 @@ void SparseCholesky::factorise(const SparseMatrix& lower) {
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
+  if (b.size() == 0) return b;
   cholmod_dense rhs = view_of(b.data(), b.rows(), b.cols());
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, cholmod_->factor, &rhs, &cholmod_->common);
   cholmod_->check("solve");

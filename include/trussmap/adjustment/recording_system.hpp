@@ -67,6 +67,15 @@ class RecordingSystem {
   /// Inverse normal matrix (with border) times the columns of b (nodes, then coefficients).
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
+  /// A^-1 b, nodes only.
+  [[nodiscard]] Eigen::MatrixXd solve_nodes(const Eigen::MatrixXd& b) const {
+    return normal_.solve(b);
+  }
+  /// Whitened rows by the coefficients of further effects, at 0; the rest as it was linearised at
+  /// these values.
+  [[nodiscard]] Eigen::MatrixXd columns_of(const EffectBorder& further, const RecordingState& state,
+                                           const Eigen::VectorXd& coefficients) const;
+
   [[nodiscard]] int rows() const { return rows_; }
   /// Where a measurement's rows begin in r and M.
   [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }

@@ -20,6 +20,10 @@
 //   range, range_scale, bearing   f (sightings only)          its instant
 //   delay               -speed f ahead, -turn rate f          its instant
 //
+// Travel and turn are those of the record less its noise, as the fit believes it (fitted_path.hpp):
+// a column that holds the same noise as the residual it is to explain would explain it. So would a
+// smaller map, by shrinking every error, where no survey fixes the scale.
+//
 // All act on the motion as recorded, so the order of effects does not matter. A delay is exact only
 // near its reference: the times of sightings and truth are to be moved back by that (retimed).
 #pragma once
@@ -28,6 +32,7 @@
 #include "trussmap/criticism/fitted_path.hpp"
 #include "trussmap/effects/channel.hpp"
 #include "trussmap/effects/row_variables.hpp"
+#include "trussmap/odometry/arc.hpp"
 
 #include <string>
 #include <vector>
@@ -59,6 +64,8 @@ class ShapeContext {
   enum class Instant { middle, end, sighting, truth };
   [[nodiscard]] std::vector<std::vector<double>> values(const std::string& shape, Instant at) const;
   [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
+  /// A row's travels, its noise taken out.
+  [[nodiscard]] WheelTravel travel(std::size_t session, std::size_t row) const;
 
   [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -66,6 +73,7 @@ class ShapeContext {
  private:
   const std::vector<Recording>& recordings_;
   Robot robot_;
+  std::vector<std::vector<Vector2>> missing_;  ///< per session and row: travel, turn
   std::vector<RowVariables> middles_, ends_, sightings_, truths_;
 };
 

@@ -17,6 +17,9 @@ namespace trussmap {
 struct SessionPath {
   Pose start;              ///< at the drive's start; map frame, heading not wrapped
   std::vector<Pose> ends;  ///< at the end of each row
+  /// What each row's record lacks of forward travel (m) and turn (rad), as the fit believes: its
+  /// noise. Empty: nothing.
+  std::vector<Vector2> missing = {};
 };
 
 /// One path per session. `offsets` are the coefficients of the border less their references. Before

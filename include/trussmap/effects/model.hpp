@@ -39,6 +39,7 @@ struct Effect {
   std::vector<std::string> shape;
   std::vector<double> coefficients;  ///< empty until fitted
   bool per_session = false;          ///< one set of coefficients per recording
+  int line = 0;                      ///< of the model file that it came from, 0: of none
 };
 
 struct Model {

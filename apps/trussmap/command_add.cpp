@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap add: an effect into a model.
+#include "trussmap/core/error.hpp"
+#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/effects/shape.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/model_toml.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+
+namespace trussmap::app {
+namespace {
+
+struct AddOptions {
+  std::string model;
+  std::string effect;
+  std::string channel;
+  std::vector<std::string> shape;
+  bool per_session = false;
+  std::string out;
+};
+
+void run_add(const AddOptions& options) {
+  Model model = read_model(options.model);
+  const auto same = [&options](const Effect& one) { return one.name == options.effect; };
+  if (std::any_of(model.effects.begin(), model.effects.end(), same)) {
+    throw UsageError(fmt::format("{} has an effect \"{}\" already, expected another name",
+                                 options.model, options.effect));
+  }
+  if (options.channel.empty() != options.shape.empty()) {
+    throw UsageError("--channel and --shape go together, expected both or a catalogue name alone");
+  }
+  Effect effect;
+  effect.name = options.effect;
+  effect.channel = options.channel;
+  effect.shape = options.shape;
+  effect.per_session = options.per_session;
+  try {
+    effect = resolved(effect);
+    for (const std::string& shape : effect.shape) static_cast<void>(variables_of(shape));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  model.effects.push_back(effect);
+  write_file(options.out, format_model(model));
+  std::string shapes;
+  for (const std::string& shape : effect.shape) shapes += (shapes.empty() ? "" : ", ") + shape;
+  fmt::print("{}: {} x {}, not fitted yet; see trussmap fit\n", effect.name, effect.channel,
+             shapes);
+}
+
+}  // namespace
+
+void setup_add(CLI::App& app) {
+  auto options = std::make_shared<AddOptions>();
+  CLI::App* command = app.add_subcommand("add", "Add a physical effect to a model");
+  command->add_option("MODEL", options->model, "Model of the robot (TOML)")->required();
+  command
+      ->add_option("EFFECT", options->effect,
+                   "Name from the catalogue (trussmap simulate --help lists it), or your own")
+      ->required();
+  command->add_option("--channel", options->channel, "Where an effect of your own acts")
+      ->type_name("CHANNEL");
+  command
+      ->add_option("--shape", options->shape,
+                   "Expressions over the row's variables, one per coefficient")
+      ->type_name("EXPR...");
+  command->add_flag("--per-session", options->per_session, "Coefficients of its own per recording");
+  command->add_option("--out", options->out, "Write the model (TOML)")
+      ->required()
+      ->type_name("FILE");
+  command->footer(
+      "  trussmap add robot.toml wheelbase --out robot2.toml\n"
+      "  trussmap add robot.toml \"tyre drift (temperature_C)\" --out robot2.toml\n"
+      "  trussmap add robot.toml \"magnet in the lights\" --channel compass --shape lights "
+      "--out robot2.toml");
+  command->callback([options] { run_add(*options); });
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap compare: how far a model is from measurements, and where.
+#include "trussmap/criticism/comparison.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "model_recordings.hpp"
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct CompareOptions {
+  ModelRecordingsOptions input;
+  std::size_t worst = 5;
+};
+
+ordered_json json(const Comparison& result) {
+  ordered_json worst = ordered_json::array();
+  for (const LegMisfit& leg : result.worst) {
+    worst.push_back({{"from", leg.from},
+                     {"to", leg.to},
+                     {"t", leg.t},
+                     {"chi2", leg.chi2},
+                     {"dof", leg.dof},
+                     {"stretch_error", leg.stretch_error},
+                     {"orientation_error_rad", leg.orientation_error}});
+  }
+  ordered_json routes = ordered_json::array();
+  for (const RouteMisfit& route : result.routes) {
+    routes.push_back({{"from", route.from},
+                      {"to", route.to},
+                      {"traversals", route.traversals},
+                      {"chi2", route.chi2},
+                      {"force_per_m", route.force},
+                      {"stretch_error", route.stretch_error},
+                      {"orientation_error_rad", route.orientation_error}});
+  }
+  ordered_json landmarks = ordered_json::array();
+  for (const LandmarkMisfit& one : result.worst_landmarks) {
+    landmarks.push_back(
+        {{"landmark", one.landmark}, {"sightings", one.sightings}, {"chi2", one.chi2}});
+  }
+  ordered_json trends = ordered_json::array();
+  for (const Trend& trend : result.trends) {
+    trends.push_back({{"residual", trend.kind},
+                      {"against", trend.against},
+                      {"channel", trend.effect.channel},
+                      {"shape", trend.effect.shape},
+                      {"coefficients", trend.effect.coefficients},
+                      {"score", trend.score},
+                      {"dof", trend.dof},
+                      {"p_value", trend.p_value},
+                      {"p_adjusted", trend.p_adjusted},
+                      {"size_rms", trend.size}});
+  }
+  ordered_json sources = ordered_json::array();
+  for (const SourceCalibration& one : result.sources) {
+    sources.push_back({{"source", one.source},
+                       {"factor", one.factor},
+                       {"sd", one.sd},
+                       {"redundancy", one.redundancy}});
+  }
+  return {{"verdict", result.consistent ? "consistent" : "misfit"},
+          {"chi2", result.chi2},
+          {"dof", result.dof},
+          {"p_value", result.p_value},
+          {"legs", result.legs},
+          {"landmarks", result.landmarks},
+          {"heldout", held_out_json(result.held_out)},
+          {"worst", worst},
+          {"routes", routes},
+          {"worst_landmarks", landmarks},
+          {"trends", trends},
+          {"noise", sources},
+          {"advice", result.advice},
+          {"warnings", result.warnings}};
+}
+
+std::string size_text(const Trend& trend) {
+  if (trend.unit.empty()) return fmt::format("{:.2g} %", 100.0 * trend.size);
+  if (trend.unit == "rad") return fmt::format("{:.2g} deg", trend.size * 180.0 / std::numbers::pi);
+  if (trend.unit == "m") return fmt::format("{:.2g} mm", 1e3 * trend.size);
+  return fmt::format("{:.2g} {}", trend.size, trend.unit);
+}
+
+std::string signed_percent(double value) {
+  return fmt::format("{:+.2f}", 100.0 * value);
+}
+std::string signed_mrad(double value) {
+  return fmt::format("{:+.1f}", 1e3 * value);
+}
+
+void print_trends(const Comparison& result) {
+  constexpr double kShown = 0.05;
+  constexpr std::size_t kMost = 6;
+  TextTable table{
+      {Align::left, Align::left, Align::right, Align::right, Align::right}, {}, true, 2};
+  table.rows.push_back({"residual of", "goes with", "explains chi2", "size (rms)", "p, adjusted"});
+  for (const Trend& trend : result.trends) {
+    if (trend.p_adjusted > kShown || table.rows.size() > kMost) continue;
+    table.rows.push_back({trend.kind, trend.against == "all" ? "everything alike" : trend.against,
+                          fmt::format("{:.1f}", trend.score), size_text(trend),
+                          probability_text(trend.p_adjusted)});
+  }
+  if (table.rows.size() == 1) {
+    fmt::print("\nNo residual has a trend, of {} looked for.\n", result.trends.size());
+    return;
+  }
+  fmt::print("\nWhere the residuals go (of {} trends looked for)\n{}", result.trends.size(),
+             format_table(table));
+}
+
+void print_worst(const Comparison& result, std::size_t count) {
+  TextTable legs{
+      {Align::left, Align::right, Align::right, Align::right, Align::right}, {}, true, 2};
+  legs.rows.push_back({"leg", "t [s]", "chi2 (values)", "stretch [%]", "turned [mrad]"});
+  for (std::size_t k = 0; k < std::min(count, result.worst.size()); ++k) {
+    const LegMisfit& leg = result.worst[k];
+    legs.rows.push_back({leg.from.empty() ? "-" : leg.from + " - " + leg.to,
+                         fmt::format("{:.1f}", leg.t),
+                         fmt::format("{:.1f} ({})", leg.chi2, leg.dof),
+                         signed_percent(leg.stretch_error), signed_mrad(leg.orientation_error)});
+  }
+  if (legs.rows.size() > 1) fmt::print("\nWorst legs\n{}", format_table(legs));
+  TextTable routes{
+      {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right},
+      {},
+      true,
+      2};
+  routes.rows.push_back(
+      {"route", "driven", "chi2", "bar force [1/m]", "stretch [%]", "turned [mrad]"});
+  for (std::size_t k = 0; k < std::min(count, result.routes.size()); ++k) {
+    const RouteMisfit& route = result.routes[k];
+    routes.rows.push_back({route.from + " - " + route.to, fmt::format("{}", route.traversals),
+                           fmt::format("{:.1f}", route.chi2), fmt::format("{:+.0f}", route.force),
+                           signed_percent(route.stretch_error),
+                           signed_mrad(route.orientation_error)});
+  }
+  if (routes.rows.size() > 1) fmt::print("\nMost strained routes\n{}", format_table(routes));
+}
+
+void print_sources(const Comparison& result) {
+  constexpr double kSure = 3.0;
+  TextTable table{{Align::left, Align::right, Align::left}, {}, true, 2};
+  table.rows.push_back({"noise of", "true/stated", ""});
+  for (const SourceCalibration& one : result.sources) {
+    const double off = (one.factor - 1.0) / one.sd;
+    table.rows.push_back({one.source, fmt::format("{:.2f} +- {:.2f}", one.factor, one.sd),
+                          off > kSure    ? "stated too small, or an effect is missing"
+                          : off < -kSure ? "stated too large"
+                                         : ""});
+  }
+  if (table.rows.size() > 1) fmt::print("\nNoise\n{}", format_table(table));
+}
+
+void print(const Comparison& result, const CompareOptions& options) {
+  if (result.consistent) {
+    fmt::print("consistent: the model explains these measurements to within its noise\n");
+  } else {
+    fmt::print("misfit: errors are {:.1f} times what the model's noise allows\n",
+               std::sqrt(result.chi2 / std::max(1, result.dof)));
+  }
+  fmt::print("  chi2 {:.1f}, dof {}, p {}; {} legs, {} landmarks\n  {}\n", result.chi2, result.dof,
+             probability_text(result.p_value), result.legs, result.landmarks,
+             held_out_line(result.held_out));
+  print_trends(result);
+  if (!result.consistent) print_worst(result, options.worst);
+  print_sources(result);
+  if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
+  for (const std::string& line : result.advice) fmt::print("  {}\n", line);
+  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+}
+
+void run_compare(const CompareOptions& options) {
+  const ModelRecordings input = read_model_recordings(options.input);
+  ComparisonOptions how;
+  how.problem = problem_options(options.input);
+  how.legs = options.input.legs;
+  how.gate = gate_of(options.input);
+  const Comparison result = compare(input.recordings, input.model, how);
+  if (!options.input.json.empty()) write_file(options.input.json, json(result).dump(2) + "\n");
+  print(result, options);
+}
+
+}  // namespace
+
+void setup_compare(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand(
+      "compare", "Compare a model with recordings: is it consistent, and where does it fail?");
+  add_model_recordings(*command, options->input);
+  command->add_option("--worst", options->worst, "Legs and routes to list")->capture_default_str();
+  command->footer(
+      "Survey and truth are used as measurements. A bar force is what a route pulls (+) or pushes\n"
+      "(-) its landmarks with. JSON holds all legs, routes and trends.");
+  command->callback([options] { run_compare(*options); });
+}
+
+}  // namespace trussmap::app

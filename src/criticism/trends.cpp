@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/comparison.hpp"
+#include "trussmap/effects/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+struct Variable {
+  std::string name;
+  std::vector<std::string> shapes;
+};
+
+bool varies(const ModelFit& fit, const std::string& covariate) {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const Recording& recording : fit.recordings) {
+    for (const Covariate& one : recording.drive.covariates) {
+      if (one.name != covariate) continue;
+      for (const double value : one.values) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+      }
+    }
+  }
+  return most > least;
+}
+
+/// Bells on a grid over the map.
+Variable place_variable(const ModelFit& fit) {
+  constexpr int kAcross = 4;
+  Vector2 low(1e300, 1e300);
+  Vector2 high = -low;
+  for (const SessionPath& path : fit.paths) {
+    for (const Pose& pose : path.ends) {
+      low = low.cwiseMin(pose.position());
+      high = high.cwiseMax(pose.position());
+    }
+  }
+  Variable place{"place", {}};
+  const Vector2 step = (high - low) / kAcross;
+  const double radius = 0.6 * step.maxCoeff();
+  if (!(radius > 0.0)) return place;
+  for (int i = 0; i < kAcross; ++i) {
+    for (int j = 0; j < kAcross; ++j) {
+      const Vector2 at = low + Vector2((i + 0.5) * step.x(), (j + 0.5) * step.y());
+      place.shapes.push_back(fmt::format("exp(-((x-({:.4g}))^2+(y-({:.4g}))^2)/(2*{:.4g}^2))",
+                                         at.x(), at.y(), radius));
+    }
+  }
+  return place;
+}
+
+std::vector<Variable> variables_of(const ModelFit& fit) {
+  std::vector<Variable> variables{{"all", {"1"}},
+                                  {"heading", {"sin(heading)", "cos(heading)"}},
+                                  {"turn sense", {"sign(turn_rate)"}},
+                                  {"turn rate", {"abs(turn_rate)"}},
+                                  {"signed turn rate", {"turn_rate"}},
+                                  {"direction of travel", {"sign(speed)"}},
+                                  {"speed", {"abs(speed)"}},
+                                  {"acceleration", {"acceleration"}},
+                                  {"t", {"t"}},
+                                  {"distance", {"distance"}}};
+  Variable place = place_variable(fit);
+  if (!place.shapes.empty()) variables.push_back(std::move(place));
+  if (fit.recordings.size() > 1) variables.push_back({"session", {"session"}});
+  for (const Covariate& covariate : fit.recordings.front().drive.covariates) {
+    if (varies(fit, covariate.name)) variables.push_back({covariate.name, {covariate.name}});
+  }
+  return variables;
+}
+
+struct Kind {
+  std::string name;
+  std::string channel;
+};
+
+std::vector<Kind> kinds_of(const ModelFit& fit) {
+  std::vector<Kind> kinds{
+      {"stretch", "travel"}, {"orientation", "creep"}, {"turn", "turn"}, {"bend", "difference"}};
+  const auto has = [&fit](auto&& what) {
+    return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(), what);
+  };
+  if (has([](const Measurement& one) {
+        return one.kind == MeasurementKind::piece && one.rows == 4;
+      })) {
+    kinds.push_back({"compass", "compass"});
+  }
+  if (has([](const Measurement& one) { return one.kind == MeasurementKind::view; })) {
+    kinds.push_back({"sighting range", "range"});
+    kinds.push_back({"sighting bearing", "bearing"});
+  }
+  kinds.push_back({"sighting ahead", "lever"});
+  kinds.push_back({"sighting to the left", "lever_left"});
+  return kinds;
+}
+
+double rms_of(const std::vector<double>& coefficients,
+              const std::vector<std::vector<std::vector<double>>>& values) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t s = 0; !values.empty() && s < values.front().size(); ++s) {
+    for (std::size_t row = 0; row < values.front()[s].size(); ++row) {
+      double g = 0.0;
+      for (std::size_t k = 0; k < values.size(); ++k) g += coefficients[k] * values[k][s][row];
+      squares += g * g;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+}  // namespace
+
+std::vector<double> holm(const std::vector<double>& p_values) {
+  std::vector<std::size_t> order(p_values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  std::vector<double> adjusted(p_values.size(), 1.0);
+  double most = 0.0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const double left = static_cast<double>(order.size() - rank);
+    most = std::max(most, std::min(1.0, left * p_values[order[rank]]));
+    adjusted[order[rank]] = most;
+  }
+  return adjusted;
+}
+
+std::vector<Trend> find_trends(const ModelFit& fit, const ScoreTest& tests) {
+  std::vector<Trend> trends;
+  std::vector<Effect> effects;
+  for (const Kind& kind : kinds_of(fit)) {
+    for (const Variable& variable : variables_of(fit)) {
+      Trend trend;
+      trend.kind = kind.name;
+      trend.against = variable.name;
+      trend.effect.name = kind.name + " against " + variable.name;
+      trend.effect.channel = kind.channel;
+      trend.effect.shape = variable.shapes;
+      trend.unit = facts_of(*parse_channel(kind.channel)).unit;
+      effects.push_back(trend.effect);
+      trends.push_back(std::move(trend));
+    }
+  }
+  const std::vector<Score> scores = tests.test(effects);
+  std::vector<double> p_values;
+  std::vector<Trend> seen;
+  for (std::size_t k = 0; k < trends.size(); ++k) {
+    if (scores[k].dof == 0) continue;
+    Trend& trend = trends[k];
+    trend.score = scores[k].score;
+    trend.dof = scores[k].dof;
+    trend.p_value = scores[k].p_value;
+    trend.effect.coefficients = scores[k].coefficients;
+    std::vector<std::vector<std::vector<double>>> values;
+    for (const std::string& shape : trend.effect.shape) {
+      values.push_back(tests.context().values(shape, ShapeContext::Instant::middle));
+    }
+    trend.size = rms_of(trend.effect.coefficients, values);
+    p_values.push_back(trend.p_value);
+    seen.push_back(std::move(trend));
+  }
+  const std::vector<double> adjusted = holm(p_values);
+  for (std::size_t k = 0; k < seen.size(); ++k) seen[k].p_adjusted = adjusted[k];
+  // A p-value of 0 says nothing of two: what a trend explains beyond its own freedom does.
+  std::stable_sort(seen.begin(), seen.end(), [](const Trend& a, const Trend& b) {
+    return a.score - 2.0 * a.dof > b.score - 2.0 * b.dof;
+  });
+  return seen;
+}
+
+}  // namespace trussmap
