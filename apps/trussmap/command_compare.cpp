@@ -153,13 +153,13 @@ void print_worst(const Comparison& result, std::size_t count) {
 void print_sources(const Comparison& result) {
   constexpr double kSure = 3.0;
   TextTable table{{Align::left, Align::right, Align::left}, {}, true, 2};
-  table.rows.push_back({"noise of", "true/stated", ""});
+  table.rows.push_back({"noise of", "true/stated", "verdict"});
   for (const SourceCalibration& one : result.sources) {
     const double off = (one.factor - 1.0) / one.sd;
     table.rows.push_back({one.source, fmt::format("{:.2f} +- {:.2f}", one.factor, one.sd),
                           off > kSure    ? "stated too small, or an effect is missing"
                           : off < -kSure ? "stated too large"
-                                         : ""});
+                                         : "as stated"});
   }
   if (table.rows.size() > 1) fmt::print("\nNoise\n{}", format_table(table));
 }

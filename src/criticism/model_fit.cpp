@@ -17,6 +17,7 @@
 namespace trussmap {
 namespace {
 
+constexpr double kMostDispersion = 4.0;  // chi^2/dof
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Rounds of fitting and looking at the path again.
@@ -182,8 +183,11 @@ class Fitter {
     const std::vector<SessionPath> before = std::move(fit_.paths);
     fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
                               offsets_of(fit_), state_);
-    bent_ = relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
-                        offsets_of(fit_), state_);
+    // What a misfit leaves is no noise to be believed.
+    const bool noise = fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
+    bent_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
+                                offsets_of(fit_), state_)
+                  : 0.0;
     moved_ = 0.0;
     for (std::size_t s = 0; s < before.size(); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
