@@ -153,16 +153,28 @@ class Fitter {
       }
       const std::vector<int> lost = find_undetermined(system);
       if (lost.empty()) return;
-      // The one added last gives way: the others may be determined without it.
-      hold(free[idx(lost.back())], "no measurement tells it from the map, the poses or the rest");
+      give_way(free[idx(lost.back())]);
     }
+  }
+
+  /// The one added last gives way: the others may be determined without it.
+  void give_way(int coefficient) {
+    hold(coefficient, "no measurement tells it from the map, the poses or the rest");
   }
 
   void adjust_once() {
     RecordingAdjustmentOptions how;
     how.gate = options_.gate;
-    how.coefficients = unknown_values();
-    fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+    // What misfit without the effects hid may show only now, at the best fit with them.
+    for (;;) {
+      how.coefficients = unknown_values();
+      try {
+        fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+        break;
+      } catch (const UndeterminedError& error) {
+        give_way(unknown_coefficients(fit_.columns.border)[idx(error.coefficients().back())]);
+      }
+    }
     state_ = fit_.adjustment.state;
     change_ = 0.0;
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
