@@ -5,7 +5,6 @@
 #include "trussmap/adjustment/recording_descent.hpp"
 #include "trussmap/adjustment/recording_robust.hpp"
 #include "trussmap/adjustment/recording_start.hpp"
-#include "trussmap/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,10 +46,11 @@ void refuse_undetermined(const EffectBorder& border, const std::vector<int>& coe
   for (const int k : coefficients) {
     names += (names.empty() ? "" : ", ") + border[idx(unknown[idx(k)])].name;
   }
-  throw SolveError((coefficients.size() == 1 ? "the coefficient of " : "the coefficients of ") +
-                   names +
-                   " cannot be determined from this motion: no measurement tells them from the "
-                   "unknowns; add a survey, or drive routes of other lengths and turns");
+  throw UndeterminedError(
+      (coefficients.size() == 1 ? "the coefficient of " : "the coefficients of ") + names +
+          " cannot be determined from this motion: no measurement tells them from the "
+          "unknowns; add a survey, or drive routes of other lengths and turns",
+      coefficients);
 }
 
 void check_determined(RecordingSystem& system, const RecordingProblem& problem,

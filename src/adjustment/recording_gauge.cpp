@@ -20,30 +20,41 @@ int root_of(std::vector<int>& parent, int node) {
   return node;
 }
 
-/// Sessions that no common landmark, survey or truth ties to the first.
+bool in_map(const Measurement& one) {
+  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
+}
+
 void refuse_loose_sessions(const RecordingProblem& problem) {
+  const std::vector<int> untied = untied_poses(problem);
+  if (untied.empty()) return;
+  const bool absolute =
+      std::any_of(problem.measurements.begin(), problem.measurements.end(), in_map);
+  const std::string& session = problem.sessions[idx(problem.poses[idx(untied[0])].session)];
+  throw SolveError(fmt::format("{} {}: no landmark ties it to {}", session,
+                               absolute ? "floats" : "stands apart",
+                               absolute ? "the survey or the truth" : problem.sessions.front()));
+}
+
+}  // namespace
+
+std::vector<int> untied_poses(const RecordingProblem& problem) {
   const int map_frame = problem.nodes();  // a node of its own: what is measured in the map
   std::vector<int> parent(idx(problem.nodes()) + 1);
   std::iota(parent.begin(), parent.end(), 0);
   bool absolute = false;
   for (const Measurement& one : problem.measurements) {
-    const bool in_map = one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
-    absolute = absolute || in_map;
-    if (one.to < 0 && !in_map) continue;
-    parent[idx(root_of(parent, one.from))] = root_of(parent, in_map ? map_frame : one.to);
+    absolute = absolute || in_map(one);
+    if (one.to < 0 && !in_map(one)) continue;
+    parent[idx(root_of(parent, one.from))] = root_of(parent, in_map(one) ? map_frame : one.to);
   }
-  if (problem.poses.empty()) return;
+  std::vector<int> untied;
+  if (problem.poses.empty()) return untied;
   const int home = root_of(parent, absolute ? map_frame : problem.pose_node(0));
-  for (std::size_t pose = 0; pose < problem.poses.size(); ++pose) {
-    if (root_of(parent, problem.pose_node(static_cast<int>(pose))) == home) continue;
-    const std::string& session = problem.sessions[idx(problem.poses[pose].session)];
-    throw SolveError(fmt::format("{} {}: no landmark ties it to {}", session,
-                                 absolute ? "floats" : "stands apart",
-                                 absolute ? "the survey or the truth" : problem.sessions.front()));
+  for (int pose = 0; pose < static_cast<int>(problem.poses.size()); ++pose) {
+    if (root_of(parent, problem.pose_node(pose)) != home) untied.push_back(pose);
   }
+  return untied;
 }
-
-}  // namespace
 
 RecordingGauge choose_gauge(const RecordingProblem& problem) {
   refuse_loose_sessions(problem);

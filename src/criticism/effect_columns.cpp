@@ -195,6 +195,16 @@ void keep_session(std::vector<std::vector<double>>& values, int session) {
   }
 }
 
+/// What fails within is told with the effect's name.
+template <typename Action>
+auto in_words_of(const Effect& effect, const Action& action) {
+  try {
+    return action();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+  }
+}
+
 Column make_column(Channel channel, const std::string& shape, int session,
                    const ShapeContext& context) {
   const std::vector<Recording>& recordings = context.recordings();
@@ -264,15 +274,32 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
     for (std::size_t place = 0; place < coefficients.size(); ++place) {
       const std::size_t shape = place % effect.shape.size();
       const int session = sessions == 1 ? -1 : static_cast<int>(place / effect.shape.size());
-      try {
-        Column column = make_column(*channel, effect.shape[shape], session, context);
-        column.pattern.name = effect.name;
-        if (*channel == Channel::delay) column.pattern.reference = coefficients[place];
-        result.border.push_back(std::move(column.pattern));
-        result.coefficients.push_back({e, shape, place, column.largest});
-      } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
-      }
+      Column column = in_words_of(
+          effect, [&] { return make_column(*channel, effect.shape[shape], session, context); });
+      column.pattern.name = effect.name;
+      if (*channel == Channel::delay) column.pattern.reference = coefficients[place];
+      result.border.push_back(std::move(column.pattern));
+      result.coefficients.push_back({e, shape, place, column.largest});
+    }
+  }
+  return result;
+}
+
+std::vector<double> retimed(const std::vector<double>& instants, const Recording& recording,
+                            std::size_t session, std::size_t sessions,
+                            const std::vector<Effect>& effects, const Robot& robot) {
+  std::vector<double> result = instants;
+  const std::vector<Pose> nowhere(instants.size());
+  for (const Effect& effect : effects) {
+    if (parse_channel(effect.channel) != Channel::delay) continue;
+    const std::vector<double> coefficients = coefficients_of(effect, sessions);
+    const RowVariables variables = instant_variables(recording.drive, robot.wheelbase, instants,
+                                                     nowhere, static_cast<int>(session));
+    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+      const std::vector<double> f =
+          in_words_of(effect, [&] { return evaluate_shape(effect.shape[k], variables); });
+      const std::size_t place = (effect.per_session ? session * effect.shape.size() : 0) + k;
+      for (std::size_t n = 0; n < result.size(); ++n) result[n] -= coefficients[place] * f[n];
     }
   }
   return result;
@@ -281,25 +308,15 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
 std::vector<Recording> retimed(const std::vector<Recording>& recordings,
                                const std::vector<Effect>& effects, const Robot& robot) {
   std::vector<Recording> result = recordings;
-  for (const Effect& effect : effects) {
-    if (parse_channel(effect.channel) != Channel::delay) continue;
-    const std::vector<double> coefficients = coefficients_of(effect, recordings.size());
-    for (std::size_t s = 0; s < recordings.size(); ++s) {
-      const Recording& source = recordings[s];
-      SessionPath nowhere;
-      nowhere.ends.resize(source.drive.rows());
-      const int session = static_cast<int>(s);
-      const auto shift = [&](auto& events, const auto& recorded) {
-        const RowVariables variables = event_variables(source, robot, nowhere, recorded, session);
-        for (std::size_t k = 0; k < effect.shape.size(); ++k) {
-          const std::vector<double> f = evaluate_shape(effect.shape[k], variables);
-          const std::size_t place = (effect.per_session ? s * effect.shape.size() : 0) + k;
-          for (std::size_t n = 0; n < events.size(); ++n) events[n].t -= coefficients[place] * f[n];
-        }
-      };
-      shift(result[s].sightings, source.sightings);
-      shift(result[s].truth, source.truth);
-    }
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const auto shift = [&](auto& events) {
+      std::vector<double> instants;
+      for (const auto& event : events) instants.push_back(event.t);
+      instants = retimed(instants, recordings[s], s, recordings.size(), effects, robot);
+      for (std::size_t n = 0; n < events.size(); ++n) events[n].t = instants[n];
+    };
+    shift(result[s].sightings);
+    shift(result[s].truth);
   }
   for (Recording& recording : result) {
     const auto outside = [&recording](const auto& event) {

@@ -19,6 +19,7 @@ namespace {
 constexpr std::size_t kBlock = 5;
 constexpr double kLeastChord = 0.1;      // m
 constexpr double kFirstPlaceSd = 1.0;    // m: what the filter is told of its first pose
+constexpr double kForever = 1e300;       // s
 constexpr double kFirstHeadingSd = 0.3;  // rad
 
 bool is_held_out(std::size_t leg, double share) {
@@ -91,33 +92,48 @@ std::vector<std::vector<TimeSpan>> spans_of(const std::vector<LegSpan>& legs,
   return spans;
 }
 
-/// Whole stretches between spans in which something can move freely are left out too.
+/// Poses that nothing ties to the map, or else of which something can move freely.
+std::set<int> loose_poses(const std::vector<Recording>& recordings, const ModelFit& fit,
+                          const RecordingProblem& problem) {
+  const std::vector<int> untied = untied_poses(problem);
+  if (!untied.empty()) return {untied.begin(), untied.end()};
+  const std::map<std::string, Vector2> places = landmark_places(fit);
+  RecordingState state;
+  for (const std::string& name : problem.landmarks) state.landmarks.push_back(places.at(name));
+  for (const PoseNode& node : problem.poses) {
+    const std::size_t session = idx(node.session);
+    state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
+  }
+  RecordingSystem system(problem, {});
+  system.linearise(state, Eigen::VectorXd());
+  const std::vector<int> loose = find_loose_nodes(system, problem);
+  const std::set<int> nodes(loose.begin(), loose.end());
+  std::set<int> poses;
+  for (const Measurement& one : problem.measurements) {
+    if (one.session < 0) continue;
+    if (nodes.contains(one.from) || nodes.contains(one.to)) {
+      poses.insert(one.from - problem.landmark_count());
+    }
+  }
+  return poses;
+}
+
+/// Whole stretches between spans in which something is loose are left out too.
 void leave_loose_stretches_out(const std::vector<Recording>& recordings, const ModelFit& fit,
                                ProblemOptions& options) {
-  const std::map<std::string, Vector2> places = landmark_places(fit);
   for (int round = 0; round < 20; ++round) {
     const RecordingProblem problem = make_problem(recordings, fit.model, options);
-    RecordingState state;
-    for (const std::string& name : problem.landmarks) state.landmarks.push_back(places.at(name));
-    for (const PoseNode& node : problem.poses) {
-      const std::size_t session = idx(node.session);
-      state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
-    }
-    RecordingSystem system(problem, {});
-    system.linearise(state, Eigen::VectorXd());
-    const std::vector<int> loose = find_loose_nodes(system, problem);
-    if (loose.empty()) return;
-    std::set<int> poses;
-    const std::set<int> nodes(loose.begin(), loose.end());
-    for (const Measurement& one : problem.measurements) {
-      if (one.session < 0) continue;
-      if (nodes.contains(one.from) || nodes.contains(one.to)) poses.insert(one.from);
-    }
-    for (const int node : poses) {
-      const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
+    const std::set<int> poses = loose_poses(recordings, fit, problem);
+    if (poses.empty()) return;
+    for (const int k : poses) {
+      const PoseNode& pose = problem.poses[idx(k)];
       std::vector<TimeSpan>& spans = options.left_out[idx(pose.session)];
-      // From the end of the span before it to the beginning of the span after it.
-      TimeSpan stretch{-1e300, 1e300};
+      const bool gone = std::any_of(spans.begin(), spans.end(), [&](const TimeSpan& span) {
+        return span.from < pose.t && pose.t < span.to;
+      });
+      if (gone) continue;  // with another pose of its stretch
+      // From the beginning of the span before it to the end of the span after it.
+      TimeSpan stretch{-kForever, kForever};
       for (const TimeSpan& span : spans) {
         if (span.to <= pose.t) stretch.from = std::max(stretch.from, span.from);
         if (span.from >= pose.t) stretch.to = std::min(stretch.to, span.to);
@@ -128,6 +144,33 @@ void leave_loose_stretches_out(const std::vector<Recording>& recordings, const M
       spans.push_back(stretch);
       std::sort(spans.begin(), spans.end(),
                 [](const TimeSpan& a, const TimeSpan& b) { return a.from < b.from; });
+    }
+  }
+}
+
+/// Times of the fit's sightings and truth rows back to those recorded, before delays were taken
+/// out.
+void undo_delays(const std::vector<Recording>& recordings, const Model& model,
+                 std::vector<std::vector<TimeSpan>>& spans) {
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    std::vector<double> recorded;
+    for (const Sighting& sighting : recordings[s].sightings) recorded.push_back(sighting.t);
+    for (const TruthRow& row : recordings[s].truth) recorded.push_back(row.t);
+    const std::vector<double> moved =
+        retimed(recorded, recordings[s], s, recordings.size(), model.effects, model.robot);
+    std::map<double, double> back;
+    for (std::size_t k = 0; k < moved.size(); ++k) back[moved[k]] = recorded[k];
+    // The nearest: the fit's coefficients have moved a little since it took its delays out.
+    const auto recorded_at = [&back](double t) {
+      auto after = back.lower_bound(t);
+      if (after == back.begin()) return after->second;
+      const auto before = std::prev(after);
+      return after == back.end() || t - before->first < after->first - t ? before->second
+                                                                         : after->second;
+    };
+    for (TimeSpan& span : spans[s]) {
+      if (span.from > -kForever) span.from = recorded_at(span.from);
+      if (span.to < kForever) span.to = recorded_at(span.to);
     }
   }
 }
@@ -338,13 +381,14 @@ HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFi
   how.near = &fit;
   how.problem.left_out = spans_of(legs, recordings.size());
   leave_loose_stretches_out(fit.recordings, fit, how.problem);
+  undo_delays(recordings, fit.model, how.problem.left_out);
   const ModelFit training = fit_model(recordings, fit.model, how);
 
   // All measurements of all legs again, by the training's model and map.
   ProblemOptions all = options.problem;
   all.left_out.clear();
   const RecordingProblem problem = make_problem(training.recordings, training.model, all);
-  const ShapeContext context(training.recordings, training.model.robot, fit.paths);
+  const ShapeContext context(training.recordings, training.model.robot, training.paths);
   const EffectColumns columns = effect_columns(training.model.effects, context);
   Eigen::VectorXd offsets = offsets_of(training);
   for (std::size_t k = 0; k < columns.border.size(); ++k) {

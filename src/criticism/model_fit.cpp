@@ -62,7 +62,23 @@ class Fitter {
 
   void lay_out() {
     fit_.recordings = retimed(recorded_, fit_.model.effects, fit_.model.robot);
-    fit_.problem = make_problem(fit_.recordings, fit_.model, options_.problem);
+    fit_.problem = make_problem(fit_.recordings, fit_.model, problem_options());
+  }
+
+  [[nodiscard]] ProblemOptions problem_options() const {
+    ProblemOptions result = options_.problem;
+    for (std::size_t s = 0; s < result.left_out.size(); ++s) {
+      std::vector<double> ends;
+      for (const TimeSpan& span : result.left_out[s]) {
+        ends.push_back(span.from);
+        ends.push_back(span.to);
+      }
+      ends = retimed(ends, recorded_[s], s, recorded_.size(), fit_.model.effects, fit_.model.robot);
+      for (std::size_t k = 0; k < result.left_out[s].size(); ++k) {
+        result.left_out[s][k] = {ends[2 * k], ends[2 * k + 1]};
+      }
+    }
+    return result;
   }
 
   /// The poses of the new instants lie on the old path.
@@ -96,8 +112,20 @@ class Fitter {
     StartOptions how;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
-    state_ = start_of(fit_.problem, how);
-    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, {}, {}, state_);
+    // A start is laid along unbroken drives.
+    ProblemOptions all = options_.problem;
+    all.left_out.clear();
+    const bool whole = options_.problem.left_out.empty();
+    const RecordingProblem unbroken =
+        whole ? fit_.problem : make_problem(fit_.recordings, fit_.model, all);
+    state_ = start_of(unbroken, how);
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, unbroken, {}, {}, state_);
+    if (whole) return;
+    std::map<std::string, Vector2> landmarks;
+    for (std::size_t k = 0; k < unbroken.landmarks.size(); ++k) {
+      landmarks[unbroken.landmarks[k]] = state_.landmarks[k];
+    }
+    place(landmarks);
   }
 
   void build_columns() {
@@ -154,16 +182,28 @@ class Fitter {
       }
       const std::vector<int> lost = find_undetermined(system);
       if (lost.empty()) return;
-      // The one added last gives way: the others may be determined without it.
-      hold(free[idx(lost.back())], "no measurement tells it from the map, the poses or the rest");
+      give_way(free[idx(lost.back())]);
     }
+  }
+
+  /// The one added last gives way: the others may be determined without it.
+  void give_way(int coefficient) {
+    hold(coefficient, "no measurement tells it from the map, the poses or the rest");
   }
 
   void adjust_once() {
     RecordingAdjustmentOptions how;
     how.gate = options_.gate;
-    how.coefficients = unknown_values();
-    fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+    // What misfit without the effects hid may show only now, at the best fit with them.
+    for (;;) {
+      how.coefficients = unknown_values();
+      try {
+        fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+        break;
+      } catch (const UndeterminedError& error) {
+        give_way(unknown_coefficients(fit_.columns.border)[idx(error.coefficients().back())]);
+      }
+    }
     state_ = fit_.adjustment.state;
     change_ = 0.0;
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);

@@ -16,9 +16,11 @@
 
 #include "trussmap/adjustment/effect_border.hpp"
 #include "trussmap/adjustment/recording_problem.hpp"
+#include "trussmap/core/error.hpp"
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -45,6 +47,19 @@ struct RecordingAdjustment {
   bool converged = false;
   std::vector<int> left_out;  ///< measurements, ascending
   std::vector<std::string> warnings;
+};
+
+/// Coefficients that the motion cannot determine.
+class UndeterminedError : public SolveError {
+ public:
+  UndeterminedError(const std::string& what, std::vector<int> coefficients)
+      : SolveError(what), coefficients_(std::move(coefficients)) {}
+
+  /// Places among the unknown ones, ascending.
+  [[nodiscard]] const std::vector<int>& coefficients() const { return coefficients_; }
+
+ private:
+  std::vector<int> coefficients_;
 };
 
 /// Throws SolveError as said above.

@@ -34,6 +34,10 @@ struct RecordingGauge {
 /// common that would tie them together.
 [[nodiscard]] RecordingGauge choose_gauge(const RecordingProblem& problem);
 
+/// Poses that no common landmark, survey or truth ties to the map's frame or, where nothing gives
+/// one, to the first pose.
+[[nodiscard]] std::vector<int> untied_poses(const RecordingProblem& problem);
+
 class RecordingSystem {
  public:
   /// Keeps references to the problem and the border.

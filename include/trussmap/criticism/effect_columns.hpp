@@ -98,4 +98,10 @@ class ShapeContext {
                                              const std::vector<Effect>& effects,
                                              const Robot& robot);
 
+/// Any instants of one of the sessions, moved back in the same way.
+[[nodiscard]] std::vector<double> retimed(const std::vector<double>& instants,
+                                          const Recording& recording, std::size_t session,
+                                          std::size_t sessions, const std::vector<Effect>& effects,
+                                          const Robot& robot);
+
 }  // namespace trussmap

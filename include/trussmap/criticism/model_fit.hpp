@@ -29,6 +29,7 @@ struct ModelFit;
 
 struct ModelFitOptions {
   bool fit_effects = true;  ///< false: coefficients stay as the model has them (0 where absent)
+  /// What is left out is given in the recordings' own times; delays move it with its sightings.
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
   int max_rounds = 30;

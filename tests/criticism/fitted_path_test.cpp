@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/fitted_path.hpp"
+
+#include "trussmap/criticism/model_fit.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "criticism/disturbances.hpp"
+
+namespace trussmap {
+namespace {
+
+using testing::disturbed_cases;
+using testing::DisturbedCase;
+using testing::invert;
+using testing::inverted_model;
+using testing::InvertedRecording;
+
+Vector2 place(const Pose& pose) {
+  return pose.position();
+}
+
+Vector2 vector_of(const std::complex<double>& point) {
+  return {point.real(), point.imag()};
+}
+
+TEST(FittedPath, IsTheTruePathOfANoiseFreeRecordingUnderItsEffect) {
+  for (const DisturbedCase& one : disturbed_cases()) {
+    InvertedRecording simulated = invert(one.disturbance, one.options, 41);
+    // Nothing is sighted at first and at last: there the path is reckoned back and on.
+    std::vector<Sighting>& sightings = simulated.recording.sightings;
+    if (!one.options.views) {
+      sightings.erase(sightings.begin(), sightings.begin() + 2);
+      sightings.resize(sightings.size() - 2);
+    }
+    Effect effect;
+    effect.name = one.effect;
+    const ModelFit fit = fit_model({simulated.recording}, inverted_model({effect}));
+    ASSERT_EQ(fit.paths.size(), 1U);
+    ASSERT_EQ(fit.paths[0].ends.size(), simulated.places.size());
+    double worst = 0.0;
+    double worst_heading = 0.0;
+    for (std::size_t row = 0; row < simulated.places.size(); ++row) {
+      const Pose& end = fit.paths[0].ends[row];
+      worst = std::max(worst, (place(end) - vector_of(simulated.places[row])).norm());
+      worst_heading =
+          std::max(worst_heading,
+                   std::abs(std::remainder(end.heading - simulated.headings[row], 2.0 * M_PI)));
+    }
+    EXPECT_LT(worst, 2e-6) << one.effect;
+    EXPECT_LT(worst_heading, 1e-6) << one.effect;
+    // It rests in its first rows.
+    EXPECT_LT((place(fit.paths[0].start) - vector_of(simulated.places[0])).norm(), 2e-6);
+  }
+}
+
+TEST(FittedPath, WhatIsMissingAtANodeIsSpreadEvenlyOverTheRows) {
+  const InvertedRecording simulated = invert({}, {1}, 42);
+  const Model model = inverted_model();
+  const std::vector<Recording> recordings = {simulated.recording};
+  const ModelFit fit = fit_model(recordings, model);
+  RecordingState state = fit.adjustment.state;
+  constexpr std::size_t kMoved = 4;
+  state.poses[kMoved].x += 0.3;
+  state.poses[kMoved].y -= 0.1;
+  const SessionPath path =
+      fitted_paths(recordings, model.robot, fit.problem, {}, Eigen::VectorXd(), state)[0];
+  const double before = fit.problem.poses[kMoved - 1].t;
+  const double at = fit.problem.poses[kMoved].t;
+  const double after = fit.problem.poses[kMoved + 1].t;
+  for (std::size_t row = 0; row < path.ends.size(); ++row) {
+    const double t = recordings[0].drive.t[row];
+    double share = 0.0;
+    if (t > before && t <= at) share = (t - before) / (at - before);
+    if (t > at && t < after) share = (after - t) / (after - at);
+    const Vector2 moved = place(path.ends[row]) - place(fit.paths[0].ends[row]);
+    EXPECT_LT((moved - share * Vector2(0.3, -0.1)).norm(), 1e-9) << "t = " << t;
+    EXPECT_NEAR(path.ends[row].heading, fit.paths[0].ends[row].heading, 1e-12);
+  }
+}
+
+TEST(FittedPath, PoseAtGoesAlongTheRow) {
+  Drive drive;
+  drive.t = {1.0, 2.0, 4.0};
+  drive.left = drive.right = {1.0, 1.0, 2.0};
+  SessionPath path;
+  path.start = {0.0, 0.0, 3.0};
+  path.ends = {{1.0, 0.0, 3.2}, {1.0, 2.0, -3.0}, {5.0, 2.0, -2.0}};
+  // -3 is 0.083 rad beyond 3.2: across the cut, not all the way round.
+  const Pose half = pose_at(drive, path, 1.5);
+  EXPECT_DOUBLE_EQ(half.x, 1.0);
+  EXPECT_DOUBLE_EQ(half.y, 1.0);
+  EXPECT_NEAR(half.heading, 3.2 + 0.5 * (2.0 * M_PI - 6.2), 1e-12);
+  EXPECT_DOUBLE_EQ(pose_at(drive, path, 0.25).x, 0.25);  // the first row begins at 0
+  EXPECT_DOUBLE_EQ(pose_at(drive, path, 3.0).x, 3.0);
+  EXPECT_DOUBLE_EQ(pose_at(drive, path, 4.0).x, 5.0);
+  EXPECT_DOUBLE_EQ(pose_at(drive, path, 9.0).x, 5.0);
+  EXPECT_DOUBLE_EQ(pose_at(drive, path, -9.0).x, 0.0);
+}
+
+}  // namespace
+}  // namespace trussmap
