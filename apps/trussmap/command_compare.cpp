@@ -71,6 +71,13 @@ ordered_json json(const Comparison& result) {
                        {"sd", one.sd},
                        {"redundancy", one.redundancy}});
   }
+  ordered_json outliers = ordered_json::array();
+  for (const Outlier& one : result.outliers) {
+    outliers.push_back({{"what", one.what},
+                        {"statistic", one.statistic},
+                        {"dof", one.dof},
+                        {"p_adjusted", one.p_adjusted}});
+  }
   return {{"verdict", result.consistent ? "consistent" : "misfit"},
           {"chi2", result.chi2},
           {"dof", result.dof},
@@ -83,6 +90,7 @@ ordered_json json(const Comparison& result) {
           {"worst_landmarks", landmarks},
           {"trends", trends},
           {"noise", sources},
+          {"outliers", outliers},
           {"advice", result.advice},
           {"warnings", result.warnings}};
 }
@@ -164,6 +172,17 @@ void print_sources(const Comparison& result) {
   if (table.rows.size() > 1) fmt::print("\nNoise\n{}", format_table(table));
 }
 
+void print_outliers(const Comparison& result, std::size_t count) {
+  TextTable table{{Align::left, Align::right, Align::right}, {}, true, 2};
+  table.rows.push_back({"contradicted by all others", "chi2 (values)", "p, adjusted"});
+  for (std::size_t k = 0; k < std::min(count, result.outliers.size()); ++k) {
+    const Outlier& one = result.outliers[k];
+    table.rows.push_back({one.what, fmt::format("{:.1f} ({})", one.statistic, one.dof),
+                          probability_text(one.p_adjusted)});
+  }
+  if (table.rows.size() > 1) fmt::print("\nOutliers\n{}", format_table(table));
+}
+
 void print(const Comparison& result, const CompareOptions& options) {
   if (result.consistent) {
     fmt::print("consistent: the model explains these measurements to within its noise\n");
@@ -176,6 +195,7 @@ void print(const Comparison& result, const CompareOptions& options) {
              held_out_line(result.held_out));
   print_trends(result);
   if (!result.consistent) print_worst(result, options.worst);
+  print_outliers(result, options.worst);
   print_sources(result);
   if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
   for (const std::string& line : result.advice) fmt::print("  {}\n", line);

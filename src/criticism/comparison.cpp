@@ -162,6 +162,26 @@ std::vector<SourceCalibration> calibrate_sources(const ModelFit& fit, const Scor
   return result;
 }
 
+/// Against the dispersion there is: where everything is off, nothing stands out.
+std::vector<Outlier> find_outliers(const ModelFit& fit, double dispersion) {
+  const std::vector<CheckedMeasurement> checked =
+      snoop(fit.problem, fit.columns.border, fit.adjustment);
+  const auto count = static_cast<double>(checked.size());
+  std::vector<Outlier> result;
+  for (const CheckedMeasurement& one : checked) {
+    const double statistic = one.statistic / dispersion;
+    const double p = std::min(1.0, count * chi2_p_value(statistic, one.checked));
+    if (p >= 0.05) continue;
+    result.push_back({describe(fit.problem, fit.problem.measurements[idx(one.measurement)]),
+                      statistic, one.checked, p});
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Outlier& a, const Outlier& b) {
+    return a.p_adjusted < b.p_adjusted ||
+           (a.p_adjusted == b.p_adjusted && a.statistic > b.statistic);
+  });
+  return result;
+}
+
 }  // namespace
 
 Comparison compare(const std::vector<Recording>& recordings, const Model& model,
@@ -182,6 +202,7 @@ Comparison compare(const std::vector<Recording>& recordings, const Model& model,
   find_misfits(fit, tests, options.legs, result);
   result.trends = find_trends(fit, tests);
   result.sources = calibrate_sources(fit, tests);
+  result.outliers = find_outliers(fit, tests.dispersion());
   result.advice = advice_on(recordings, model, options.problem);
   result.held_out = predict_held_out(recordings, fit, how, options.legs);
   return result;

@@ -135,9 +135,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
-            "trussmap: \"polish\" is no command, expected one of adjust, build, calibrate, "
-            "convert, noise, reveal, "
-            "simulate, tour, umbmark\n");
+            "trussmap: \"polish\" is no command, expected one of add, adjust, build, calibrate, "
+            "compare, convert, fit, noise, reveal, simulate, tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

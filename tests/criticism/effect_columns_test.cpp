@@ -266,7 +266,7 @@ TEST_P(EachChannel, ColumnsAreThoseOfDifferences) {
       const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
       const Eigen::VectorXd found =
           W.inverse() * system.border().col(0).segment(system.first_row(k), one.rows);
-      const Vector4 expected = slope(one, channel, shape, at);
+      const Eigen::VectorXd expected = slope(one, channel, shape, at);
       worst = std::max(worst, (found - expected.head(one.rows)).norm());
       largest = std::max(largest, expected.norm());
       if (expected.norm() > 1e-9) {

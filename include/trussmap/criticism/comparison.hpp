@@ -13,6 +13,7 @@
 //              deviation is right, its square root the factor by which it is too small
 #pragma once
 
+#include "trussmap/adjustment/data_snooping.hpp"
 #include "trussmap/criticism/held_out.hpp"
 #include "trussmap/criticism/score_test.hpp"
 
@@ -66,6 +67,14 @@ struct SourceCalibration {
   double redundancy = 0.0;
 };
 
+/// A measurement that the others contradict (data_snooping.hpp).
+struct Outlier {
+  std::string what;  ///< "standing on landmark 12 at t = 3.500 s"
+  double statistic = 0.0;
+  int dof = 0;
+  double p_adjusted = 1.0;  ///< Bonferroni, over all measurements
+};
+
 struct Comparison {
   bool consistent = true;
   double chi2 = 0.0;
@@ -79,6 +88,7 @@ struct Comparison {
   std::vector<LandmarkMisfit> worst_landmarks;
   std::vector<Trend> trends;  ///< strongest first
   std::vector<SourceCalibration> sources;
+  std::vector<Outlier> outliers;  ///< most significant first
   std::vector<std::string> advice;
   std::vector<std::string> warnings;
 };

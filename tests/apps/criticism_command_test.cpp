@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// compare, add and fit as a user meets them.
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch_folder.hpp"
+#include "shared_data.hpp"
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::Ran;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+
+const std::string kRiddle = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
+const std::string kNominal = kRiddle + "/model.toml";
+
+json read_json(const fs::path& path) {
+  std::ifstream stream(path);
+  return json::parse(stream);
+}
+
+TEST(CriticismCommands, TheReadmesWalkThroughEndsWithAConsistentModel) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  Ran ran =
+      run_trussmap("compare " + kRiddle + " --model " + kNominal + " --json " + at + "c.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_EQ(ran.output.rfind("misfit", 0), 0U) << ran.output;
+  const json before = read_json(at + "c.json");
+  EXPECT_EQ(before["verdict"], "misfit");
+  EXPECT_EQ(before["trends"][0]["residual"], "compass");
+  EXPECT_EQ(before["trends"][0]["against"], "heading");
+
+  ran = run_trussmap("add " + kNominal + " \"hard iron\" --out " + at + "m2.toml");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  ran = run_trussmap("fit " + kRiddle + " --model " + at + "m2.toml --out " + at +
+                     "m3.toml --json " + at + "f.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json fitted = read_json(at + "f.json");
+  const json& effect = fitted["effects"][0];
+  EXPECT_EQ(effect["effect"], "hard iron");
+  EXPECT_EQ(effect["channel"], "compass");
+  // Simulated with 0.04 and -0.03 (maps/riddle/README.md).
+  EXPECT_NEAR(effect["coefficients"][0].get<double>(), 0.04, 3.0 * effect["sd"][0].get<double>());
+  EXPECT_NEAR(effect["coefficients"][1].get<double>(), -0.03, 3.0 * effect["sd"][1].get<double>());
+  EXPECT_LT(effect["sd"][0].get<double>(), 0.001);
+  const double fallen =
+      fitted["without_effects"]["chi2"].get<double>() - fitted["chi2"].get<double>();
+  EXPECT_NEAR(fitted["predicted_decrease"].get<double>() / fallen, 1.0, 0.02);
+
+  ran = run_trussmap("compare " + kRiddle + " --model " + at + "m3.toml --json " + at + "d.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json after = read_json(at + "d.json");
+  EXPECT_EQ(after["verdict"], "consistent");
+  EXPECT_LT(after["heldout"]["arrival_rms_m"].get<double>(),
+            0.2 * before["heldout"]["arrival_rms_m"].get<double>());
+}
+
+TEST(CriticismCommands, CompareHasTheKeysOfItsFormat) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const Ran ran =
+      run_trussmap("compare " + kRiddle + " --model " + kNominal + " --json " + at + "c.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json found = read_json(at + "c.json");
+  for (const char* key : {"chi2", "dof", "p_value", "legs", "landmarks"}) {
+    EXPECT_TRUE(found[key].is_number()) << key;
+  }
+  EXPECT_EQ(found["legs"], 28);
+  EXPECT_EQ(found["landmarks"], 16);
+  for (const char* key : {"legs", "arrival_rms_m", "stretch_error", "orientation_error_rad"}) {
+    EXPECT_TRUE(found["heldout"][key].is_number()) << key;
+  }
+  EXPECT_EQ(found["worst"].size(), 28U);
+  double before = INFINITY;
+  for (const json& leg : found["worst"]) {
+    for (const char* key : {"t", "chi2", "stretch_error", "orientation_error_rad"}) {
+      EXPECT_TRUE(leg[key].is_number()) << key;
+    }
+    EXPECT_TRUE(leg["from"].is_string() && leg["to"].is_string());
+    EXPECT_LE(leg["chi2"].get<double>(), before);
+    before = leg["chi2"].get<double>();
+  }
+}
+
+TEST(CriticismCommands, ALoneLandmarksOffsetIsNotFittedAndSaysWhy) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  ASSERT_EQ(run_trussmap("add " + kNominal + " \"compass offset\" --out " + at + "m.toml").status,
+            0);
+  const Ran ran = run_trussmap("fit " + kRiddle + " --model " + at +
+                               "m.toml --without survey --json " + at + "f.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("not fitted"), std::string::npos) << ran.output;
+  const json fitted = read_json(at + "f.json");
+  EXPECT_EQ(fitted["effects"][0]["coefficients"][0], 0.0);
+  EXPECT_TRUE(fitted["effects"][0]["sd"][0].is_null());
+}
+
+struct BadModel {
+  const char* name;
+  const char* effect;    ///< lines after the eight of the robot and its noise
+  const char* expected;  ///< in the message, after the file's name
+};
+
+TEST(CriticismCommands, WrongEffectsAreNamedWithTheModelsLineAndWriteNothing) {
+  const std::string robot = "[robot]\nwheelbase = 0.34\n\n";  // the effect is on line 4
+  const BadModel cases[] = {
+      {"formula", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"sin(\"]\n",
+       ":4: effect \"e\": shape \"sin(\" cannot be read"},
+      {"variable", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"payload\"]\n",
+       ":4: effect \"e\": shape \"payload\" names \"payload\", which is unknown, expected one of "},
+      {"count",
+       "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"1\"]\ncoefficients = [1, 2]\n",
+       ":4: effect \"e\" has 2 coefficients, expected 1"},
+      {"division", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"1/starts\"]\n",
+       ":4: effect \"e\": shape \"1/starts\" "},
+      {"channel", "[[effect]]\nname = \"e\"\nchannel = \"spin\"\nshape = [\"1\"]\n",
+       ":4: effect \"e\" has channel \"spin\", which is unknown"},
+      {"catalogue", "[[effect]]\nname = \"ghosts\"\n",
+       ":4: effect \"ghosts\" is not in the catalogue"}};
+  for (const BadModel& one : cases) {
+    const ScratchFolder scratch;
+    const fs::path model = scratch.write("m.toml", robot + one.effect);
+    for (const char* command : {"fit", "compare"}) {
+      const bool fit = std::string(command) == "fit";
+      const Ran ran = run_trussmap(std::string(command) + " " + kRiddle + " --model " +
+                                   model.string() + " --json " + (scratch.path() / "j").string() +
+                                   (fit ? " --out " + (scratch.path() / "o").string() : ""));
+      EXPECT_EQ(ran.status, 2) << one.name;
+      EXPECT_NE(ran.output.find(model.string() + one.expected), std::string::npos)
+          << one.name << ": " << ran.output;
+      EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    }
+    EXPECT_EQ(scratch.contents().size(), 1U) << one.name;
+  }
+}
+
+TEST(CriticismCommands, AddRefusesWhatItCannotAdd) {
+  const ScratchFolder scratch;
+  const std::string out = " --out " + (scratch.path() / "m.toml").string();
+  const auto refused = [&](const std::string& what, const std::string& expected) {
+    const Ran ran = run_trussmap("add " + kNominal + " " + what + out);
+    EXPECT_EQ(ran.status, 2) << what;
+    EXPECT_NE(ran.output.find(expected), std::string::npos) << ran.output;
+  };
+  refused("ghosts", "\"ghosts\" is not in the catalogue");
+  refused("mine --channel turn", "--channel and --shape go together");
+  refused("mine --channel turn --shape \"sin(\"", "cannot be read");
+  refused("mine --channel round --shape 1", "which is unknown");
+  EXPECT_TRUE(scratch.contents().empty());
+}
+
+TEST(CriticismCommands, AFormulaOfOnesOwnIsAsGoodAsTheCatalogues) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  ASSERT_EQ(
+      run_trussmap("add " + kNominal + " \"tyre drift (temperature_C)\" --out " + at + "a.toml")
+          .status,
+      0);
+  ASSERT_EQ(
+      run_trussmap("add " + kNominal +
+                   " mine --channel wheels --shape \"0+temperature_C*1\" --out " + at + "b.toml")
+          .status,
+      0);
+  for (const char* name : {"a", "b"}) {
+    const Ran ran = run_trussmap("fit " + kRiddle + " --model " + at + name + ".toml --json " + at +
+                                 name + ".json");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+  }
+  const json a = read_json(at + "a.json");
+  const json b = read_json(at + "b.json");
+  const double of_catalogue = a["effects"][0]["coefficients"][0].get<double>();
+  EXPECT_NEAR(b["effects"][0]["coefficients"][0].get<double>(), of_catalogue,
+              1e-12 * std::abs(of_catalogue));
+  EXPECT_NEAR(b["chi2"].get<double>(), a["chi2"].get<double>(), 1e-12 * a["chi2"].get<double>());
+}
+
+struct Practice {
+  const char* recording;
+  const char* residual;
+  const char* against;
+};
+
+TEST(CriticismCommands, TheStrongestTrendOfThePracticeRecordingsIsTheRightOne) {
+  TRUSSMAP_NEEDS_SHARED("data/hidden");
+  const ScratchFolder scratch;
+  // What the answers of the recordings' README mean in compare's words.
+  const Practice cases[] = {{"a", "turn", "all"},
+                            {"b", "compass", "heading"},
+                            {"c", "stretch", "payload_kg"},
+                            {"d", "stretch", "place"},
+                            {"e", "orientation", "heading"},
+                            {"f", "compass", "lights"},
+                            {"g", "turn", "turn rate"},
+                            {"j", "compass", "signed turn rate"}};
+  for (const Practice& one : cases) {
+    const std::string folder =
+        testing::shared(std::string("data/hidden/") + one.recording).string();
+    const std::string out = (scratch.path() / one.recording).string();
+    const Ran ran =
+        run_trussmap("compare " + folder + " --model " + folder + "/model.toml --json " + out);
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    const json found = read_json(out);
+    EXPECT_EQ(found["verdict"], "misfit") << one.recording;
+    EXPECT_EQ(found["trends"][0]["residual"], one.residual) << one.recording;
+    EXPECT_EQ(found["trends"][0]["against"], one.against) << one.recording;
+  }
+  for (const char* null : {"h", "i"}) {
+    const std::string folder = testing::shared(std::string("data/hidden/") + null).string();
+    const Ran ran = run_trussmap("compare " + folder + " --model " + folder + "/model.toml");
+    EXPECT_EQ(ran.output.rfind("consistent", 0), 0U) << ran.output;
+    EXPECT_NE(ran.output.find("No residual has a trend"), std::string::npos) << ran.output;
+  }
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Score tests: what they promise against what a refit finds, and that they keep quiet where nothing
+// is missing.
+#include "trussmap/criticism/score_test.hpp"
+
+#include "trussmap/criticism/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "adjustment/simulated_recordings.hpp"
+
+namespace trussmap {
+namespace {
+
+using testing::Equipment;
+using testing::simulate_recording;
+using testing::SimulatedRecording;
+
+Effect effect_of(const std::string& channel, const std::vector<std::string>& shape) {
+  Effect effect;
+  effect.name = channel;
+  effect.channel = channel;
+  effect.shape = shape;
+  return effect;
+}
+
+/// What the recording's wheels would have shown with a wheelbase off by as much.
+void widen(Recording& recording, double wheelbase, double g) {
+  for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
+    const double path = 0.5 * (recording.drive.left[row] + recording.drive.right[row]);
+    const double turn =
+        (recording.drive.right[row] - recording.drive.left[row]) / wheelbase / (1.0 + g);
+    recording.drive.left[row] = path - 0.5 * wheelbase * turn;
+    recording.drive.right[row] = path + 0.5 * wheelbase * turn;
+  }
+}
+
+TEST(ScoreTest, PromisesWhatARefitTakesOffChi2) {
+  SimulatedRecording one = simulate_recording({}, 4);  // seed 4
+  widen(one.recording, one.model.robot.wheelbase, -0.02);
+  const ModelFit before = fit_model({one.recording}, one.model);
+  const ScoreTest tests(before);
+  for (const Effect& effect :
+       {effect_of("turn", {"1"}), effect_of("turn", {"abs(turn_rate)"}),
+        effect_of("compass", {"sin(heading)", "cos(heading)"}), effect_of("wheels", {"1"})}) {
+    const Score score = tests.test({effect}).front();
+    Model model = one.model;
+    model.effects = {effect};
+    const ModelFit after = fit_model({one.recording}, model);
+    const double fallen = before.adjustment.chi2 - after.adjustment.chi2;
+    EXPECT_NEAR(score.score, fallen, 0.05 * fallen + 0.5) << effect.channel;
+    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+      EXPECT_NEAR(score.coefficients[k], after.effects[0].effect.coefficients[k],
+                  0.05 * std::abs(score.coefficients[k]) + 0.3 * score.sd[k]);
+    }
+  }
+}
+
+TEST(ScoreTest, ManyAtOnceAreTheSameAsOneByOne) {
+  const SimulatedRecording one = simulate_recording({}, 5);
+  const ModelFit fit = fit_model({one.recording}, one.model);
+  const ScoreTest tests(fit);
+  std::vector<Effect> effects;
+  for (const char* channel : {"turn", "travel", "difference", "creep", "lever", "drift"}) {
+    effects.push_back(effect_of(channel, {"1"}));
+    effects.push_back(effect_of(channel, {"sin(heading)", "cos(heading)"}));
+  }
+  const std::vector<Score> together = tests.test(effects);
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const Score alone = tests.test({effects[k]}).front();
+    EXPECT_NEAR(alone.score, together[k].score, 1e-9 * (1.0 + alone.score));
+    EXPECT_EQ(alone.dof, together[k].dof);
+  }
+}
+
+TEST(ScoreTest, WhereNothingIsMissingPValuesAreUniform) {
+  // Kolmogorov and Smirnov at 1 %; seeds 1 ... 80, with survey and compass.
+  std::vector<std::vector<double>> p_values(4);
+  constexpr int kSeeds = 80;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const SimulatedRecording one = simulate_recording({}, seed);
+    const ModelFit fit = fit_model({one.recording}, one.model);
+    const std::vector<Score> scores = ScoreTest(fit).test(
+        {effect_of("turn", {"1"}), effect_of("wheels", {"1"}), effect_of("travel", {"abs(speed)"}),
+         effect_of("compass", {"sin(heading)", "cos(heading)"})});
+    for (std::size_t k = 0; k < scores.size(); ++k) p_values[k].push_back(scores[k].p_value);
+  }
+  for (std::vector<double>& sorted : p_values) {
+    std::sort(sorted.begin(), sorted.end());
+    double distance = 0.0;
+    for (std::size_t k = 0; k < sorted.size(); ++k) {
+      const double below = static_cast<double>(k) / kSeeds;
+      distance = std::max({distance, sorted[k] - below, below + 1.0 / kSeeds - sorted[k]});
+    }
+    EXPECT_LT(distance, 1.628 / std::sqrt(kSeeds));
+  }
+}
+
+TEST(ScoreTest, ASmallerMapIsNoEvidenceOfAScale) {
+  // Without a survey nothing shows the scale, but a smaller map has smaller residuals.
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const SimulatedRecording one = simulate_recording({seed % 2 == 0, false, false}, seed);
+    const ModelFit fit = fit_model({one.recording}, one.model);
+    for (const Score& score :
+         ScoreTest(fit).test({effect_of("travel", {"1"}), effect_of("wheels", {"1"})})) {
+      if (score.dof > 0) EXPECT_GT(score.p_value, 1e-4) << "seed " << seed;
+    }
+  }
+}
+
+TEST(ScoreTest, WhatTheModelHasIsNotFoundAgain) {
+  SimulatedRecording one = simulate_recording({}, 6);
+  widen(one.recording, one.model.robot.wheelbase, -0.02);
+  one.model.effects = {effect_of("turn", {"1"})};
+  const ModelFit fit = fit_model({one.recording}, one.model);
+  EXPECT_EQ(ScoreTest(fit).test({effect_of("turn", {"1"})}).front().dof, 0);
+}
+
+TEST(Comparison, HolmsAdjustmentIsThatOfTheBook) {
+  // Holm (1979): p = .01, .04, .03, .005 become .03, .06, .06, .02.
+  const std::vector<double> adjusted = holm({0.01, 0.04, 0.03, 0.005});
+  const double expected[] = {0.03, 0.06, 0.06, 0.02};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(adjusted[k], expected[k], 1e-12);
+}
+
+TEST(Comparison, AnUnderstatedSourceIsRecognised) {
+  SimulatedRecording one = simulate_recording({}, 8);
+  one.model.noise.sighting /= 3.0;
+  for (const SourceCalibration& source : compare({one.recording}, one.model).sources) {
+    const double expected = source.source == "sighting" ? 3.0 : 1.0;
+    EXPECT_NEAR(source.factor, expected, 4.0 * source.sd + 0.25 * (expected - 1.0))
+        << source.source;
+  }
+}
+
+TEST(Comparison, ChiSquareOfLegsRoutesAndLandmarksIsTheWhole) {
+  const SimulatedRecording one = simulate_recording({}, 9);
+  const Comparison found = compare({one.recording}, one.model);
+  double legs = 0.0;
+  double routes = 0.0;
+  double landmarks = 0.0;
+  for (const LegMisfit& leg : found.worst) legs += leg.chi2;
+  for (const RouteMisfit& route : found.routes) routes += route.chi2;
+  for (const LandmarkMisfit& landmark : found.worst_landmarks) landmarks += landmark.chi2;
+  EXPECT_NEAR(legs, routes, 1e-9 * legs);
+  EXPECT_NEAR(legs + landmarks, found.chi2, 1e-6 * found.chi2);
+}
+
+}  // namespace
+}  // namespace trussmap
