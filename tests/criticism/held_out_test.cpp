@@ -156,17 +156,15 @@ Recording spoiled(Recording recording, const std::vector<LegSpan>& legs, std::si
   for (std::size_t row = 0; row < recording.drive.rows(); ++row) {
     const double t = recording.drive.t[row];
     if (t <= from + 1e-9 || t > to - late + 1e-9) continue;
-    recording.drive.left[row] *= 1.1;
-    recording.drive.right[row] *= 0.95;
+    recording.drive.left[row] *= 1.03;
+    recording.drive.right[row] *= 0.99;
     if (recording.drive.has_compass()) {
-      recording.drive.heading[row] = std::remainder(recording.drive.heading[row] + 0.3, 2.0 * M_PI);
+      recording.drive.heading[row] = std::remainder(recording.drive.heading[row] + 0.1, 2.0 * M_PI);
     }
   }
   for (Sighting& sighting : recording.sightings) {
     if (sighting.t <= from + 1e-9 || sighting.t >= to - 1e-9) continue;
-    if (!sighting.standing()) sighting.range += 0.5;
-    // One landmark taken for another.
-    sighting.landmark = sighting.landmark == "P1" ? "P2" : "P1";
+    if (!sighting.standing()) sighting.range += 0.2;
   }
   return recording;
 }
@@ -205,10 +203,11 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
     for (auto a = expected.begin(), b = found.begin(); a != expected.end(); ++a, ++b) {
       worst = std::max(worst, (a->second - b->second).norm());
     }
-    EXPECT_LT(worst, 2e-4) << name;
+    // Where delays are fitted anew, to what the fit calls settled.
+    EXPECT_LT(worst, name == "sighting delay" ? 1e-4 : 1e-8) << name;
     // That it is bad shows in the fit of all legs.
     EXPECT_GT(fit_model({bad}, model).adjustment.chi2,
-              2.0 * fit_model({clean}, model).adjustment.chi2)
+              1.2 * fit_model({clean}, model).adjustment.chi2)
         << name;
   }
 }
@@ -313,9 +312,6 @@ TEST(HeldOut, ALandmarkOfHeldOutLegsAloneIsPassedOver) {
     EXPECT_LT(result.arrival_rms, 1e-6);
     if (survey) {
       // Surveyed, it is known without being seen.
-      for (const SurveyPoint& point : recording.survey) {
-        if (point.landmark != simulated.recording.sightings[0].landmark) continue;
-      }
       recording.survey.push_back({"alone", 0.0, 0.0, kAbsent});
       const auto truth = simulated.places[static_cast<std::size_t>(std::lround(10.0 * t)) - 1];
       recording.survey.back().x = truth.real();
