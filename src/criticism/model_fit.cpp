@@ -6,7 +6,6 @@
 #include "trussmap/adjustment/recording_descent.hpp"
 #include "trussmap/adjustment/recording_start.hpp"
 #include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -169,8 +168,11 @@ class Fitter {
     }
     RecordingAdjustmentOptions how;
     how.gate = options_.gate;
-    const RecordingAdjustment best = adjust_from(state_, fit_.problem, without, how);
-    state_ = best.state;
+    fit_.adjustment = adjust_from(state_, fit_.problem, without, how);
+    state_ = fit_.adjustment.state;
+    // With the rows' noise taken out of the columns, as this fit believes it.
+    take_paths();
+    build_columns();
     while (true) {
       const std::vector<int> free = unknown_coefficients(fit_.columns.border);
       RecordingSystem system(fit_.problem, fit_.columns.border);
@@ -181,8 +183,11 @@ class Fitter {
         if (error.column() >= 0) throw;
       }
       const std::vector<int> lost = find_undetermined(system);
-      if (lost.empty()) return;
-      give_way(free[idx(lost.back())]);
+      if (!lost.empty()) {
+        give_way(free[idx(lost.back())]);
+      } else if (!hold_the_implausible(system)) {
+        return;
+      }
     }
   }
 
@@ -239,45 +244,43 @@ class Fitter {
     }
   }
 
-  bool hold_the_implausible() {
+  /// The last of those that the data tell too little of gives way, as in give_way.
+  bool hold_the_implausible(const RecordingSystem& system) {
+    const Eigen::MatrixXd covariance = system.coefficient_covariance();
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
-    int worst = -1;
-    double most = 1.0;
-    for (std::size_t k = 0; k < unknown.size(); ++k) {
+    for (std::size_t k = unknown.size(); k-- > 0;) {
       const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
       const Effect& effect = fit_.model.effects[one.effect];
       const auto at = static_cast<Eigen::Index>(k);
-      const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
-      const double plausible = facts_of(*parse_channel(effect.channel)).plausible;
-      const double share = sd * one.largest / plausible;
-      if (share > most) {
-        most = share;
-        worst = unknown[k];
-      }
-    }
-    if (worst < 0) return false;
-    hold(worst,
-         fmt::format("these data leave it uncertain by {:.1f} times its plausible size", most));
-    return true;
-  }
-
-  /// Neither a coefficient nor the path that the shapes saw has moved.
-  [[nodiscard]] bool settled() const {
-    if (bent_ > 1e-3) return false;
-    if (!sees_the_path()) return !has_delays() || change_ < 1.0;
-    return change_ < 1.0 || (fit_.columns.border.empty() && moved_ < 1e-9) ||
-           (!options_.fit_effects && moved_ < 1e-9);
-  }
-
-  [[nodiscard]] bool sees_the_path() const {
-    for (const Effect& effect : fit_.model.effects) {
-      for (const std::string& shape : effect.shape) {
-        for (const std::string& name : variables_of(shape)) {
-          if (name == "heading" || name == "x" || name == "y") return true;
-        }
-      }
+      const double share =
+          1.0 / (covariance(at, at) * std::max(system.border().col(at).squaredNorm(), 1e-300));
+      const double uncertainty = std::sqrt(covariance(at, at)) * one.largest /
+                                 facts_of(*parse_channel(effect.channel)).plausible;
+      if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
+      hold(unknown[k], uncertainty > kLargestUncertainty
+                           ? fmt::format("these data leave it uncertain by {:.1f} times its "
+                                         "plausible size",
+                                         uncertainty)
+                           : "next to nothing of it is told from the map and the poses");
+      return true;
     }
     return false;
+  }
+
+  bool hold_the_implausible() {
+    if (unknown_coefficients(fit_.columns.border).empty()) return false;
+    RecordingSystem system(fit_.problem, fit_.columns.border);
+    system.linearise(state_, unknown_values());
+    system.factorise();
+    return hold_the_implausible(system);
+  }
+
+  /// Neither a coefficient nor the path has moved, from which the columns were made.
+  [[nodiscard]] bool settled() const {
+    constexpr double kStill = 1e-6;  // m and rad
+    if (bent_ > 1e-3) return false;
+    if (fit_.columns.border.empty()) return true;
+    return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill : change_ < 1.0;
   }
 
   void report() {

@@ -14,7 +14,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUnseenShare = 1e-6;  // of a column's square that nothing else explains
 constexpr double kBatchBytes = 100e6;  // of row patterns at a time
 
 }  // namespace
@@ -65,7 +64,7 @@ Score ScoreTest::score_of(const EffectColumns& columns, const Effect& effect,
     // What the data tell must not be less than what was believed before.
     const double uncertainty =
         largest * std::sqrt(dispersion_ / std::max(projected.col(k).squaredNorm(), 1e-300));
-    if (largest > 0.0 && share > kUnseenShare && uncertainty < plausible) {
+    if (largest > 0.0 && share > kLeastShare && uncertainty < kLargestUncertainty * plausible) {
       seen.push_back(k);
     } else {
       result.projected.col(k).setZero();

@@ -11,8 +11,7 @@
 // stay. A delay is taken out of the time stamps before each round.
 //
 // Nothing is fitted that the data cannot show: a coefficient is left as it was, and named, where no
-// measurement tells it from the unknowns, or where its standard error times the shape's largest
-// value is above the channel's plausible size (channel.hpp).
+// measurement tells it from the unknowns, or too little does (kLeastShare, kLargestUncertainty).
 #pragma once
 
 #include "trussmap/adjustment/recording_adjustment.hpp"
