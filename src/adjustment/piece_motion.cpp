@@ -31,6 +31,7 @@ struct Step {
   double path = 0.0;
   double slip = 0.0;
   double turn = 0.0;
+  double compass = 0.0;
 
   [[nodiscard]] Vector2 end(const UnitArc& arc) const {
     return path * arc.end + slip * quarter_turn(arc.end);
@@ -57,6 +58,20 @@ class MeanAngle {
 
 const DrivePattern* pattern_at(const std::vector<DrivePattern>* patterns, std::size_t row) {
   return patterns == nullptr || patterns->empty() ? nullptr : &(*patterns)[row];
+}
+
+Step step_of(const PieceRow& row, const std::vector<const std::vector<DrivePattern>*>& patterns,
+             const Eigen::VectorXd& coefficients) {
+  Step step{row.path, 0.0, row.turn, 0.0};
+  for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
+    const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+    if (pattern == nullptr) continue;
+    step.path += coefficients[k] * row.part * pattern->advance;
+    step.slip += coefficients[k] * row.part * pattern->slip;
+    step.turn += coefficients[k] * row.part * pattern->turn;
+    step.compass += coefficients[k] * pattern->compass;
+  }
+  return step;
 }
 
 }  // namespace
@@ -92,16 +107,7 @@ PieceWithEffects piece_motion(const std::vector<PieceRow>& rows,
   MeanAngle mean;
   int readings = 0;
   for (const PieceRow& row : rows) {
-    Step step{row.path, 0.0, row.turn};
-    double offset = 0.0;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
-      if (pattern == nullptr) continue;
-      step.path += coefficients[k] * row.part * pattern->advance;
-      step.slip += coefficients[k] * row.part * pattern->slip;
-      step.turn += coefficients[k] * row.part * pattern->turn;
-      offset += coefficients[k] * pattern->compass;
-    }
+    const Step step = step_of(row, patterns, coefficients);
     const UnitArc arc = unit_arc(step.turn);
     const Matrix2 R = rotation(pose.heading);
     const Vector2 chord = R * step.end(arc);
@@ -121,7 +127,7 @@ PieceWithEffects piece_motion(const std::vector<PieceRow>& rows,
     pose.heading += step.turn;
     if (std::isnan(row.reading)) continue;
     ++readings;
-    mean.add(row.reading - offset - pose.heading);
+    mean.add(row.reading - step.compass - pose.heading);
     for (Eigen::Index k = 0; k < count; ++k) {
       const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
       slopes(3, k) -= slopes(2, k) + (pattern == nullptr ? 0.0 : pattern->compass);
@@ -129,6 +135,42 @@ PieceWithEffects piece_motion(const std::vector<PieceRow>& rows,
   }
   if (readings > 0) slopes.row(3) /= readings;
   return {{pose, mean.mean()}, slopes};
+}
+
+std::vector<Matrix4> row_influences(const std::vector<PieceRow>& rows,
+                                    const std::vector<const std::vector<DrivePattern>*>& patterns,
+                                    const Eigen::VectorXd& coefficients) {
+  std::vector<Matrix4> influences(rows.size(), Matrix4::Zero());
+  std::vector<Vector2> ends(rows.size());
+  Pose pose;
+  const int readings = readings_of(rows);
+  int read = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const PieceRow& row = rows[k];
+    const Step step = step_of(row, patterns, coefficients);
+    const UnitArc arc = unit_arc(step.turn);
+    const Matrix2 R = row.part * rotation(pose.heading);
+    Matrix4& own = influences[k];
+    own.block<2, 1>(0, 0) = R * arc.end;
+    own.block<2, 1>(0, 1) = R * quarter_turn(arc.end);
+    own.block<2, 1>(0, 2) = R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope));
+    own(2, 2) = row.part;
+    const Vector2 chord = rotation(pose.heading) * step.end(arc);
+    pose.x += chord.x();
+    pose.y += chord.y();
+    pose.heading += step.turn;
+    ends[k] = pose.position();
+    if (readings == 0) continue;
+    own(3, 2) = -row.part * (readings - read) / readings;  // this row's own and all later ones
+    if (std::isnan(row.reading)) continue;
+    ++read;
+    own(3, 3) = -1.0 / readings;
+  }
+  // A turn swings all that comes after it.
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    influences[k].block<2, 1>(0, 2) += rows[k].part * quarter_turn(pose.position() - ends[k]);
+  }
+  return influences;
 }
 
 Matrix4 piece_covariance(const Drive& drive, const std::vector<PieceRow>& rows, const Robot& robot,

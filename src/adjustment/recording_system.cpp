@@ -191,47 +191,6 @@ void RecordingSystem::evaluate_border(
   }
 }
 
-Eigen::MatrixXd RecordingSystem::columns_of(const EffectBorder& further,
-                                            const RecordingState& state,
-                                            const Eigen::VectorXd& coefficients) const {
-  const auto count = static_cast<Eigen::Index>(further.size());
-  const auto present = static_cast<Eigen::Index>(border_.size());
-  Eigen::VectorXd both = Eigen::VectorXd::Zero(present + count);
-  both.head(present) = offsets(coefficients);
-  const bool drives = touches_drives(further);
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows_, count);
-  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    const Measurement& one = problem_.measurements[k];
-    const Matrix4 W = root_weights_[k] * one.whitener;
-    auto M = columns.middleRows(first_row_[k], one.rows);
-    if (one.kind == MeasurementKind::piece) {
-      if (!drives) continue;
-      std::vector<const std::vector<DrivePattern>*> patterns;
-      patterns.reserve(idx(present + count));
-      for (const EffectBorder* border : {&border_, &further}) {
-        for (const EffectPattern& effect : *border) {
-          patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
-        }
-      }
-      const PieceWithEffects piece = piece_motion(problem_.pieces[one.source], patterns, both);
-      const Eigen::MatrixXd whitened = -(W * piece.derivatives.rightCols(count));
-      M = whitened.topRows(one.rows);
-      continue;
-    }
-    if (one.session < 0) continue;
-    const ViewPattern view = view_of(border_, both.head(present), one);
-    const MeasurementRows rows = measurement_rows(problem_, one, state, one.value, view);
-    for (std::size_t c = 0; c < further.size(); ++c) {
-      const auto& views =
-          one.kind == MeasurementKind::truth ? further[c].truths : further[c].sightings;
-      if (views.empty() || views[idx(one.session)].empty()) continue;
-      const Vector4 column = W * rows.by_view * views[idx(one.session)][one.source].vector();
-      M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
-    }
-  }
-  return columns;
-}
-
 Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns(), rows.cols());
   if (rows.cols() == 0) return result;

@@ -11,12 +11,6 @@
 #include <fmt/format.h>
 
 namespace trussmap {
-namespace {
-
-using Instant = ShapeContext::Instant;
-
-enum class ActsOn { drives, readings, views };
-
 ActsOn acts_on(Channel channel) {
   switch (channel) {
     case Channel::compass:
@@ -33,9 +27,9 @@ ActsOn acts_on(Channel channel) {
   }
 }
 
-/// What one unit of the coefficient adds to a row with this travel, where the shape is f.
-DrivePattern row_pattern(Channel channel, double f, double left, double right, double duration,
+DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel, double duration,
                          double wheelbase) {
+  const auto [left, right] = travel;
   const double path = 0.5 * (left + right);
   const double turn = (right - left) / wheelbase;
   switch (channel) {
@@ -93,6 +87,10 @@ ViewPattern view_pattern(Channel channel, double f, double speed, double turn_ra
   }
   return view;
 }
+
+namespace {
+
+using Instant = ShapeContext::Instant;
 
 std::vector<ViewPattern> views(Channel channel, const std::vector<double>& f,
                                const RowVariables& variables) {
@@ -231,7 +229,7 @@ Column make_column(Channel channel, const std::string& shape, int session,
     patterns.reserve(values[s].size());
     for (std::size_t row = 0; row < values[s].size(); ++row) {
       const WheelTravel travel = context.travel(s, row);
-      patterns.push_back(row_pattern(channel, values[s][row], travel.left, travel.right,
+      patterns.push_back(row_pattern(channel, values[s][row], travel,
                                      duration_of(recordings[s].drive, row),
                                      context.robot().wheelbase));
     }

@@ -13,14 +13,14 @@
 
 #include <Eigen/LU>
 
+#include "held_out_filter.hpp"
+
 namespace trussmap {
 namespace {
 
 constexpr std::size_t kBlock = 5;
-constexpr double kLeastChord = 0.1;      // m
-constexpr double kFirstPlaceSd = 1.0;    // m: what the filter is told of its first pose
-constexpr double kForever = 1e300;       // s
-constexpr double kFirstHeadingSd = 0.3;  // rad
+constexpr double kLeastChord = 0.1;  // m
+constexpr double kForever = 1e300;   // s
 
 bool is_held_out(std::size_t leg, double share) {
   const auto block = static_cast<double>(leg / kBlock);
@@ -175,111 +175,6 @@ void undo_delays(const std::vector<Recording>& recordings, const Model& model,
   }
 }
 
-/// Follows the robot through one session, with the map as known.
-class Filter {
- public:
-  Filter(const RecordingProblem& problem, const EffectBorder& border,
-         const Eigen::VectorXd& offsets, const RecordingState& map,
-         const std::vector<Matrix2>& map_covariances)
-      : problem_(problem),
-        border_(border),
-        offsets_(offsets),
-        state_(map),
-        covariances_(map_covariances) {}
-
-  void start(int node, const Pose& pose) {
-    at(node) = pose;
-    P_ = Eigen::Vector3d(kFirstPlaceSd * kFirstPlaceSd, kFirstPlaceSd * kFirstPlaceSd,
-                         kFirstHeadingSd * kFirstHeadingSd)
-             .asDiagonal();
-  }
-
-  [[nodiscard]] const Pose& pose(int node) const {
-    return state_.poses[idx(node - problem_.landmark_count())];
-  }
-
-  /// Along a piece: its compass innovation first, which shares noise with its motion.
-  void drive(const Measurement& piece) {
-    std::vector<const std::vector<DrivePattern>*> patterns;
-    for (const EffectPattern& effect : border_) {
-      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(piece.session)]);
-    }
-    const PieceMotion motion =
-        piece_motion(problem_.pieces[piece.source], patterns, offsets_).motion;
-    Matrix4 W = piece.whitener;
-    Matrix4 C = Matrix4::Zero();
-    for (int k = piece.rows; k < 4; ++k) W(k, k) = 1.0;
-    const Matrix4 inverse = W.inverse();
-    C = inverse * inverse.transpose();
-    Eigen::Matrix<double, 6, 6> joint = Eigen::Matrix<double, 6, 6>::Zero();  // pose, (d, a)
-    joint.topLeftCorner<3, 3>() = P_;
-    joint.bottomRightCorner<3, 3>() = C.topLeftCorner<3, 3>();
-    Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
-    if (piece.rows == 4) {
-      // m - heading = its own noise, which goes with the motion's.
-      Eigen::Matrix<double, 6, 1> with = joint.col(2);
-      with.tail<3>() -= C.topRightCorner<3, 1>();
-      const double variance = P_(2, 2) + C(3, 3);
-      const double innovation = wrap_angle(motion.mean_heading - pose(piece.from).heading);
-      // The motion's noise is that of "measured - true" here, the innovation's likewise.
-      mean = with * (innovation / variance);
-      joint -= with * with.transpose() / variance;
-    }
-    Pose from = pose(piece.from);
-    from.x += mean[0];
-    from.y += mean[1];
-    from.heading += mean[2];
-    Pose step = motion.displacement;
-    step.x += mean[3];
-    step.y += mean[4];
-    step.heading += mean[5];
-    at(piece.to) = compose(from, step);
-    Eigen::Matrix<double, 3, 6> F = Eigen::Matrix<double, 3, 6>::Zero();
-    F.leftCols<3>().setIdentity();
-    F.block<2, 1>(0, 2) = quarter_turn(rotation(from.heading) * step.position());
-    F.block<2, 2>(0, 3) = rotation(from.heading);
-    F(2, 5) = 1.0;
-    P_ = F * joint * F.transpose();
-    P_ = (0.5 * (P_ + P_.transpose())).eval();
-  }
-
-  /// A sighting of a known landmark, or a truth row.
-  void see(const Measurement& one) {
-    if (one.to >= 0 && std::isnan(state_.landmarks[idx(one.to)].x())) return;
-    const MeasurementRows rows =
-        measurement_rows(problem_, one, state_, one.value, view_of(border_, offsets_, one));
-    const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
-    const Eigen::MatrixXd H = W * rows.by_from.topRows(one.rows);
-    const Eigen::VectorXd error = W * rows.error.head(one.rows);
-    Eigen::MatrixXd S = H * P_ * H.transpose() + Eigen::MatrixXd::Identity(one.rows, one.rows);
-    if (one.to >= 0) {
-      const Eigen::MatrixXd L = W * rows.by_to.topLeftCorner(one.rows, 2);
-      S += L * covariances_[idx(one.to)] * L.transpose();
-    }
-    const Eigen::MatrixXd gain = P_ * H.transpose() * S.inverse();
-    const Eigen::Vector3d change = -gain * error;
-    Pose& pose = at(one.from);
-    pose.x += change[0];
-    pose.y += change[1];
-    pose.heading += change[2];
-    P_ = (P_ - gain * H * P_).eval();
-    P_ = (0.5 * (P_ + P_.transpose())).eval();
-  }
-
-  [[nodiscard]] const RecordingState& state() const { return state_; }
-  [[nodiscard]] const Matrix3& covariance() const { return P_; }
-
- private:
-  Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
-
-  const RecordingProblem& problem_;
-  const EffectBorder& border_;
-  const Eigen::VectorXd& offsets_;
-  RecordingState state_;
-  const std::vector<Matrix2>& covariances_;
-  Matrix3 P_ = Matrix3::Zero();
-};
-
 /// Where a measurement says that what it measures lies, from a pose: the landmark, or the point
 /// that truth tracks. Nothing where only a range was measured.
 std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
@@ -369,12 +264,40 @@ std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
   return legs;
 }
 
-HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFit& fit,
+HeldOutLegs::End HeldOutLegs::end_of(const RecordingProblem& problem, std::size_t measurement,
+                                     const Pose& pose, const ViewPattern& view,
+                                     const Eigen::Matrix<double, 4, 3>& by_pose,
+                                     const Eigen::Matrix<double, 4, 3>& by_landmark) {
+  const Measurement& one = problem.measurements[measurement];
+  // From errors, "expected - measured", to "seen - true" in the map.
+  Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
+  const Matrix2 R = rotation(pose.heading + view.heading);
+  if (one.kind == MeasurementKind::truth) {
+    T.leftCols<2>().setIdentity();
+  } else if (one.kind == MeasurementKind::view) {
+    const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
+    const Matrix2 along = R * rotation(one.value[1] - view.bearing);
+    T.col(0) = -along.col(0) / (1.0 + view.range_scale);
+    T.col(1) = -range * along.col(1);
+  } else {
+    T.leftCols<2>() = -(one.kind == MeasurementKind::standing ? rotation(pose.heading) : R);
+  }
+  Matrix4 W = one.whitener;
+  for (int row = one.rows; row < 4; ++row) W(row, row) = 1.0;
+  End end;
+  end.measurement = measurement;
+  end.landmark = one.to;
+  end.by_rows = T * W.inverse();
+  end.by_pose = T * by_pose;
+  end.by_landmark = (T * by_landmark).leftCols<2>();
+  return end;
+}
+
+HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const ModelFit& fit,
                          const ModelFitOptions& options, const LegOptions& leg_options) {
-  HeldOut result;
   const std::vector<LegSpan> legs = leg_spans(fit.recordings, fit.problem, leg_options);
   if (std::none_of(legs.begin(), legs.end(), [](const LegSpan& leg) { return leg.held_out; })) {
-    return result;
+    return;
   }
   ModelFitOptions how = options;
   how.fit_effects = true;
@@ -387,7 +310,13 @@ HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFi
   // All measurements of all legs again, by the training's model and map.
   ProblemOptions all = options.problem;
   all.left_out.clear();
-  const RecordingProblem problem = make_problem(training.recordings, training.model, all);
+  problem_ = make_problem(training.recordings, training.model, all);
+  const RecordingProblem& problem = problem_;
+  int rows = 0;
+  for (const Measurement& one : problem.measurements) {
+    first_row_.push_back(rows);
+    rows += one.rows;
+  }
   const ShapeContext context(training.recordings, training.model.robot, training.paths);
   const EffectColumns columns = effect_columns(training.model.effects, context);
   Eigen::VectorXd offsets = offsets_of(training);
@@ -409,61 +338,147 @@ HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFi
   for (std::size_t k = 0; k < again.size(); ++k) {
     if (again[k].held_out) starting[problem.measurements[again[k].from].from].push_back(k);
   }
-  double squares = 0.0;
-  double stretch = 0.0;
-  double orientation = 0.0;
-  int chords = 0;
-  Filter filter(problem, columns.border, offsets, state, map.covariances);
+  HeldOutFilter filter(problem, columns.border, offsets, state, map.covariances);
   for (std::size_t pose = 0; pose < problem.poses.size(); ++pose) {
     const int node = problem.pose_node(static_cast<int>(pose));
     const bool first = pose == 0 || problem.poses[pose].session != problem.poses[pose - 1].session;
-    if (first) filter.start(node, state.poses[pose]);
-    for (const std::size_t k : events[pose].views) filter.see(problem.measurements[k]);
+    if (first) {
+      filter.start(node, state.poses[pose]);
+      FilterStep fresh;
+      fresh.A.setZero();
+      steps_.push_back(fresh);
+    }
+    for (const std::size_t k : events[pose].views) steps_.push_back(filter.see(k));
     for (const std::size_t k : starting[node]) {
       const Measurement& from = problem.measurements[again[k].from];
       const Measurement& to = problem.measurements[again[k].to];
       const bool landmark = to.to >= 0;
       if (landmark && std::isnan(state.landmarks[idx(to.to)].x())) continue;
-      Filter ahead = filter;
+      HeldOutFilter ahead = filter;
+      Leg leg;
+      leg.after = steps_.size();
       for (int at = node; at != to.from;) {
         const int piece = events[idx(at - problem.landmark_count())].piece;
         if (piece < 0) break;
-        ahead.drive(problem.measurements[idx(piece)]);
+        leg.ahead.push_back(ahead.drive(idx(piece)));
         at = problem.measurements[idx(piece)].to;
       }
-      const auto begin = seen_from(filter.pose(node), from, view_of(columns.border, offsets, from));
-      const auto end = seen_from(ahead.pose(to.from), to, view_of(columns.border, offsets, to));
+      const ViewPattern view_from = view_of(columns.border, offsets, from);
+      const ViewPattern view_to = view_of(columns.border, offsets, to);
+      const auto begin = seen_from(filter.pose(node), from, view_from);
+      const auto end = seen_from(ahead.pose(to.from), to, view_to);
       if (!begin || !end) continue;
       const Vector2 target = landmark ? state.landmarks[idx(to.to)] : Vector2(to.value.head<2>());
-      LegPrediction one;
-      one.leg = k;
-      one.from = landmark_of(problem, from);
-      one.to = landmark_of(problem, to);
-      one.t = again[k].time.to;
-      one.arrival_error = *end - target;
       const bool known_start = from.to < 0 || !std::isnan(state.landmarks[idx(from.to)].x());
       const Vector2 origin =
           from.to < 0 ? Vector2(from.value.head<2>()) : state.landmarks[idx(from.to)];
-      const Vector2 chord = target - origin;
-      const Vector2 predicted = *end - *begin;
-      one.has_chord = known_start && chord.norm() >= kLeastChord;
-      if (one.has_chord) {
-        one.stretch_error = std::abs(predicted.norm() - chord.norm()) / chord.norm();
-        one.orientation_error = std::abs(wrap_angle(direction(predicted) - direction(chord)));
-        stretch += one.stretch_error;
-        orientation += one.orientation_error;
-        ++chords;
-      }
-      squares += one.arrival_error.squaredNorm();
-      result.legs.push_back(one);
+      leg.told.leg = k;
+      leg.told.from = landmark_of(problem, from);
+      leg.told.to = landmark_of(problem, to);
+      leg.told.t = again[k].time.to;
+      leg.told.arrival_error = *end - target;
+      leg.chord = target - origin;
+      leg.predicted = *end - *begin;
+      leg.told.has_chord = known_start && leg.chord.norm() >= kLeastChord;
+      const MeasurementRows rows_from = filter.rows(again[k].from);
+      const MeasurementRows rows_to = ahead.rows(again[k].to);
+      leg.from = end_of(problem, again[k].from, filter.pose(node), view_from, rows_from.by_from,
+                        rows_from.by_to);
+      leg.to = end_of(problem, again[k].to, ahead.pose(to.from), view_to, rows_to.by_from,
+                      rows_to.by_to);
+      legs_.push_back(std::move(leg));
     }
-    if (events[pose].piece >= 0) filter.drive(problem.measurements[idx(events[pose].piece)]);
+    if (events[pose].piece >= 0) steps_.push_back(filter.drive(idx(events[pose].piece)));
+  }
+}
+
+Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,
+                                    const Eigen::MatrixXd& landmarks) const {
+  const Eigen::Index count = columns.cols();
+  const auto rows_of = [&](std::size_t measurement) {
+    return columns.middleRows(first_row_[measurement], problem_.measurements[measurement].rows);
+  };
+  const auto advance = [&](const FilterStep& step, Eigen::MatrixXd& s) {
+    s = (step.A * s).eval();
+    if (step.measurement < 0) return;
+    const auto c = rows_of(static_cast<std::size_t>(step.measurement));
+    s += step.B.leftCols(c.rows()) * c;
+    if (step.landmark >= 0) s += step.L * landmarks.middleRows(2 * step.landmark, 2);
+  };
+  const auto seen = [&](const End& end, const Eigen::MatrixXd& s) -> Eigen::MatrixXd {
+    const auto c = rows_of(end.measurement);
+    Eigen::MatrixXd result = end.by_pose * s + end.by_rows.leftCols(c.rows()) * c;
+    if (end.landmark >= 0) result += end.by_landmark * landmarks.middleRows(2 * end.landmark, 2);
+    return result;
+  };
+  const auto target = [&](const End& end) -> Eigen::MatrixXd {
+    if (end.landmark < 0) return Eigen::MatrixXd::Zero(2, count);
+    return landmarks.middleRows(2 * end.landmark, 2);
+  };
+  Eigen::MatrixXd result(6 * static_cast<Eigen::Index>(legs_.size()), count);
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(3, count);
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    const Leg& leg = legs_[k];
+    for (; done < leg.after; ++done) advance(steps_[done], s);
+    Eigen::MatrixXd ahead = s;
+    for (const FilterStep& step : leg.ahead) advance(step, ahead);
+    const auto row = 6 * static_cast<Eigen::Index>(k);
+    const Eigen::MatrixXd arrival = seen(leg.to, ahead);
+    const Eigen::MatrixXd chord = target(leg.to) - target(leg.from);
+    result.middleRows(row, 2) = arrival;
+    result.middleRows(row + 2, 2) = arrival - seen(leg.from, s) + chord;
+    result.middleRows(row + 4, 2) = chord;
+  }
+  return result;
+}
+
+HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
+  HeldOut result;
+  double squares = 0.0;
+  int chords = 0;
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    const Leg& leg = legs_[k];
+    LegPrediction one = leg.told;
+    Vector2 predicted = leg.predicted;
+    Vector2 chord = leg.chord;
+    if (change.size() > 0) {
+      const auto row = 6 * static_cast<Eigen::Index>(k);
+      one.arrival_error += change.segment<2>(row);
+      predicted += change.segment<2>(row + 2);
+      chord += change.segment<2>(row + 4);
+    }
+    if (one.has_chord) {
+      one.stretch_error = std::abs(predicted.norm() - chord.norm()) / chord.norm();
+      one.orientation_error = std::abs(wrap_angle(direction(predicted) - direction(chord)));
+      result.stretch_error += one.stretch_error;
+      result.orientation_error += one.orientation_error;
+      ++chords;
+    }
+    squares += one.arrival_error.squaredNorm();
+    result.legs.push_back(std::move(one));
   }
   if (result.legs.empty()) return result;
   result.arrival_rms = std::sqrt(squares / static_cast<double>(result.legs.size()));
-  result.stretch_error = chords > 0 ? stretch / chords : 0.0;
-  result.orientation_error = chords > 0 ? orientation / chords : 0.0;
+  result.stretch_error /= std::max(1, chords);
+  result.orientation_error /= std::max(1, chords);
   return result;
+}
+
+bool HeldOutLegs::alike(const RecordingProblem& problem) const {
+  const auto& ours = problem_.measurements;
+  const auto& theirs = problem.measurements;
+  return problem_.landmarks == problem.landmarks &&
+         std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                    [](const Measurement& a, const Measurement& b) {
+                      return a.kind == b.kind && a.from == b.from && a.to == b.to &&
+                             a.rows == b.rows;
+                    });
+}
+
+HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFit& fit,
+                         const ModelFitOptions& options, const LegOptions& legs) {
+  return HeldOutLegs(recordings, fit, options, legs).figures();
 }
 
 }  // namespace trussmap

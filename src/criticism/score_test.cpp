@@ -14,74 +14,114 @@ namespace trussmap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kBatchBytes = 100e6;  // of row patterns at a time
+constexpr Eigen::Index kBatch = 64;  // columns at a time
+// Without noise of its own a system leaves of an unseen column what rounding does.
+constexpr double kUnseenShare = 1e-7;
+
+std::vector<SessionPath> paths_at(const ModelFit& fit, const RecordingState& state) {
+  return fitted_paths(fit.recordings, fit.model.robot, fit.problem, fit.columns.border,
+                      offsets_of(fit), state);
+}
+
+/// The fit's border anew, from rows without their noise.
+EffectBorder border_at(const ModelFit& fit, const ShapeContext& context) {
+  EffectBorder border = effect_columns(fit.model.effects, context).border;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    border[k].held = fit.columns.border[k].held;
+    border[k].reference = fit.columns.border[k].reference;
+  }
+  return border;
+}
 
 }  // namespace
 
 ScoreTest::ScoreTest(const ModelFit& fit)
     : fit_(fit),
-      context_(fit.recordings, fit.model.robot, fit.paths),
-      system_(std::make_unique<RecordingSystem>(fit.problem, fit.columns.border)) {
+      clean_(
+          standing_exactly(fit.problem, fit.columns.border, offsets_of(fit), fit.adjustment.state)),
+      context_(fit.recordings, fit.model.robot, paths_at(fit, clean_)),
+      border_(border_at(fit, context_)),
+      system_(std::make_unique<RecordingSystem>(fit.problem, fit.columns.border)),
+      clean_system_(std::make_unique<RecordingSystem>(fit.problem, border_)) {
   std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   for (const int k : fit.adjustment.left_out) weights[idx(k)] = 0.0;
-  system_->set_weights(weights);
-  system_->linearise(fit.adjustment.state, fit.adjustment.coefficients);
-  system_->factorise();
-  const Eigen::MatrixXd& M = system_->border();
-  const Eigen::MatrixXd left =
-      M - system_->times(system_->solve_nodes(system_->transposed_times(M)));
-  if (left.cols() > 0) {
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(left);
-    present_ = factor.householderQ() * Eigen::MatrixXd::Identity(left.rows(), factor.rank());
-  } else {
-    present_ = Eigen::MatrixXd(M.rows(), 0);
+  for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
+    system->set_weights(weights);
+    system->linearise(system == system_.get() ? fit.adjustment.state : clean_,
+                      fit.adjustment.coefficients);
+    system->factorise();
   }
+  builder_ = std::make_unique<ColumnBuilder>(context_, fit.problem, border_, offsets_of(fit),
+                                             clean_, weights);
+  residuals_ = system_->residuals();
+  residuals_ -=
+      clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(residuals_)));
+  present_ = Eigen::MatrixXd(residuals_.size(), 0);
+  take_out(clean_system_->border());
   if (fit.adjustment.dof > 0) {
     dispersion_ = std::max(1.0, fit.adjustment.chi2 / fit.adjustment.dof);
   }
 }
 
-EffectColumns ScoreTest::columns(const Effect& effect) const {
-  Effect fresh = effect;
-  fresh.coefficients.clear();
-  return effect_columns({fresh}, context_);
+void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
+  if (columns.cols() == 0) return;
+  const RecordingSystem& system = *clean_system_;
+  Eigen::MatrixXd left =
+      columns - system.times(system.solve_nodes(system.transposed_times(columns)));
+  left -= present_ * (present_.transpose() * left);
+  // Columns of any unit: only their directions count, and those that have none left go.
+  Eigen::Index kept = 0;
+  for (Eigen::Index k = 0; k < left.cols(); ++k) {
+    const double before = columns.col(k).squaredNorm();
+    if (left.col(k).squaredNorm() <= kUnseenShare * before) continue;
+    left.col(kept++) = left.col(k).normalized();
+  }
+  if (kept == 0) return;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(left.leftCols(kept));
+  const Eigen::Index rank = factor.rank();
+  const Eigen::Index had = present_.cols();
+  present_.conservativeResize(Eigen::NoChange, had + rank);
+  present_.rightCols(rank) = factor.householderQ() * Eigen::MatrixXd::Identity(left.rows(), rank);
+  residuals_ -= present_.rightCols(rank) * (present_.rightCols(rank).transpose() * residuals_);
 }
 
-Score ScoreTest::score_of(const EffectColumns& columns, const Effect& effect,
-                          const Eigen::MatrixXd& whole, const Eigen::MatrixXd& projected) const {
+Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& largest,
+                          Eigen::MatrixXd columns, Eigen::MatrixXd projected) const {
   const Eigen::Index count = projected.cols();
   const double plausible = facts_of(*parse_channel(effect.channel)).plausible;
   Score result;
-  result.projected = projected;
   result.coefficients.assign(static_cast<std::size_t>(count), 0.0);
   result.sd.assign(static_cast<std::size_t>(count), kInfinity);
   result.smallest_detectable.assign(static_cast<std::size_t>(count), kInfinity);
+  result.largest = largest;
   std::vector<Eigen::Index> seen;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const double largest = columns.coefficients[static_cast<std::size_t>(k)].largest;
-    const double share =
-        projected.col(k).squaredNorm() / std::max(whole.col(k).squaredNorm(), 1e-300);
+    const double most = largest[static_cast<std::size_t>(k)];
+    const double square = projected.col(k).squaredNorm();
+    result.share.push_back(square / std::max(columns.col(k).squaredNorm(), 1e-300));
     // What the data tell must not be less than what was believed before.
-    const double uncertainty =
-        largest * std::sqrt(dispersion_ / std::max(projected.col(k).squaredNorm(), 1e-300));
-    if (largest > 0.0 && share > kLeastShare && uncertainty < kLargestUncertainty * plausible) {
+    const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
+    if (most > 0.0 && result.share.back() > kUnseenShare &&
+        uncertainty < kLargestUncertainty * plausible) {
       seen.push_back(k);
     } else {
-      result.projected.col(k).setZero();
+      projected.col(k).setZero();
     }
   }
+  result.columns = std::move(columns);
+  result.projected = std::move(projected);
   const auto dof = static_cast<Eigen::Index>(seen.size());
   if (dof == 0) return result;
-  Eigen::MatrixXd M(projected.rows(), dof);
+  Eigen::MatrixXd M(result.projected.rows(), dof);
   Eigen::VectorXd prior(dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const Eigen::Index column = seen[static_cast<std::size_t>(k)];
-    M.col(k) = projected.col(column);
-    const double largest = columns.coefficients[static_cast<std::size_t>(column)].largest;
-    prior[k] = dispersion_ * largest * largest / (plausible * plausible);
+    M.col(k) = result.projected.col(column);
+    const double most = largest[static_cast<std::size_t>(column)];
+    prior[k] = dispersion_ * most * most / (plausible * plausible);
   }
   const Eigen::MatrixXd S = M.transpose() * M;
-  const Eigen::VectorXd g = M.transpose() * system_->residuals();
+  const Eigen::VectorXd g = M.transpose() * residuals_;
   Eigen::MatrixXd with_prior = S;
   with_prior.diagonal() += prior;
   const Eigen::LDLT<Eigen::MatrixXd> factor(with_prior);
@@ -93,6 +133,8 @@ Score ScoreTest::score_of(const EffectColumns& columns, const Effect& effect,
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * S *
                                                              scale.asDiagonal());
   for (Eigen::Index k = 0; k < dof; ++k) result.dof += modes.eigenvalues()[k] > 1e-6 ? 1 : 0;
+  const Eigen::VectorXd pivots = factor.vectorD();
+  result.occam = 0.5 * (pivots.array().log().sum() - prior.array().log().sum());
   result.p_value = chi2_p_value(result.score, result.dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const auto place = static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]);
@@ -104,32 +146,35 @@ Score ScoreTest::score_of(const EffectColumns& columns, const Effect& effect,
 }
 
 std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const {
-  std::size_t rows = 1;
-  for (const Recording& recording : fit_.recordings) rows += recording.drive.rows();
-  const auto batch = static_cast<std::size_t>(
-      std::max(1.0, kBatchBytes / (static_cast<double>(rows) * sizeof(DrivePattern))));
+  const RecordingSystem& system = *clean_system_;
   std::vector<Score> scores;
   scores.reserve(candidates.size());
   for (std::size_t first = 0; first < candidates.size();) {
-    std::vector<EffectColumns> columns;
-    EffectBorder border;
+    std::vector<Eigen::MatrixXd> parts;
+    Eigen::Index count = 0;
     std::size_t next = first;
-    while (next < candidates.size() && (next == first || border.size() < batch)) {
-      columns.push_back(this->columns(candidates[next]));
-      for (EffectPattern& pattern : columns.back().border) border.push_back(std::move(pattern));
+    while (next < candidates.size() && (next == first || count < kBatch)) {
+      parts.push_back(builder_->columns(candidates[next]));
+      count += parts.back().cols();
       ++next;
     }
-    const Eigen::MatrixXd M =
-        system_->columns_of(border, fit_.adjustment.state, fit_.adjustment.coefficients);
-    Eigen::MatrixXd left = M - system_->times(system_->solve_nodes(system_->transposed_times(M)));
-    if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+    Eigen::MatrixXd M(residuals_.size(), count);
     Eigen::Index at = 0;
+    for (const Eigen::MatrixXd& part : parts) {
+      M.middleCols(at, part.cols()) = part;
+      at += part.cols();
+    }
+    const Eigen::MatrixXd nodes = system.solve_nodes(system.transposed_times(M));
+    Eigen::MatrixXd left = M - system.times(nodes);
+    if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+    at = 0;
     for (std::size_t k = first; k < next; ++k) {
-      const EffectColumns& own = columns[k - first];
-      const auto count = static_cast<Eigen::Index>(own.coefficients.size());
-      scores.push_back(
-          score_of(own, candidates[k], M.middleCols(at, count), left.middleCols(at, count)));
-      at += count;
+      Eigen::MatrixXd& own = parts[k - first];
+      const Eigen::Index shapes = own.cols();
+      scores.push_back(score_of(candidates[k], builder_->largest(candidates[k]), std::move(own),
+                                left.middleCols(at, shapes)));
+      scores.back().nodes = -nodes.middleCols(at, shapes);
+      at += shapes;
     }
     first = next;
   }
@@ -145,7 +190,7 @@ double ScoreTest::joint_score(const std::vector<Effect>& effects) const {
   }
   if (M.cols() == 0) return 0.0;
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(M);
-  return (M * factor.solve(residuals())).squaredNorm();
+  return (M * factor.solve(residuals_)).squaredNorm();
 }
 
 }  // namespace trussmap

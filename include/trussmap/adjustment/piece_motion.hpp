@@ -79,6 +79,14 @@ struct PieceWithEffects {
     const std::vector<const std::vector<DrivePattern>*>& patterns,
     const Eigen::VectorXd& coefficients);
 
+/// What one unit of more motion in each row does to the piece's displacement (3) and mean
+/// innovation (1): per row a 4x4 whose columns are those of DrivePattern. The rows move as the
+/// patterns with these coefficients have it.
+[[nodiscard]] std::vector<Matrix4> row_influences(
+    const std::vector<PieceRow>& rows,
+    const std::vector<const std::vector<DrivePattern>*>& patterns,
+    const Eigen::VectorXd& coefficients);
+
 /// Joint covariance of (d, a, m), in the frame of the start; fourth row and column zero without
 /// readings. Never below (10 micrometres)^2 and (10 microradians)^2, lest standing still be exact.
 [[nodiscard]] Matrix4 piece_covariance(const Drive& drive, const std::vector<PieceRow>& rows,

@@ -75,11 +75,6 @@ class RecordingSystem {
   [[nodiscard]] Eigen::MatrixXd solve_nodes(const Eigen::MatrixXd& b) const {
     return normal_.solve(b);
   }
-  /// Whitened rows by the coefficients of further effects, at 0; the rest as it was linearised at
-  /// these values.
-  [[nodiscard]] Eigen::MatrixXd columns_of(const EffectBorder& further, const RecordingState& state,
-                                           const Eigen::VectorXd& coefficients) const;
-
   [[nodiscard]] int rows() const { return rows_; }
   /// Where a measurement's rows begin in r and M.
   [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }

@@ -84,6 +84,16 @@ class ShapeContext {
   std::vector<RowVariables> middles_, ends_, sightings_, truths_;
 };
 
+/// Where a channel acts, and so where its shapes are taken.
+enum class ActsOn { drives, readings, views };
+[[nodiscard]] ActsOn acts_on(Channel channel);
+
+/// What one unit of a coefficient adds to a row with this travel, where the shape is f.
+[[nodiscard]] DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel,
+                                       double duration, double wheelbase);
+/// And to a view or truth row at this speed (m/s) and turn rate (rad/s).
+[[nodiscard]] ViewPattern view_pattern(Channel channel, double f, double speed, double turn_rate);
+
 /// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
 /// Throws std::invalid_argument on a shape that cannot be evaluated.
 [[nodiscard]] EffectPattern effect_column(Channel channel, const std::string& shape, int session,

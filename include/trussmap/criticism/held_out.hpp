@@ -62,9 +62,71 @@ struct HeldOut {
   double orientation_error = 0.0;  ///< mean, rad
 };
 
-/// Predicts the held-out legs of a model, starting from a fit of it to all legs. Its coefficients
-/// are estimated anew without these legs (those that cannot be stay as they are); legs to landmarks
-/// that neither another leg sees nor a survey knows are passed over. Throws like fit_model.
+/// One step of the filter, as it would move with further effects:
+///   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate by
+///                             c    the measurement's whitened rows by the coefficient
+///                             dl   what it moves the measurement's landmark by
+struct FilterStep {
+  std::ptrdiff_t measurement = -1;  ///< -1: a new session begins
+  Matrix3 A = Matrix3::Identity();
+  Eigen::Matrix<double, 3, 4> B = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, 2> L = Eigen::Matrix<double, 3, 2>::Zero();
+  int landmark = -1;
+};
+
+/// The held-out legs of a model, and how their predictions would move with further effects.
+class HeldOutLegs {
+ public:
+  /// Starts from a fit of the model to all legs. Its coefficients are estimated anew without the
+  /// held-out legs (those that cannot be stay as they are); legs to landmarks that neither another
+  /// leg sees nor a survey knows are passed over. Throws like fit_model.
+  HeldOutLegs(const std::vector<Recording>& recordings, const ModelFit& fit,
+              const ModelFitOptions& options, const LegOptions& legs = {});
+
+  [[nodiscard]] HeldOut figures() const { return moved(Eigen::VectorXd()); }
+
+  /// What one unit of further coefficients does, to first order, from their whitened columns over
+  /// all measurements (ColumnBuilder) and what they move the landmarks by (two rows each): per leg
+  /// six rows, of the arrival error, the predicted chord and the true one.
+  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
+                                       const Eigen::MatrixXd& landmarks) const;
+  /// Figures with the legs' numbers moved by that much (empty: not at all).
+  [[nodiscard]] HeldOut moved(const Eigen::VectorXd& change) const;
+  /// Whether columns of this problem are columns of the legs' problem too: not after a delay has
+  /// changed the order of sightings.
+  [[nodiscard]] bool alike(const RecordingProblem& problem) const;
+
+ private:
+  /// A leg's first or last measurement: how what it sees moves.
+  struct End {
+    std::size_t measurement = 0;
+    Eigen::Matrix<double, 2, 4> by_rows = Eigen::Matrix<double, 2, 4>::Zero();
+    Eigen::Matrix<double, 2, 3> by_pose = Eigen::Matrix<double, 2, 3>::Zero();
+    Matrix2 by_landmark = Matrix2::Zero();
+    int landmark = -1;
+  };
+  struct Leg {
+    LegPrediction told;
+    Vector2 predicted = Vector2::Zero();
+    Vector2 chord = Vector2::Zero();
+    std::size_t after = 0;  ///< steps of the filter
+    std::vector<FilterStep> ahead;
+    End from;
+    End to;
+  };
+
+  [[nodiscard]] static End end_of(const RecordingProblem& problem, std::size_t measurement,
+                                  const Pose& pose, const ViewPattern& view,
+                                  const Eigen::Matrix<double, 4, 3>& by_pose,
+                                  const Eigen::Matrix<double, 4, 3>& by_landmark);
+
+  RecordingProblem problem_;
+  std::vector<int> first_row_;  ///< of each measurement
+  std::vector<FilterStep> steps_;
+  std::vector<Leg> legs_;
+};
+
+/// Figures of HeldOutLegs.
 [[nodiscard]] HeldOut predict_held_out(const std::vector<Recording>& recordings,
                                        const ModelFit& fit, const ModelFitOptions& options,
                                        const LegOptions& legs = {});

@@ -12,14 +12,21 @@
 //   estimate = -(S + P)^-1 g,  sd^2 = diag (S + P)^-1
 //   smallest detectable = sqrt(24.4 / S_kk): 90 % power at p = 0.05/200
 //
+//   score / (2 phi) - log(det(1 + S/P)) / 2: log of the Bayes factor for the effect
+//
 // phi = max(1, chi^2/dof): under a large misfit a smaller map has smaller residuals, and without
 // phi the pure scale would take credit for that (design of score tests: Rao 1948).
+//
+// J and M are taken at a state without noise of its own: poses on their landmarks exactly, rows
+// less their noise (fitted_path.hpp). What cannot be seen at all then has no projection at all, and
+// noise that a smaller map would shrink is no evidence.
 //
 // The virtual work of the locked-in forces on the effect's strain pattern, in the truss's terms.
 // One factorisation serves all candidates.
 #pragma once
 
 #include "trussmap/adjustment/recording_system.hpp"
+#include "trussmap/criticism/column_builder.hpp"
 #include "trussmap/criticism/model_fit.hpp"
 
 #include <memory>
@@ -33,10 +40,15 @@ struct Score {
   double score = 0.0;
   int dof = 0;  ///< shapes that can be seen at all
   double p_value = 1.0;
+  double occam = 0.0;                       ///< log(det(1 + S/P)) / 2
   std::vector<double> coefficients;         ///< 0 where unseen
   std::vector<double> sd;                   ///< infinite where unseen
   std::vector<double> smallest_detectable;  ///< of each shape alone; infinite where unseen
+  std::vector<double> largest;              ///< |f| of each shape
+  std::vector<double> share;                ///< |M_|^2/|M|^2 of each shape
+  Eigen::MatrixXd columns;                  ///< M, rows x shapes
   Eigen::MatrixXd projected;                ///< M_, rows x shapes; zero columns where unseen
+  Eigen::MatrixXd nodes;  ///< what one unit of each moves landmarks and poses by, system order
 };
 
 class ScoreTest {
@@ -44,30 +56,37 @@ class ScoreTest {
   /// Keeps a reference to the fit.
   explicit ScoreTest(const ModelFit& fit);
 
-  /// Columns of one effect (resolved), its coefficients at 0. Throws std::invalid_argument like
-  /// effect_columns.
-  [[nodiscard]] EffectColumns columns(const Effect& effect) const;
-
-  /// Tests several candidates at once, which shares their cost. Each is a set of columns.
+  /// Tests several candidates at once (resolved, their coefficients at 0). Throws
+  /// std::invalid_argument like effect_columns.
   [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates) const;
 
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
+  /// Takes further whitened columns as present from now on: what they explain is no longer there
+  /// to be explained.
+  void take_out(const Eigen::MatrixXd& columns);
+
   [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
-  [[nodiscard]] const Eigen::VectorXd& residuals() const { return system_->residuals(); }
+  /// Of the fit, less what the columns taken out explain.
+  [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
+  /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
   [[nodiscard]] const ShapeContext& context() const { return context_; }
 
  private:
-  [[nodiscard]] Score score_of(const EffectColumns& columns, const Effect& effect,
-                               const Eigen::MatrixXd& whole,
-                               const Eigen::MatrixXd& projected) const;
+  [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
+                               Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
 
   const ModelFit& fit_;
+  RecordingState clean_;  ///< without noise of its own
   ShapeContext context_;
+  EffectBorder border_;
   std::unique_ptr<RecordingSystem> system_;
-  Eigen::MatrixXd present_;  ///< orthonormal columns that the model's effects span, projected
+  std::unique_ptr<RecordingSystem> clean_system_;
+  std::unique_ptr<ColumnBuilder> builder_;
+  Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
+  Eigen::VectorXd residuals_;
   double dispersion_ = 1.0;
 };
 

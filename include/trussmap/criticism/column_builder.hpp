@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Whitened columns of any number of effects at one fit, fast: channel x shape comes apart.
+//
+//   column = - sum over the rows k of a piece  f_k  W I_k u_k        (a view: W V u f)
+//
+//   I_k   what one unit of motion in row k does to the piece (row_influences)
+//   u_k   what one unit of the channel adds to row k (row_pattern): the same for every shape
+//   f_k   the shape there: the same for every channel
+//
+// Channels and shapes are each worked out once. Cost of a further column: four products a row.
+#pragma once
+
+#include "trussmap/criticism/effect_columns.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+class ColumnBuilder {
+ public:
+  /// Keeps references to context, problem and border. `weights` of the measurements (information);
+  /// `offsets` of the border's coefficients from their references.
+  ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
+                const EffectBorder& border, const Eigen::VectorXd& offsets,
+                const RecordingState& state, const std::vector<double>& weights);
+
+  /// One column per coefficient of the effect (resolved), its rows in the order of the problem's
+  /// measurements. Throws std::invalid_argument like effect_columns.
+  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect);
+  /// |f| at most, per coefficient.
+  [[nodiscard]] std::vector<double> largest(const Effect& effect);
+
+  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+
+ private:
+  struct Row {
+    std::size_t session = 0;
+    std::size_t row = 0;
+    Matrix4 influence = Matrix4::Zero();  ///< whitened
+  };
+  struct Piece {
+    Eigen::Index first_row = 0;
+    int rows = 0;
+    std::size_t begin = 0;  ///< of rows_of_pieces_
+    std::size_t end = 0;
+  };
+  struct View {
+    Eigen::Index first_row = 0;
+    int rows = 0;
+    std::size_t session = 0;
+    std::size_t source = 0;
+    bool truth = false;
+    Eigen::Matrix<double, 4, 6> influence = Eigen::Matrix<double, 4, 6>::Zero();  ///< whitened
+  };
+  using Values = std::vector<std::vector<double>>;  ///< per session
+
+  const Eigen::Matrix4Xd& basis(Channel channel);
+  const Values& values(const std::string& shape, ShapeContext::Instant at);
+  void add_drives(Channel channel, const std::string& shape, int session,
+                  Eigen::Ref<Eigen::VectorXd> column);
+  void add_views(Channel channel, const std::string& shape, int session,
+                 Eigen::Ref<Eigen::VectorXd> column);
+
+  const ShapeContext& context_;
+  Eigen::Index rows_ = 0;
+  std::vector<Row> piece_rows_;
+  std::vector<Piece> pieces_;
+  std::vector<View> views_;
+  std::map<Channel, Eigen::Matrix4Xd> bases_;
+  std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,448 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/candidates.hpp"
+
+#include "trussmap/effects/catalogue.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using Instant = ShapeContext::Instant;
+
+/// How a variable spreads over the rows of all sessions in which the robot moves.
+struct Spread {
+  std::string name;
+  double least = 0.0;
+  double most = 0.0;
+  double mean = 0.0;
+  std::vector<double> sorted;  ///< thinned
+  std::size_t distinct = 0;    ///< up to 10
+
+  [[nodiscard]] double quantile(double share) const {
+    const double at = share * static_cast<double>(sorted.size() - 1);
+    return sorted[static_cast<std::size_t>(std::lround(at))];
+  }
+  [[nodiscard]] bool two_sided() const { return least < 0.0 && most > 0.0; }
+};
+
+constexpr std::size_t kThinned = 2000;
+
+Spread spread_of(const std::string& name, const ShapeContext& context) {
+  Spread spread{name, 1e300, -1e300, 0.0, {}, 0};
+  std::vector<double> values;
+  for (std::size_t s = 0; s < context.recordings().size(); ++s) {
+    const RowVariables& variables = context.variables(s, Instant::middle);
+    const std::vector<double>& own = variables.at(name);
+    const std::vector<double>& speed = variables.at("speed");
+    const std::vector<double>& turn_rate = variables.at("turn_rate");
+    for (std::size_t row = 0; row < own.size(); ++row) {
+      if (speed[row] != 0.0 || turn_rate[row] != 0.0) values.push_back(own[row]);
+    }
+  }
+  if (values.empty()) return spread;
+  const std::size_t step = 1 + values.size() / kThinned;
+  for (std::size_t k = 0; k < values.size(); k += step) spread.sorted.push_back(values[k]);
+  for (const double value : values) {
+    spread.least = std::min(spread.least, value);
+    spread.most = std::max(spread.most, value);
+    spread.mean += value / static_cast<double>(values.size());
+  }
+  std::sort(spread.sorted.begin(), spread.sorted.end());
+  std::set<double> distinct;
+  for (const double value : spread.sorted) {
+    if (distinct.size() < 10) distinct.insert(value);
+  }
+  spread.distinct = distinct.size();
+  return spread;
+}
+
+bool in_all_sessions(const std::string& name, const ShapeContext& context) {
+  for (std::size_t s = 0; s < context.recordings().size(); ++s) {
+    if (!context.variables(s, Instant::middle).contains(name)) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> covariates_of(const ShapeContext& context) {
+  std::vector<std::string> names;
+  for (const Covariate& one : context.recordings().front().drive.covariates) {
+    const auto& reserved = reserved_variables();
+    if (std::find(reserved.begin(), reserved.end(), one.name) != reserved.end()) continue;
+    if (in_all_sessions(one.name, context)) names.push_back(one.name);
+  }
+  return names;
+}
+
+std::string number(double value) {
+  return value < 0.0 ? fmt::format("({:.6g})", value) : fmt::format("{:.6g}", value);
+}
+
+std::string filled(std::string text, const std::string& name, const std::string& value) {
+  const std::string open = "{" + name + "}";
+  for (std::size_t at = text.find(open); at != std::string::npos; at = text.find(open)) {
+    text.replace(at, open.size(), value);
+  }
+  return text;
+}
+
+bool has_word(const std::string& text, std::initializer_list<const char*> words) {
+  std::string low = text;
+  std::transform(low.begin(), low.end(), low.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* word) { return low.find(word) != std::string::npos; });
+}
+
+/// Of entries that are the same but for their name, the one that the column's name speaks for.
+double suits(const CatalogueEntry& entry, const std::string& covariate) {
+  const bool load = has_word(covariate, {"load", "mass", "weight", "kg"});
+  const bool drift = has_word(covariate, {"temp", "press", "wear", "bar"});
+  if (load && entry.name.starts_with("load")) return 0.2;
+  if (drift && entry.name.starts_with("tyre")) return 0.2;
+  return covariate.empty() || load || drift ? 0.0 : -0.1;
+}
+
+struct Area {
+  Vector2 low = Vector2(1e300, 1e300);
+  Vector2 high = Vector2(-1e300, -1e300);
+  double step = 0.0;             ///< m between centres tried
+  std::vector<Vector2> centres;  ///< that the robot came near
+};
+
+Area driven_area(const ModelFit& fit) {
+  constexpr int kAcross = 8;
+  Area area;
+  std::vector<Vector2> places;
+  for (const SessionPath& path : fit.paths) {
+    for (const Pose& pose : path.ends) {
+      area.low = area.low.cwiseMin(pose.position());
+      area.high = area.high.cwiseMax(pose.position());
+      if (places.empty() || (places.back() - pose.position()).norm() > 0.1) {
+        places.push_back(pose.position());
+      }
+    }
+  }
+  const Vector2 extent = area.high - area.low;
+  if (!(extent.maxCoeff() > 0.5)) return area;
+  area.step = extent.maxCoeff() / kAcross;
+  const int columns = std::max(1, static_cast<int>(std::lround(extent.x() / area.step)));
+  const int rows = std::max(1, static_cast<int>(std::lround(extent.y() / area.step)));
+  for (int i = 0; i <= columns; ++i) {
+    for (int j = 0; j <= rows; ++j) {
+      const Vector2 centre = area.low + Vector2(extent.x() * i / columns, extent.y() * j / rows);
+      const bool near = std::any_of(places.begin(), places.end(), [&](const Vector2& place) {
+        return (place - centre).norm() < 0.75 * area.step;
+      });
+      if (near) area.centres.push_back(centre);
+    }
+  }
+  return area;
+}
+
+constexpr const char* kBell = "exp(-((x-{x})^2+(y-{y})^2)/(2*{r}^2))";
+constexpr const char* kDisc = "(1+sign({r}^2-(x-{x})^2-(y-{y})^2))/2";
+
+/// Gathers the candidates.
+class Gatherer {
+ public:
+  Gatherer(const ModelFit& fit, const ShapeContext& context)
+      : fit_(fit), context_(context), area_(driven_area(fit)) {
+    for (const Measurement& one : fit.problem.measurements) {
+      has_compass_ |= one.kind == MeasurementKind::piece && one.rows == 4;
+      has_views_ |= one.kind == MeasurementKind::view || one.kind == MeasurementKind::near_view;
+    }
+    for (const std::string name :
+         {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
+      take_variable(name);
+    }
+    if (context.recordings().size() > 1) take_variable("session");
+    for (const std::string& name : covariates_of(context)) {
+      take_variable(name);
+      if (!variables_.empty() && variables_.back().name == name) covariates_.push_back(name);
+    }
+  }
+
+  std::vector<Candidate> run() {
+    take_catalogue();
+    for (const Channel channel :
+         {Channel::travel, Channel::turn, Channel::difference, Channel::creep, Channel::compass,
+          Channel::drift, Channel::left, Channel::right, Channel::wheels}) {
+      if (channel == Channel::compass && !has_compass_) continue;
+      take_drive_channel(channel);
+    }
+    for (const Channel channel : {Channel::lever, Channel::lever_left, Channel::range,
+                                  Channel::range_scale, Channel::bearing, Channel::delay}) {
+      if (!is_possible(channel)) continue;
+      take_view_channel(channel);
+    }
+    return std::move(candidates_);
+  }
+
+ private:
+  void take_variable(const std::string& name) {
+    const Spread spread = spread_of(name, context_);
+    if (spread.sorted.empty() || !(spread.most > spread.least)) return;
+    variables_.push_back(spread);
+  }
+
+  [[nodiscard]] bool is_possible(Channel channel) const {
+    if (channel == Channel::compass) return has_compass_;
+    if (channel == Channel::range || channel == Channel::range_scale ||
+        channel == Channel::bearing) {
+      return has_views_;
+    }
+    return true;
+  }
+
+  void add(Candidate one) {
+    one.effect.coefficients.clear();
+    std::string key = one.effect.channel;
+    for (const std::string& shape : one.effect.shape) key += "|" + shape;
+    // The catalogue may have two names for one thing; all else is tried once.
+    if (!seen_.insert(key).second && one.form != Form::catalogue) return;
+    candidates_.push_back(std::move(one));
+  }
+
+  void take_catalogue() {
+    for (const CatalogueEntry& entry : catalogue()) {
+      if (!is_possible(entry.channel)) continue;
+      Candidate one;
+      one.effect.channel = facts_of(entry.channel).name;
+      one.effect.shape = entry.shape;
+      if (entry.of_covariate()) {
+        std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
+        names.insert(names.end(), covariates_.begin(), covariates_.end());
+        for (const std::string& name : names) {
+          one.effect.name = name_of(entry, name);
+          one.variable = name;
+          one.log_prior = suits(entry, name);
+          one.effect.shape.clear();
+          for (const std::string& shape : entry.shape) {
+            one.effect.shape.push_back(filled(shape, "", name));
+          }
+          add(one);
+        }
+      } else if (entry.has_parameters()) {
+        take_catalogue_family(entry);
+      } else {
+        one.effect.name = entry.name;
+        add(one);
+      }
+    }
+  }
+
+  void take_catalogue_family(const CatalogueEntry& entry) {
+    Candidate one;
+    one.effect.name = std::string(entry.name);
+    one.effect.channel = facts_of(entry.channel).name;
+    one.family = std::string(entry.name);
+    one.pattern = entry.shape;
+    for (const InnerParameter& parameter : entry.parameters) {
+      one.inner_names.emplace_back(parameter.name);
+      one.inner_least.push_back(parameter.smallest);
+      one.inner_most.push_back(parameter.largest);
+    }
+    if (entry.parameters.size() == 3) {
+      one.variable = "place";
+      take_places(one, {0.75, 1.5});
+      // A patch may have no sharp edge, an anomaly may have one.
+      Candidate other = one;
+      other.pattern = {entry.shape.front() == kDisc ? kBell : kDisc};
+      other.family += " of the other form";
+      other.log_prior = -1.0;
+      take_places(other, {0.75, 1.5});
+    } else {
+      one.variable = "speed";
+      take_thresholds(one, "speed");
+    }
+  }
+
+  void take_places(Candidate one, const std::vector<double>& radii) {
+    if (!(area_.step > 0.0)) return;
+    one.inner_least = {area_.low.x(), area_.low.y(), 0.1 * area_.step};
+    one.inner_most = {area_.high.x(), area_.high.y(), 4.0 * area_.step};
+    one.inner_step = {area_.step, area_.step, 0.5 * area_.step};
+    for (const double radius : radii) {
+      for (const Vector2& centre : area_.centres) {
+        add(with_inner(one, {centre.x(), centre.y(), radius * area_.step}));
+      }
+    }
+  }
+
+  void take_thresholds(Candidate one, const std::string& name) {
+    for (const Spread& u : variables_) {
+      if (u.name != name || u.distinct < 3) continue;
+      const double range = u.most - u.least;
+      one.inner_least = {u.least + 0.02 * range};
+      one.inner_most = {u.most - 0.02 * range};
+      one.inner_step = {0.2 * range};
+      std::set<double> tried;
+      for (const double share : {0.15, 0.3, 0.5, 0.7, 0.85}) {
+        const double c = u.quantile(share);
+        if (c > one.inner_least[0] && c < one.inner_most[0] && tried.insert(c).second) {
+          add(with_inner(one, {c}));
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] static Candidate plain(Channel channel, const Spread& u, Form form,
+                                       std::vector<std::string> shapes, const std::string& said,
+                                       double log_prior) {
+    Candidate one;
+    one.effect.name = fmt::format("{} with {}", facts_of(channel).name, said);
+    one.effect.channel = facts_of(channel).name;
+    one.effect.shape = std::move(shapes);
+    one.form = form;
+    one.variable = u.name;
+    one.log_prior = log_prior;
+    return one;
+  }
+
+  void take_drive_channel(Channel channel) {
+    const bool wheel =
+        channel == Channel::left || channel == Channel::right || channel == Channel::wheels;
+    Spread heading;
+    heading.name = "heading";
+    if (!wheel && channel != Channel::drift) {
+      add(plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -2.0));
+      add(plain(channel, heading, Form::curve, {"sin(2*heading)", "cos(2*heading)"},
+                "twice the heading", -3.0));
+      add(plain(channel, heading, Form::curve,
+                {"sin(heading)", "cos(heading)", "sin(2*heading)", "cos(2*heading)"},
+                "a curve of heading", -3.0));
+      Candidate bell;
+      bell.effect.channel = facts_of(channel).name;
+      bell.effect.name = fmt::format("{} at a place", bell.effect.channel);
+      bell.form = Form::place;
+      bell.variable = "place";
+      bell.family = bell.effect.name;
+      bell.pattern = {kBell};
+      bell.inner_names = {"x", "y", "r"};
+      bell.log_prior = -3.0;
+      if (channel != Channel::compass) take_places(bell, {1.0});
+    }
+    for (const Spread& u : variables_) {
+      const bool covariate =
+          std::find(covariates_.begin(), covariates_.end(), u.name) != covariates_.end();
+      if (wheel && !covariate && u.name != "t" && u.name != "distance" && u.name != "speed") {
+        continue;
+      }
+      if (channel == Channel::drift && !covariate && u.name != "t") continue;
+      take_forms(channel, u, covariate);
+    }
+  }
+
+  void take_forms(Channel channel, const Spread& u, bool covariate) {
+    const std::string& n = u.name;
+    // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
+    const double middle = 0.5 * (u.least + u.most);
+    const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
+    const std::string v = centred ? fmt::format("({}-{})", n, number(u.mean)) : n;
+    add(plain(channel, u, Form::line, {v}, n, covariate ? -1.0 : -2.0));
+    if (u.distinct < 3) return;
+    const bool signs = u.two_sided() && n != "x" && n != "y";
+    if (signs && !covariate) {
+      add(plain(channel, u, Form::magnitude, {"abs(" + n + ")"}, "the size of " + n, -2.5));
+      add(plain(channel, u, Form::sense, {"sign(" + n + ")"}, "the sign of " + n, -2.5));
+    }
+    if (n == "x" || n == "y") return;
+    add(plain(channel, u, Form::square, {v + "^2"}, n + " squared", -2.5));
+    Candidate step = plain(channel, u, Form::step, {}, "a step in " + n, -2.5);
+    step.family = step.effect.name;
+    step.pattern = {"(1+sign(" + n + "-{c}))/2"};
+    step.inner_names = {"c"};
+    take_thresholds(step, n);
+    if (covariate || n == "speed") {
+      Candidate threshold = plain(channel, u, Form::threshold, {}, n + " above a threshold", -2.5);
+      threshold.family = threshold.effect.name;
+      threshold.pattern = {"max(0, " + n + "-{c})"};
+      threshold.inner_names = {"c"};
+      take_thresholds(threshold, n);
+    }
+    if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
+      add(plain(channel, u, Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"},
+                n + " and heading", -3.0));
+    }
+    if (u.distinct < 6) return;
+    std::vector<std::string> bells;
+    const double low = u.quantile(0.03);
+    const double high = u.quantile(0.97);
+    const double width = (high - low) / 3.0;
+    if (!(width > 0.0)) return;
+    for (int k = 0; k < 4; ++k) {
+      bells.push_back(fmt::format("exp(-(({}-{})/{:.6g})^2)", n, number(low + k * width), width));
+    }
+    add(plain(channel, u, Form::curve, bells, "a curve of " + n, -3.0));
+  }
+
+  void take_view_channel(Channel channel) {
+    Spread heading;
+    heading.name = "heading";
+    if (channel != Channel::delay) {
+      add(plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -3.0));
+    }
+    for (const Spread& u : variables_) {
+      const bool covariate =
+          std::find(covariates_.begin(), covariates_.end(), u.name) != covariates_.end();
+      if (!covariate && u.name != "t" && u.name != "session" && u.name != "speed" &&
+          u.name != "turn_rate") {
+        continue;
+      }
+      add(plain(channel, u, Form::line, {u.name}, u.name, -2.0));
+    }
+    if (context_.recordings().size() > 1) {
+      Candidate one;
+      one.effect.channel = facts_of(channel).name;
+      one.effect.name = fmt::format("{} of its own in each session", one.effect.channel);
+      one.effect.shape = {"1"};
+      one.effect.per_session = true;
+      one.form = Form::curve;
+      one.variable = "session";
+      one.log_prior = -2.0;
+      candidates_.push_back(one);
+    }
+  }
+
+  const ModelFit& fit_;
+  const ShapeContext& context_;
+  Area area_;
+  bool has_compass_ = false;
+  bool has_views_ = false;
+  std::vector<Spread> variables_;
+  std::vector<std::string> covariates_;
+  std::vector<Candidate> candidates_;
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+Candidate with_inner(const Candidate& candidate, const std::vector<double>& inner) {
+  Candidate one = candidate;
+  one.inner = inner;
+  one.effect.shape.clear();
+  for (std::string shape : candidate.pattern) {
+    for (std::size_t k = 0; k < inner.size(); ++k) {
+      shape = filled(shape, candidate.inner_names[k], number(inner[k]));
+    }
+    one.effect.shape.push_back(std::move(shape));
+  }
+  if (one.form == Form::catalogue) {
+    std::vector<double> rounded;
+    for (const double value : inner) rounded.push_back(std::stod(fmt::format("{:.6g}", value)));
+    one.effect.name = name_of(*find_entry(candidate.effect.name), rounded);
+  }
+  return one;
+}
+
+std::vector<Candidate> candidates_for(const ModelFit& fit, const ShapeContext& context) {
+  return Gatherer(fit, context).run();
+}
+
+}  // namespace trussmap

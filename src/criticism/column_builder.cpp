@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/column_builder.hpp"
+
+#include "trussmap/adjustment/measurement_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using Instant = ShapeContext::Instant;
+
+constexpr std::size_t kValuesKept = 8'000'000;  // numbers
+
+double duration_of(const Drive& drive, std::size_t row) {
+  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
+}
+
+Channel channel_of(const Effect& effect) {
+  if (const std::optional<Channel> channel = parse_channel(effect.channel)) return *channel;
+  throw std::invalid_argument(
+      fmt::format("effect \"{}\" has channel \"{}\", which is unknown, expected one of {}",
+                  effect.name, effect.channel, channel_names()));
+}
+
+/// Shape and session (-1: all) of each of an effect's coefficients.
+struct Part {
+  const std::string& shape;
+  int session;
+};
+
+std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
+  std::vector<Part> parts;
+  const bool apart = effect.per_session && sessions > 1;
+  for (std::size_t s = 0; s < (apart ? sessions : 1); ++s) {
+    for (const std::string& shape : effect.shape) {
+      parts.push_back({shape, apart ? static_cast<int>(s) : -1});
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
+                             const EffectBorder& border, const Eigen::VectorXd& offsets,
+                             const RecordingState& state, const std::vector<double>& weights)
+    : context_(context) {
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    const Matrix4 W = std::sqrt(weights[k]) * one.whitener;
+    if (one.kind == MeasurementKind::piece) {
+      std::vector<const std::vector<DrivePattern>*> patterns;
+      for (const EffectPattern& effect : border) {
+        patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
+      }
+      const std::vector<PieceRow>& rows = problem.pieces[one.source];
+      const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
+      Piece piece{rows_, one.rows, piece_rows_.size(), piece_rows_.size() + rows.size()};
+      for (std::size_t row = 0; row < rows.size(); ++row) {
+        piece_rows_.push_back({idx(one.session), rows[row].row, -(W * influences[row])});
+      }
+      pieces_.push_back(piece);
+    } else if (one.session >= 0) {
+      const ViewPattern view = view_of(border, offsets, one);
+      const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
+      views_.push_back({rows_, one.rows, idx(one.session), one.source,
+                        one.kind == MeasurementKind::truth, W * rows.by_view});
+    }
+    rows_ += one.rows;
+  }
+}
+
+const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
+  const auto found = bases_.find(channel);
+  if (found != bases_.end()) return found->second;
+  Eigen::Matrix4Xd basis(4, static_cast<Eigen::Index>(piece_rows_.size()));
+  for (std::size_t k = 0; k < piece_rows_.size(); ++k) {
+    const Row& row = piece_rows_[k];
+    const Drive& drive = context_.recordings()[row.session].drive;
+    const DrivePattern unit = row_pattern(channel, 1.0, context_.travel(row.session, row.row),
+                                          duration_of(drive, row.row), context_.robot().wheelbase);
+    basis.col(static_cast<Eigen::Index>(k)).noalias() =
+        row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+  }
+  return bases_.emplace(channel, std::move(basis)).first->second;
+}
+
+const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Instant at) {
+  const auto key = std::make_pair(shape, at);
+  const auto found = values_.find(key);
+  if (found != values_.end()) return found->second;
+  if (values_.size() * piece_rows_.size() > kValuesKept) values_.clear();
+  return values_.emplace(key, context_.values(shape, at)).first->second;
+}
+
+void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int session,
+                               Eigen::Ref<Eigen::VectorXd> column) {
+  const Eigen::Matrix4Xd& units = basis(channel);
+  const Values& f =
+      values(shape, acts_on(channel) == ActsOn::readings ? Instant::end : Instant::middle);
+  for (const Piece& piece : pieces_) {
+    if (piece.begin == piece.end) continue;
+    const std::size_t s = piece_rows_[piece.begin].session;
+    if (session >= 0 && s != idx(session)) continue;
+    const std::vector<double>& here = f[s];
+    Vector4 sum = Vector4::Zero();
+    for (std::size_t k = piece.begin; k < piece.end; ++k) {
+      sum += here[piece_rows_[k].row] * units.col(static_cast<Eigen::Index>(k));
+    }
+    for (int row = 0; row < piece.rows; ++row) column[piece.first_row + row] = sum[row];
+  }
+}
+
+void ColumnBuilder::add_views(Channel channel, const std::string& shape, int session,
+                              Eigen::Ref<Eigen::VectorXd> column) {
+  for (const View& view : views_) {
+    if (session >= 0 && view.session != idx(session)) continue;
+    const Instant at = view.truth ? Instant::truth : Instant::sighting;
+    const RowVariables& variables = context_.variables(view.session, at);
+    const double f = values(shape, at)[view.session][view.source];
+    const ViewPattern unit = view_pattern(channel, f, variables.at("speed")[view.source],
+                                          variables.at("turn_rate")[view.source]);
+    const Vector4 rows = view.influence * unit.vector();
+    for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
+  }
+}
+
+Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
+  const Channel channel = channel_of(effect);
+  const std::vector<Part> parts = parts_of(effect, context_.recordings().size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(parts.size()));
+  try {
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      if (acts_on(channel) == ActsOn::views) {
+        add_views(channel, parts[k].shape, parts[k].session, result.col(column));
+      } else {
+        add_drives(channel, parts[k].shape, parts[k].session, result.col(column));
+      }
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+  }
+  return result;
+}
+
+std::vector<double> ColumnBuilder::largest(const Effect& effect) {
+  const Channel channel = channel_of(effect);
+  std::vector<Instant> instants{Instant::middle};
+  if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
+  if (acts_on(channel) == ActsOn::views) instants = {Instant::sighting, Instant::truth};
+  std::vector<double> result;
+  for (const Part& part : parts_of(effect, context_.recordings().size())) {
+    double most = 0.0;
+    for (const Instant at : instants) {
+      const Values& f = values(part.shape, at);
+      for (std::size_t s = 0; s < f.size(); ++s) {
+        if (part.session >= 0 && s != idx(part.session)) continue;
+        for (const double value : f[s]) most = std::max(most, std::abs(value));
+      }
+    }
+    result.push_back(most);
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,389 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include <Eigen/QR>
+
+namespace trussmap {
+namespace {
+
+constexpr double kPractical = 0.05;  // rise of the arrival error
+constexpr double kLookAlike = 0.95;
+constexpr std::size_t kMostLookAlikes = 12;
+constexpr std::size_t kFamiliesRefined = 4;
+constexpr std::size_t kChunk = 48;  // candidates
+
+/// A candidate's test, without its columns.
+struct Tested {
+  Candidate candidate;
+  Score score;
+  Eigen::MatrixXd slopes;  ///< of the held-out legs
+  int tried = 1;
+  double evidence = 0.0;
+  double p_value = 1.0;
+  double p_adjusted = 1.0;
+};
+
+/// Runs score tests chunk by chunk, so that no more than a chunk's columns are held.
+template <typename Visit>
+void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
+                  const Visit& visit) {
+  for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
+    const std::size_t end = std::min(candidates.size(), first + kChunk);
+    std::vector<Effect> effects;
+    for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
+    std::vector<Score> scores = tests.test(effects);
+    for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
+  }
+}
+
+void drop_columns(Score& score) {
+  score.columns.resize(0, 0);
+  score.projected.resize(0, 0);
+  score.nodes.resize(0, 0);
+}
+
+/// What one unit of each coefficient moves the landmarks by, two rows each.
+Eigen::MatrixXd landmark_moves(const ScoreTest& tests, const ModelFit& fit,
+                               const Eigen::MatrixXd& nodes) {
+  const BlockSystem& system = tests.system().normal_equations();
+  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(2 * fit.problem.landmark_count(), nodes.cols());
+  for (int k = 0; k < fit.problem.landmark_count(); ++k) {
+    if (system.size(k) == 2) moves.middleRows(2 * k, 2) = nodes.middleRows(system.offset(k), 2);
+  }
+  return moves;
+}
+
+class Diagnostician {
+ public:
+  Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
+                const DiagnosisOptions& options)
+      : fit_(fit), options_(options), tests_(fit) {
+    ModelFitOptions how;
+    how.problem = options.problem;
+    how.gate = options.gate;
+    legs_ = std::make_unique<HeldOutLegs>(recordings, fit, how, options.legs);
+    predictable_ = legs_->alike(fit.problem);
+  }
+
+  Diagnosis run() {
+    result_.chi2 = fit_.adjustment.chi2;
+    result_.dof = fit_.adjustment.dof;
+    result_.warnings = fit_.adjustment.warnings;
+    const HeldOut present = legs_->figures();
+    result_.held_out = figures_of(present);
+    result_.held_out_legs = present.legs.size();
+    test_all();
+    judge(tested_, result_.chi2, result_.dof);
+    refine_families();
+    judge(tested_, result_.chi2, result_.dof);
+    find_missing();
+    report();
+    return std::move(result_);
+  }
+
+ private:
+  void test_all() {
+    const std::vector<Candidate> candidates = candidates_for(fit_, tests_.context());
+    std::map<std::string, std::size_t> family;  // -> tested_
+    visit_scores(tests_, candidates, [&](std::size_t k, Score& score) {
+      ++result_.tried;
+      const Candidate& one = candidates[k];
+      if (!one.family.empty()) {
+        const auto [found, fresh] = family.emplace(one.family, tested_.size());
+        if (!fresh) {
+          Tested& best = tested_[found->second];
+          ++best.tried;
+          if (score.score > best.score.score) take(best, one, score);
+          return;
+        }
+      }
+      tested_.emplace_back();
+      take(tested_.back(), one, score);
+    });
+  }
+
+  void take(Tested& tested, const Candidate& candidate, Score& score) {
+    tested.candidate = candidate;
+    if (predictable_ && score.dof > 0) {
+      tested.slopes = legs_->slopes(score.columns, landmark_moves(tests_, fit_, score.nodes));
+    }
+    drop_columns(score);
+    tested.score = score;
+  }
+
+  /// p-values against the dispersion that each would leave; evidence against the least there is.
+  void judge(std::vector<Tested>& tested, double chi2, int dof) const {
+    double least = std::max(1.0, chi2 / std::max(1, dof));
+    for (Tested& one : tested) {
+      const double left =
+          std::max(1.0, (chi2 - one.score.score) / std::max(1, dof - one.score.dof));
+      one.p_value = one.score.dof > 0 ? chi2_p_value(one.score.score / left, one.score.dof) : 1.0;
+      if (one.score.dof > 0) least = std::min(least, left);
+    }
+    std::vector<std::size_t> order(tested.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return tested[a].p_value < tested[b].p_value;
+    });
+    double remaining = static_cast<double>(result_.tried);
+    double most = 0.0;
+    for (const std::size_t k : order) {
+      Tested& one = tested[k];
+      most = std::max(most, std::min(1.0, remaining * one.p_value));
+      one.p_adjusted = most;
+      remaining -= one.tried;
+      one.evidence = 0.5 * one.score.score / least - one.score.occam -
+                     std::log(static_cast<double>(one.tried)) + one.candidate.log_prior;
+      if (one.score.dof == 0) one.evidence = -1e300;
+    }
+  }
+
+  /// Looks for better inner values of the most promising families.
+  void refine_families() {
+    std::vector<Tested*> families;
+    for (Tested& one : tested_) {
+      if (!one.candidate.inner.empty() && one.score.dof > 0 && one.p_adjusted < 0.5) {
+        families.push_back(&one);
+      }
+    }
+    std::stable_sort(families.begin(), families.end(),
+                     [](const Tested* a, const Tested* b) { return a->evidence > b->evidence; });
+    if (families.size() > kFamiliesRefined) families.resize(kFamiliesRefined);
+    for (Tested* one : families) refine(*one);
+  }
+
+  void refine(Tested& tested) {
+    std::vector<double> step = tested.candidate.inner_step;
+    for (double& s : step) s *= 0.5;
+    for (int round = 0; round < 12; ++round) {
+      std::vector<Candidate> around;
+      for (std::size_t k = 0; k < step.size(); ++k) {
+        for (const double sign : {-1.0, 1.0}) {
+          std::vector<double> inner = tested.candidate.inner;
+          inner[k] = std::clamp(inner[k] + sign * step[k], tested.candidate.inner_least[k],
+                                tested.candidate.inner_most[k]);
+          if (inner[k] != tested.candidate.inner[k]) {
+            around.push_back(with_inner(tested.candidate, inner));
+          }
+        }
+      }
+      bool better = false;
+      visit_scores(tests_, around, [&](std::size_t k, Score& score) {
+        if (score.score <= tested.score.score * (1.0 + 1e-9)) return;
+        take(tested, around[k], score);
+        better = true;
+      });
+      if (better) continue;
+      for (double& s : step) s *= 0.5;
+    }
+  }
+
+  [[nodiscard]] static const Tested* best_of(const std::vector<Tested>& tested, double level) {
+    const Tested* best = nullptr;
+    for (const Tested& one : tested) {
+      if (one.score.dof == 0 || one.p_adjusted >= level) continue;
+      if (best == nullptr || one.evidence > best->evidence) best = &one;
+    }
+    return best;
+  }
+
+  /// The best, then the best of what is left when it is taken out, and so on.
+  void find_missing() {
+    ScoreTest left(fit_);
+    std::vector<Tested> still = tested_;
+    double chi2 = result_.chi2;
+    int dof = result_.dof;
+    while (missing_.size() < options_.most_missing) {
+      const Tested* best = best_of(still, options_.level);
+      if (best == nullptr) break;
+      const auto at = static_cast<std::size_t>(best - still.data());
+      missing_.push_back(at);
+      const Score whole = left.test({tested_[at].candidate.effect}).front();
+      if (missing_.size() == 1) find_look_alikes(whole, at);
+      left.take_out(whole.columns);
+      chi2 -= whole.score;
+      dof -= whole.dof;
+      std::vector<Candidate> again;
+      for (const Tested& one : tested_) again.push_back(one.candidate);
+      visit_scores(left, again, [&](std::size_t k, Score& score) {
+        drop_columns(score);
+        still[k].score = score;
+      });
+      judge(still, chi2, dof);
+    }
+  }
+
+  void find_look_alikes(const Score& winner, std::size_t at) {
+    Eigen::VectorXd trace = Eigen::VectorXd::Zero(winner.projected.rows());
+    for (std::size_t k = 0; k < winner.coefficients.size(); ++k) {
+      trace += winner.coefficients[k] * winner.projected.col(static_cast<Eigen::Index>(k));
+    }
+    const double length = trace.norm();
+    std::vector<Candidate> rivals;
+    for (const Tested& one : tested_) rivals.push_back(one.candidate);
+    visit_scores(tests_, rivals, [&](std::size_t k, const Score& score) {
+      if (k == at || score.dof == 0 || length == 0.0) return;
+      const bool plainer = score.dof <= winner.dof || rivals[k].form == Form::catalogue;
+      if (!plainer) return;
+      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
+      const double cosine = (score.projected * factor.solve(trace)).norm() / length;
+      if (cosine >= kLookAlike) look_alikes_.push_back({rivals[k].effect, std::min(1.0, cosine)});
+    });
+    std::stable_sort(look_alikes_.begin(), look_alikes_.end(),
+                     [](const LookAlike& a, const LookAlike& b) { return a.cosine > b.cosine; });
+    if (look_alikes_.size() > kMostLookAlikes) look_alikes_.resize(kMostLookAlikes);
+  }
+
+  [[nodiscard]] HeldOutFigures predicted(const Tested& one) const {
+    if (one.slopes.size() == 0) return result_.held_out;
+    Eigen::VectorXd a(one.slopes.cols());
+    for (Eigen::Index k = 0; k < a.size(); ++k) {
+      a[k] = one.score.coefficients[static_cast<std::size_t>(k)];
+    }
+    return figures_of(legs_->moved(one.slopes * a));
+  }
+
+  /// Relative rise of the arrival error over `floor` that a shape's smallest detectable size makes;
+  /// the most of any shape.
+  [[nodiscard]] double detectable_rise(const Tested& one, double floor) const {
+    double most = 0.0;
+    for (Eigen::Index k = 0; k < one.slopes.cols(); ++k) {
+      const double size = one.score.smallest_detectable[static_cast<std::size_t>(k)];
+      if (!std::isfinite(size)) return size;
+      double squares = 0.0;
+      const Eigen::Index legs = one.slopes.rows() / 6;
+      for (Eigen::Index leg = 0; leg < legs; ++leg) {
+        squares += one.slopes.col(k).segment<2>(6 * leg).squaredNorm();
+      }
+      const double moved =
+          size * std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, legs)));
+      most = std::max(most, std::hypot(1.0, moved / floor) - 1.0);
+    }
+    return one.slopes.cols() > 0 ? most : std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] Status status_of(std::size_t k, const HeldOutFigures& with_it, double floor) const {
+    const Tested& one = tested_[k];
+    if (std::find(missing_.begin(), missing_.end(), k) != missing_.end()) {
+      const bool changes_nothing =
+          predictable_ && result_.held_out_legs > 0 &&
+          with_it.arrival_rms > (1.0 - 0.002) * result_.held_out.arrival_rms &&
+          detectable_rise(one, floor) < 0.002;
+      return changes_nothing ? Status::negligible : Status::missing;
+    }
+    if (one.score.dof == 0) return Status::cannot_tell;
+    const auto is_this = [&](const LookAlike& other) {
+      return other.effect.name == one.candidate.effect.name &&
+             other.effect.shape == one.candidate.effect.shape;
+    };
+    if (std::any_of(look_alikes_.begin(), look_alikes_.end(), is_this)) return Status::cannot_tell;
+    return detectable_rise(one, floor) <= kPractical ? Status::absent : Status::cannot_tell;
+  }
+
+  void report() {
+    std::vector<std::size_t> order(tested_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto rank = [this](std::size_t k) {
+      return static_cast<std::size_t>(std::find(missing_.begin(), missing_.end(), k) -
+                                      missing_.begin());
+    };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      if (rank(a) != rank(b)) return rank(a) < rank(b);
+      return tested_[a].evidence > tested_[b].evidence;
+    });
+    const double floor = missing_.empty() ? result_.held_out.arrival_rms
+                                          : predicted(tested_[missing_.front()]).arrival_rms;
+    for (const std::size_t k : order) {
+      const Tested& one = tested_[k];
+      if (one.score.dof == 0) {
+        if (one.candidate.form == Form::catalogue) {
+          result_.unobservable.push_back(why_unobservable(one.candidate.effect, fit_, one.score));
+        }
+        continue;
+      }
+      Finding finding;
+      finding.candidate = one.candidate;
+      finding.candidate.effect.coefficients = one.score.coefficients;
+      finding.score = one.score.score;
+      finding.dof = one.score.dof;
+      finding.p_value = one.p_value;
+      finding.p_adjusted = one.p_adjusted;
+      finding.evidence = one.evidence;
+      finding.sd = one.score.sd;
+      finding.smallest_detectable = one.score.smallest_detectable;
+      finding.tried = one.tried;
+      finding.held_out = predicted(one);
+      finding.status = status_of(k, finding.held_out, floor);
+      if (!missing_.empty() && k == missing_.front()) finding.look_alikes = look_alikes_;
+      result_.findings.push_back(std::move(finding));
+    }
+    result_.p_value = chi2_p_value(result_.chi2, result_.dof);
+    if (!missing_.empty()) {
+      const Finding& first = result_.findings.front();
+      result_.verdict = Diagnosis::Verdict::missing;
+      result_.missing = first.candidate.effect.name;
+      result_.p_value = first.p_adjusted;
+      for (const LookAlike& rival : first.look_alikes) {
+        result_.next_drive = separating_drive(first.candidate.effect, rival.effect);
+        if (!result_.next_drive.empty()) break;
+      }
+    } else if (result_.p_value < 0.01) {
+      result_.verdict = Diagnosis::Verdict::unexplained_misfit;
+    }
+  }
+
+  const ModelFit& fit_;
+  const DiagnosisOptions& options_;
+  ScoreTest tests_;
+  std::unique_ptr<HeldOutLegs> legs_;
+  bool predictable_ = false;
+  std::vector<Tested> tested_;
+  std::vector<std::size_t> missing_;  ///< of tested_, best first
+  std::vector<LookAlike> look_alikes_;
+  Diagnosis result_;
+};
+
+}  // namespace
+
+std::string_view name_of(Status status) {
+  switch (status) {
+    case Status::missing:
+      return "missing";
+    case Status::absent:
+      return "absent";
+    case Status::negligible:
+      return "negligible";
+    case Status::cannot_tell:
+      break;
+  }
+  return "cannot tell";
+}
+
+HeldOutFigures figures_of(const HeldOut& held_out) {
+  return {held_out.arrival_rms, held_out.stretch_error, held_out.orientation_error};
+}
+
+Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
+                   const DiagnosisOptions& options) {
+  return Diagnostician(recordings, fit, options).run();
+}
+
+Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
+                   const DiagnosisOptions& options) {
+  ModelFitOptions how;
+  how.problem = options.problem;
+  how.gate = options.gate;
+  Diagnosis result = diagnose(recordings, fit_model(recordings, model, how), options);
+  result.advice = advice_on(recordings, model, options.problem);
+  return result;
+}
+
+}  // namespace trussmap
