@@ -25,6 +25,8 @@ void setup_build(CLI::App& app);
 void setup_calibrate(CLI::App& app);
 void setup_compare(CLI::App& app);
 void setup_convert(CLI::App& app);
+void setup_diagnose(CLI::App& app);
+void setup_discover(CLI::App& app);
 void setup_fit(CLI::App& app);
 void setup_noise(CLI::App& app);
 void setup_reveal(CLI::App& app);

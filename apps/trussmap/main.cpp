@@ -45,6 +45,8 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_calibrate(app);
   trussmap::app::setup_compare(app);
   trussmap::app::setup_convert(app);
+  trussmap::app::setup_diagnose(app);
+  trussmap::app::setup_discover(app);
   trussmap::app::setup_fit(app);
   trussmap::app::setup_noise(app);
   trussmap::app::setup_reveal(app);

@@ -32,6 +32,7 @@ struct Spread {
 };
 
 constexpr std::size_t kThinned = 2000;
+constexpr int kRounds = 14;  // of refining inner values
 
 Spread spread_of(const std::string& name, const ShapeContext& context) {
   Spread spread{name, 1e300, -1e300, 0.0, {}, 0};
@@ -352,7 +353,7 @@ class Gatherer {
       add(plain(channel, u, Form::magnitude, {"abs(" + n + ")"}, "the size of " + n, -2.5));
       add(plain(channel, u, Form::sense, {"sign(" + n + ")"}, "the sign of " + n, -2.5));
     }
-    if (n == "x" || n == "y") return;
+    if (n == "x" || n == "y" || n == "acceleration") return;
     add(plain(channel, u, Form::square, {v + "^2"}, n + " squared", -2.5));
     Candidate step = plain(channel, u, Form::step, {}, "a step in " + n, -2.5);
     step.family = step.effect.name;
@@ -443,6 +444,38 @@ Candidate with_inner(const Candidate& candidate, const std::vector<double>& inne
 
 std::vector<Candidate> candidates_for(const ModelFit& fit, const ShapeContext& context) {
   return Gatherer(fit, context).run();
+}
+
+Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
+  if (candidate.inner.empty()) return candidate;
+  Candidate best = candidate;
+  double score = tests.test({candidate.effect}).front().score;
+  std::vector<double> step = candidate.inner_step;
+  for (double& s : step) s *= 0.5;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Candidate> around;
+    std::vector<Effect> effects;
+    for (std::size_t k = 0; k < step.size(); ++k) {
+      for (const double sign : {-1.0, 1.0}) {
+        std::vector<double> inner = best.inner;
+        inner[k] = std::clamp(inner[k] + sign * step[k], best.inner_least[k], best.inner_most[k]);
+        if (inner[k] == best.inner[k]) continue;
+        around.push_back(with_inner(candidate, inner));
+        effects.push_back(around.back().effect);
+      }
+    }
+    bool better = false;
+    const std::vector<Score> scores = tests.test(effects);
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      if (scores[k].score <= score * (1.0 + 1e-9)) continue;
+      score = scores[k].score;
+      best = around[k];
+      better = true;
+    }
+    if (better) continue;
+    for (double& s : step) s *= 0.5;
+  }
+  return best;
 }
 
 }  // namespace trussmap

@@ -15,7 +15,7 @@ namespace {
 
 using Instant = ShapeContext::Instant;
 
-constexpr std::size_t kValuesKept = 8'000'000;  // numbers
+constexpr std::size_t kValuesKept = 30'000'000;  // numbers
 
 double duration_of(const Drive& drive, std::size_t row) {
   return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
@@ -150,6 +150,20 @@ Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
   return result;
 }
 
+double ColumnBuilder::largest(const std::string& shape, Instant at, int session) {
+  const auto key = std::make_tuple(shape, at, session);
+  const auto found = largest_.find(key);
+  if (found != largest_.end()) return found->second;
+  const Values& f = values(shape, at);
+  double most = 0.0;
+  for (std::size_t s = 0; s < f.size(); ++s) {
+    if (session >= 0 && s != idx(session)) continue;
+    for (const double value : f[s]) most = std::max(most, std::abs(value));
+  }
+  largest_.emplace(key, most);
+  return most;
+}
+
 std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   const Channel channel = channel_of(effect);
   std::vector<Instant> instants{Instant::middle};
@@ -158,13 +172,7 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
     double most = 0.0;
-    for (const Instant at : instants) {
-      const Values& f = values(part.shape, at);
-      for (std::size_t s = 0; s < f.size(); ++s) {
-        if (part.session >= 0 && s != idx(part.session)) continue;
-        for (const double value : f[s]) most = std::max(most, std::abs(value));
-      }
-    }
+    for (const Instant at : instants) most = std::max(most, largest(part.shape, at, part.session));
     result.push_back(most);
   }
   return result;

@@ -16,8 +16,10 @@ namespace {
 
 constexpr double kPractical = 0.05;  // rise of the arrival error
 constexpr double kLookAlike = 0.95;
+constexpr double kSecondLevel = 0.02;
+constexpr double kSecondShare = 0.002;
 constexpr std::size_t kMostLookAlikes = 12;
-constexpr std::size_t kFamiliesRefined = 4;
+constexpr std::size_t kFamiliesRefined = 3;
 constexpr std::size_t kChunk = 48;  // candidates
 
 /// A candidate's test, without its columns.
@@ -156,34 +158,19 @@ class Diagnostician {
     }
     std::stable_sort(families.begin(), families.end(),
                      [](const Tested* a, const Tested* b) { return a->evidence > b->evidence; });
+    // What refining may add to a score is bounded: a place that explains little is not the one.
+    double best = 0.0;
+    for (const Tested& one : tested_) best = std::max(best, one.score.score);
+    std::erase_if(families, [&](const Tested* one) { return 2.0 * one->score.score < best; });
     if (families.size() > kFamiliesRefined) families.resize(kFamiliesRefined);
     for (Tested* one : families) refine(*one);
   }
 
   void refine(Tested& tested) {
-    std::vector<double> step = tested.candidate.inner_step;
-    for (double& s : step) s *= 0.5;
-    for (int round = 0; round < 12; ++round) {
-      std::vector<Candidate> around;
-      for (std::size_t k = 0; k < step.size(); ++k) {
-        for (const double sign : {-1.0, 1.0}) {
-          std::vector<double> inner = tested.candidate.inner;
-          inner[k] = std::clamp(inner[k] + sign * step[k], tested.candidate.inner_least[k],
-                                tested.candidate.inner_most[k]);
-          if (inner[k] != tested.candidate.inner[k]) {
-            around.push_back(with_inner(tested.candidate, inner));
-          }
-        }
-      }
-      bool better = false;
-      visit_scores(tests_, around, [&](std::size_t k, Score& score) {
-        if (score.score <= tested.score.score * (1.0 + 1e-9)) return;
-        take(tested, around[k], score);
-        better = true;
-      });
-      if (better) continue;
-      for (double& s : step) s *= 0.5;
-    }
+    const Candidate better = refined(tests_, tested.candidate);
+    if (better.inner == tested.candidate.inner) return;
+    Score score = tests_.test({better.effect}).front();
+    take(tested, better, score);
   }
 
   [[nodiscard]] static const Tested* best_of(const std::vector<Tested>& tested, double level) {
@@ -202,8 +189,11 @@ class Diagnostician {
     double chi2 = result_.chi2;
     int dof = result_.dof;
     while (missing_.size() < options_.most_missing) {
-      const Tested* best = best_of(still, options_.level);
+      // What a first effect leaves for being so large is no second one.
+      const double level = missing_.empty() ? options_.level : kSecondLevel * options_.level;
+      const Tested* best = best_of(still, level);
       if (best == nullptr) break;
+      if (!missing_.empty() && best->score.score < kSecondShare * (result_.chi2 - chi2)) break;
       const auto at = static_cast<std::size_t>(best - still.data());
       missing_.push_back(at);
       const Score whole = left.test({tested_[at].candidate.effect}).front();
@@ -221,6 +211,12 @@ class Diagnostician {
     }
   }
 
+  /// A free form that happens to hold the winner's shape is no rival to a catalogue effect.
+  [[nodiscard]] static bool is_rival(const Candidate& one, const Candidate& winner) {
+    if (one.form == Form::catalogue || one.form == Form::line) return true;
+    return winner.form != Form::catalogue && winner.form != Form::line && one.form == winner.form;
+  }
+
   void find_look_alikes(const Score& winner, std::size_t at) {
     Eigen::VectorXd trace = Eigen::VectorXd::Zero(winner.projected.rows());
     for (std::size_t k = 0; k < winner.coefficients.size(); ++k) {
@@ -231,8 +227,7 @@ class Diagnostician {
     for (const Tested& one : tested_) rivals.push_back(one.candidate);
     visit_scores(tests_, rivals, [&](std::size_t k, const Score& score) {
       if (k == at || score.dof == 0 || length == 0.0) return;
-      const bool plainer = score.dof <= winner.dof || rivals[k].form == Form::catalogue;
-      if (!plainer) return;
+      if (!is_rival(rivals[k], tested_[at].candidate)) return;
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
       const double cosine = (score.projected * factor.solve(trace)).norm() / length;
       if (cosine >= kLookAlike) look_alikes_.push_back({rivals[k].effect, std::min(1.0, cosine)});
@@ -274,7 +269,7 @@ class Diagnostician {
     const Tested& one = tested_[k];
     if (std::find(missing_.begin(), missing_.end(), k) != missing_.end()) {
       const bool changes_nothing =
-          predictable_ && result_.held_out_legs > 0 &&
+          predictable_ && result_.held_out_legs > 0 && fit_.adjustment.p_value > 0.05 &&
           with_it.arrival_rms > (1.0 - 0.002) * result_.held_out.arrival_rms &&
           detectable_rise(one, floor) < 0.002;
       return changes_nothing ? Status::negligible : Status::missing;

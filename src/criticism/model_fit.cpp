@@ -44,7 +44,7 @@ class Fitter {
       build_columns();
       if (round == 0) hold_unobservable();
       adjust_once();
-      if (hold_the_implausible()) continue;
+      if (hold_the_unseen()) continue;
       fit_.settled = settled();
       if (fit_.settled) break;
     }
@@ -170,25 +170,38 @@ class Fitter {
     how.gate = options_.gate;
     fit_.adjustment = adjust_from(state_, fit_.problem, without, how);
     state_ = fit_.adjustment.state;
-    // With the rows' noise taken out of the columns, as this fit believes it.
     take_paths();
     build_columns();
-    while (true) {
-      const std::vector<int> free = unknown_coefficients(fit_.columns.border);
-      RecordingSystem system(fit_.problem, fit_.columns.border);
-      system.linearise(state_, unknown_values());
-      try {
-        system.factorise();
-      } catch (const NotPositiveDefinite& error) {
-        if (error.column() >= 0) throw;
-      }
-      const std::vector<int> lost = find_undetermined(system);
-      if (!lost.empty()) {
-        give_way(free[idx(lost.back())]);
-      } else if (!hold_the_implausible(system)) {
-        return;
-      }
+    while (hold_the_unseen()) {
     }
+  }
+
+  /// The last coefficient that the data tell nothing of, or too little, gives way. Judged at a
+  /// state without noise of its own: noise that a smaller map shrinks is no evidence of a scale.
+  bool hold_the_unseen() {
+    const std::vector<int> free = unknown_coefficients(fit_.columns.border);
+    if (free.empty()) return false;
+    const RecordingState clean =
+        standing_exactly(fit_.problem, fit_.columns.border, offsets_of(fit_), state_);
+    const ShapeContext context(fit_.recordings, fit_.model.robot,
+                               fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem,
+                                            fit_.columns.border, offsets_of(fit_), clean));
+    EffectBorder border = effect_columns(fit_.model.effects, context).border;
+    for (std::size_t k = 0; k < border.size(); ++k) {
+      border[k].held = fit_.columns.border[k].held;
+      border[k].reference = fit_.columns.border[k].reference;
+    }
+    RecordingSystem system(fit_.problem, border);
+    system.linearise(clean, unknown_values());
+    try {
+      system.factorise();
+    } catch (const NotPositiveDefinite& error) {
+      if (error.column() >= 0) throw;
+    }
+    const std::vector<int> lost = find_undetermined(system);
+    if (lost.empty()) return hold_the_implausible(system);
+    give_way(free[idx(lost.back())]);
+    return true;
   }
 
   /// The one added last gives way: the others may be determined without it.
@@ -265,14 +278,6 @@ class Fitter {
       return true;
     }
     return false;
-  }
-
-  bool hold_the_implausible() {
-    if (unknown_coefficients(fit_.columns.border).empty()) return false;
-    RecordingSystem system(fit_.problem, fit_.columns.border);
-    system.linearise(state_, unknown_values());
-    system.factorise();
-    return hold_the_implausible(system);
   }
 
   /// Neither a coefficient nor the path has moved, from which the columns were made.

@@ -101,7 +101,7 @@ Unobservable why_unobservable(const Effect& effect, const ModelFit& fit, const S
   const bool never = std::all_of(score.largest.begin(), score.largest.end(),
                                  [](double most) { return most == 0.0; });
   const bool nothing = std::all_of(score.share.begin(), score.share.end(),
-                                   [](double share) { return share < 1e-12; });
+                                   [](double share) { return share < kLeastShare; });
   if (never) {
     result.why = "what it goes with never occurs in these data";
     result.remedy = "drive so that it does: with starts, spins and changes of direction";
@@ -114,10 +114,9 @@ Unobservable why_unobservable(const Effect& effect, const ModelFit& fit, const S
         "vary the drive: legs of different length, turns both ways, spins, landmarks met on "
         "several headings";
   } else {
-    result.why = "next to nothing of it is seen: it would have to be larger than is plausible";
+    result.why = "only an implausibly large one would be seen";
     result.remedy = surveyed ? "collect more data in which what it goes with varies"
-                             : "measure the positions of a few landmarks (survey.csv), or collect "
-                               "more data in which what it goes with varies";
+                             : "measure the positions of a few landmarks (survey.csv)";
   }
   return result;
 }

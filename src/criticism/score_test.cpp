@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kBatch = 64;  // columns at a time
-// Without noise of its own a system leaves of an unseen column what rounding does.
-constexpr double kUnseenShare = 1e-7;
 
 std::vector<SessionPath> paths_at(const ModelFit& fit, const RecordingState& state) {
   return fitted_paths(fit.recordings, fit.model.robot, fit.problem, fit.columns.border,
@@ -73,7 +71,7 @@ void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < left.cols(); ++k) {
     const double before = columns.col(k).squaredNorm();
-    if (left.col(k).squaredNorm() <= kUnseenShare * before) continue;
+    if (left.col(k).squaredNorm() <= kLeastShare * before) continue;
     left.col(kept++) = left.col(k).normalized();
   }
   if (kept == 0) return;
@@ -101,7 +99,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     result.share.push_back(square / std::max(columns.col(k).squaredNorm(), 1e-300));
     // What the data tell must not be less than what was believed before.
     const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
-    if (most > 0.0 && result.share.back() > kUnseenShare &&
+    if (most > 0.0 && result.share.back() > kLeastShare &&
         uncertainty < kLargestUncertainty * plausible) {
       seen.push_back(k);
     } else {

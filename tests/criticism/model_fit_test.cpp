@@ -94,8 +94,6 @@ TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
   };
   for (const std::string name : {"compass offset", "travel scale"}) {
     for (const bool noisy : {false, true}) {
-      // Noise alone shrinks a map a little: a scale then looks determined. Not covered here.
-      if (noisy && name == "travel scale") continue;
       const DisturbedCase one = case_of(name);
       InvertedOptions options = one.options;
       options.survey = false;

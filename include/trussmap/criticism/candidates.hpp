@@ -59,4 +59,7 @@ struct Candidate {
 /// The same candidate with other inner values, its name and shapes made anew.
 [[nodiscard]] Candidate with_inner(const Candidate& candidate, const std::vector<double>& inner);
 
+/// The candidate with inner values near its own that explain the most (itself, where it has none).
+[[nodiscard]] Candidate refined(const ScoreTest& tests, const Candidate& candidate);
+
 }  // namespace trussmap

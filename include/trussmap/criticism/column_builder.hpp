@@ -16,6 +16,7 @@
 
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,7 @@ class ColumnBuilder {
 
   const Eigen::Matrix4Xd& basis(Channel channel);
   const Values& values(const std::string& shape, ShapeContext::Instant at);
+  double largest(const std::string& shape, ShapeContext::Instant at, int session);
   void add_drives(Channel channel, const std::string& shape, int session,
                   Eigen::Ref<Eigen::VectorXd> column);
   void add_views(Channel channel, const std::string& shape, int session,
@@ -73,6 +75,7 @@ class ColumnBuilder {
   std::vector<View> views_;
   std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
+  std::map<std::tuple<std::string, ShapeContext::Instant, int>, double> largest_;
 };
 
 }  // namespace trussmap

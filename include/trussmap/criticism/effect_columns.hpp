@@ -39,11 +39,11 @@
 
 namespace trussmap {
 
-/// What a measurement can tell of a coefficient counts only above this share of what its column
-/// would tell if nothing else were unknown: below it is noise that the state holds itself (an error
-/// of 5 mm in a position that a scale multiplies).
-inline constexpr double kLeastShare = 3e-5;
-/// And only below this share of the channel's plausible size: else more was known before.
+/// What the data tell of a coefficient counts only above this share of what its column would tell
+/// if nothing else were unknown: what rounding leaves.
+inline constexpr double kLeastShare = 1e-7;
+/// And only where its standard error is below this share of the channel's plausible size: else more
+/// was known before.
 inline constexpr double kLargestUncertainty = 1.0 / 3.0;
 
 /// Where one coefficient of the border belongs.

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap diagnose: which physical effect is missing from a model.
+#include "trussmap/criticism/diagnosis.hpp"
+#include "trussmap/criticism/effect_words.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "model_recordings.hpp"
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct DiagnoseOptions {
+  ModelRecordingsOptions input;
+  double level = 0.05;
+  std::size_t list = 8;
+};
+
+ordered_json numbers(const std::vector<double>& values) {
+  ordered_json list = ordered_json::array();
+  for (const double value : values) {
+    list.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr));
+  }
+  return list;
+}
+
+ordered_json json(const Effect& effect) {
+  return {{"effect", effect.name}, {"channel", effect.channel}, {"shape", effect.shape}};
+}
+
+ordered_json json(const HeldOutFigures& figures) {
+  return {{"arrival_rms_m", figures.arrival_rms},
+          {"stretch_error", figures.stretch_error},
+          {"orientation_error_rad", figures.orientation_error}};
+}
+
+ordered_json json(const Finding& finding) {
+  const Effect& effect = finding.candidate.effect;
+  ordered_json one = json(effect);
+  one["score"] = finding.score;
+  one["dof"] = finding.dof;
+  one["p_value"] = finding.p_value;
+  one["p_adjusted"] = finding.p_adjusted;
+  one["status"] = name_of(finding.status);
+  one["coefficients"] = numbers(effect.coefficients);
+  one["sd"] = numbers(finding.sd);
+  one["smallest_detectable"] = numbers(finding.smallest_detectable);
+  one["heldout"] = json(finding.held_out);
+  one["log_evidence"] = finding.evidence;
+  one["tried"] = finding.tried;
+  ordered_json rivals = ordered_json::array();
+  for (const LookAlike& rival : finding.look_alikes) {
+    rivals.push_back(json(rival.effect));
+    rivals.back()["cosine"] = rival.cosine;
+  }
+  one["indistinguishable_from"] = rivals;
+  return one;
+}
+
+ordered_json json(const Diagnosis& result) {
+  const char* verdict = result.verdict == Diagnosis::Verdict::missing ? "missing"
+                        : result.verdict == Diagnosis::Verdict::nothing_missing
+                            ? "nothing missing"
+                            : "unexplained misfit";
+  ordered_json candidates = ordered_json::array();
+  for (const Finding& finding : result.findings) candidates.push_back(json(finding));
+  ordered_json unobservable = ordered_json::array();
+  for (const Unobservable& one : result.unobservable) {
+    unobservable.push_back(json(one.effect));
+    unobservable.back()["why"] = one.why;
+    unobservable.back()["remedy"] = one.remedy;
+  }
+  ordered_json heldout = json(result.held_out);
+  heldout["legs"] = result.held_out_legs;
+  return {{"verdict", verdict},
+          {"missing", result.missing},
+          {"p_value", result.p_value},
+          {"chi2", result.chi2},
+          {"dof", result.dof},
+          {"heldout", heldout},
+          {"tried", result.tried},
+          {"candidates", candidates},
+          {"noise", ordered_json::array()},
+          {"outliers", ordered_json::array()},
+          {"advice", result.advice},
+          {"next_drive", result.next_drive},
+          {"unobservable", unobservable},
+          {"warnings", result.warnings}};
+}
+
+std::string length(double metres) {
+  return metres < 1.0 ? fmt::format("{:.1f} mm", 1e3 * metres) : fmt::format("{:.2f} m", metres);
+}
+
+void print_verdict(const Diagnosis& result) {
+  if (result.verdict == Diagnosis::Verdict::nothing_missing) {
+    fmt::print("nothing missing: none of {} effects tried explains more than chance\n",
+               result.tried);
+  } else if (result.verdict == Diagnosis::Verdict::unexplained_misfit) {
+    fmt::print(
+        "unexplained misfit: the model's noise does not allow these errors (p {}), and none of {} "
+        "effects tried explains them\n",
+        probability_text(result.p_value), result.tried);
+  }
+  for (const Finding& one : result.findings) {
+    if (one.status != Status::missing && one.status != Status::negligible) continue;
+    const Effect& effect = one.candidate.effect;
+    fmt::print("{}: {}; {}\n", name_of(one.status), effect.name, in_words(effect, one.sd));
+    for (const LookAlike& rival : one.look_alikes) {
+      fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
+                 rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
+    }
+  }
+  if (!result.missing.empty() && result.held_out_legs > 0) {
+    fmt::print("  without it legs end {} off, with it {} (rms of {} held-out legs, predicted)\n",
+               length(result.held_out.arrival_rms),
+               length(result.findings.front().held_out.arrival_rms), result.held_out_legs);
+  }
+  if (!result.next_drive.empty()) fmt::print("  to tell them apart: {}\n", result.next_drive);
+}
+
+void print(const Diagnosis& result, const DiagnoseOptions& options) {
+  print_verdict(result);
+  TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
+                  {},
+                  true,
+                  2};
+  table.rows.push_back({"best candidates", "channel x shape", "score (dof)", "p, adjusted",
+                        "held out [mm]", "status"});
+  for (std::size_t k = 0; k < std::min(options.list, result.findings.size()); ++k) {
+    const Finding& one = result.findings[k];
+    const Effect& effect = one.candidate.effect;
+    table.rows.push_back(
+        {effect.name, fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", ")),
+         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
+         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), std::string(name_of(one.status))});
+  }
+  fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
+             format_table(table));
+  if (!result.unobservable.empty()) fmt::print("\nNot to be seen in these data\n");
+  for (const Unobservable& one : result.unobservable) {
+    fmt::print("  {}: {}; {}\n", one.effect.name, one.why, one.remedy);
+  }
+  if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
+  for (const std::string& line : result.advice) fmt::print("  {}\n", line);
+  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+}
+
+void run_diagnose(const DiagnoseOptions& options) {
+  const ModelRecordings input = read_model_recordings(options.input);
+  DiagnosisOptions how;
+  how.problem = problem_options(options.input);
+  how.legs = options.input.legs;
+  how.gate = gate_of(options.input);
+  how.level = options.level;
+  const Diagnosis result = diagnose(input.recordings, input.model, how);
+  if (!options.input.json.empty()) write_file(options.input.json, json(result).dump(2) + "\n");
+  print(result, options);
+}
+
+}  // namespace
+
+void setup_diagnose(CLI::App& app) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  CLI::App* command =
+      app.add_subcommand("diagnose", "Find out which physical effect a model is missing");
+  add_model_recordings(*command, options->input);
+  command->add_option("--level", options->level, "Chance of naming an effect where none is missing")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command->add_option("--list", options->list, "Candidates to list")->capture_default_str();
+  command->footer(
+      "Tries the whole catalogue, and every channel against every variable and covariate. "
+      "Missing:\n"
+      "named by these data. Absent: would have been seen at any size that matters. Cannot tell:\n"
+      "these data could not show it, or another effect looks the same.");
+  command->callback([options] { run_diagnose(*options); });
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap discover: diagnose, add and fit for as long as that is justified.
+#include "trussmap/criticism/discovery.hpp"
+#include "trussmap/criticism/effect_words.hpp"
+#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "model_recordings.hpp"
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct DiscoverOptions {
+  ModelRecordingsOptions input;
+  std::string out;
+  double level = 0.05;
+  std::size_t most = 6;
+};
+
+ordered_json json(const DiscoveryStep& step) {
+  ordered_json one = {{"added", nullptr},
+                      {"chi2", step.chi2},
+                      {"dof", step.dof},
+                      {"heldout", held_out_json(step.held_out)}};
+  if (step.added) {
+    one["added"] = {{"effect", step.added->name},
+                    {"channel", step.added->channel},
+                    {"shape", step.added->shape},
+                    {"coefficients", step.added->coefficients}};
+    one["dropped"] = step.dropped;
+    one["promised"] = {{"chi2_decrease", step.promised_chi2},
+                       {"arrival_rms_m", step.promised.arrival_rms}};
+    ordered_json rivals = ordered_json::array();
+    for (const LookAlike& rival : step.look_alikes) {
+      rivals.push_back({{"effect", rival.effect.name},
+                        {"channel", rival.effect.channel},
+                        {"shape", rival.effect.shape},
+                        {"cosine", rival.cosine}});
+    }
+    one["indistinguishable_from"] = rivals;
+  }
+  return one;
+}
+
+ordered_json json(const Discovery& result) {
+  ordered_json steps = ordered_json::array();
+  for (const DiscoveryStep& step : result.steps) steps.push_back(json(step));
+  ordered_json effects = ordered_json::array();
+  for (const EffectEstimate& one : result.fit.effects) {
+    ordered_json sd = ordered_json::array();
+    for (const double value : one.sd) {
+      sd.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr));
+    }
+    effects.push_back({{"effect", one.effect.name},
+                       {"channel", one.effect.channel},
+                       {"shape", one.effect.shape},
+                       {"coefficients", one.effect.coefficients},
+                       {"sd", sd},
+                       {"in_words", in_words(one.effect, one.sd)}});
+  }
+  return {{"steps", steps},
+          {"stopped", result.stopped},
+          {"verdict", result.consistent ? "consistent" : "unexplained misfit"},
+          {"effects", effects},
+          {"warnings", result.fit.adjustment.warnings}};
+}
+
+void print(const Discovery& result) {
+  for (const EffectEstimate& one : result.fit.effects) {
+    fmt::print("{}: {}\n", one.effect.name, in_words(one.effect, one.sd));
+  }
+  if (result.fit.effects.empty()) fmt::print("nothing found: the model stays as it is\n");
+  TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right,
+                   Align::right, Align::right},
+                  {},
+                  true,
+                  2};
+  table.rows.push_back({"model", "chi2", "dof", "promised", "held out [mm]", "promised", "legs"});
+  for (const DiscoveryStep& step : result.steps) {
+    std::string name = step.added ? "+ " + step.added->name : "as given";
+    for (const std::string& dropped : step.dropped) name += ", - " + dropped;
+    const double before =
+        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.promised_chi2;
+    table.rows.push_back(
+        {name, fmt::format("{:.1f}", step.chi2), fmt::format("{}", step.dof),
+         step.added ? fmt::format("{:.1f}", before) : "-",
+         step.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * step.held_out.arrival_rms),
+         step.added ? fmt::format("{:.1f}", 1e3 * step.promised.arrival_rms) : "-",
+         fmt::format("{}", step.held_out.legs.size())});
+  }
+  fmt::print("\n{}  {}: {}\n", format_table(table),
+             result.consistent ? "consistent" : "unexplained misfit", result.stopped);
+  for (const DiscoveryStep& step : result.steps) {
+    for (const LookAlike& rival : step.look_alikes) {
+      fmt::print("  instead of {} it could be: {} ({} x {}), cosine {:.3f}\n", step.added->name,
+                 rival.effect.name, rival.effect.channel, fmt::join(rival.effect.shape, ", "),
+                 rival.cosine);
+    }
+  }
+  for (const std::string& warning : result.fit.adjustment.warnings) {
+    fmt::print("warning: {}\n", warning);
+  }
+}
+
+void run_discover(const DiscoverOptions& options) {
+  const ModelRecordings input = read_model_recordings(options.input);
+  DiscoveryOptions how;
+  how.diagnosis.problem = problem_options(options.input);
+  how.diagnosis.legs = options.input.legs;
+  how.diagnosis.gate = gate_of(options.input);
+  how.diagnosis.level = options.level;
+  how.most_effects = options.most;
+  const Discovery result = discover(input.recordings, input.model, how);
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  if (!options.out.empty()) files.emplace_back(options.out, format_model(result.fit.model));
+  if (!options.input.json.empty()) {
+    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+  }
+  write_files(files);
+  print(result);
+}
+
+}  // namespace
+
+void setup_discover(CLI::App& app) {
+  auto options = std::make_shared<DiscoverOptions>();
+  CLI::App* command = app.add_subcommand(
+      "discover", "Find the effects that a model is missing, add and fit them, one by one");
+  add_model_recordings(*command, options->input);
+  command->add_option("--out", options->out, "Write the model found (TOML)")->type_name("FILE");
+  command->add_option("--level", options->level, "Chance of adding an effect where none is missing")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
+  command->add_option("--most", options->most, "Effects to add at most")->capture_default_str();
+  command->footer(
+      "The ladder has one line per model, always over the same held-out legs. \"Promised\" is "
+      "what\n"
+      "the diagnosis foretold before the fit.");
+  command->callback([options] { run_discover(*options); });
+}
+
+}  // namespace trussmap::app
