@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "layers.hpp"
+
+#include "trussmap/calibration/noise_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+namespace trussmap {
+
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> kept;
+  const std::size_t first = count <= most ? count : most / 4;
+  for (std::size_t k = 0; k < first; ++k) kept.push_back(k);
+  const std::size_t room = most - std::min(most, first);
+  for (std::size_t k = 0; k < room && first < count; ++k) {
+    kept.push_back(first + k * (count - first) / room);
+  }
+  return kept;
+}
+
+void make_unique(std::vector<std::string>& texts) {
+  std::map<std::string, int> seen;
+  for (std::string& text : texts) {
+    const int times = ++seen[text];
+    if (times > 1) text += " (" + std::to_string(times) + ")";
+  }
+}
+
+ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedEllipse>& ellipses,
+                         const std::string& colour) {
+  ChartLayer layer{
+      LayerKind::ellipses,
+      legend,
+      {{"x [m]"}, {"y [m]"}, {"larger semi-axis [m]"}, {"smaller [m]"}, {""}, {"landmark"}},
+      colour};
+  const double scale = ellipse95_scale(2);
+  for (const PlacedEllipse& one : ellipses) {
+    const Eigen::SelfAdjointEigenSolver<Matrix2> axes(one.covariance);
+    const double larger = axes.eigenvalues()[1];
+    if (!(larger > 0.0)) continue;
+    const Vector2 along = axes.eigenvectors().col(1);
+    layer.columns[0].numbers.push_back(one.centre.x());
+    layer.columns[1].numbers.push_back(one.centre.y());
+    layer.columns[2].numbers.push_back(scale * std::sqrt(larger));
+    layer.columns[3].numbers.push_back(scale * std::sqrt(std::max(0.0, axes.eigenvalues()[0])));
+    layer.columns[4].numbers.push_back(std::atan2(along.y(), along.x()));
+    layer.columns[5].texts.push_back(one.name);
+  }
+  return layer;
+}
+
+}  // namespace trussmap
