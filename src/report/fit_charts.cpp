@@ -14,8 +14,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr std::size_t kMostPoints = 500;  // of a line
-constexpr std::size_t kMostLegs = 2000;   // of a chart
+constexpr std::size_t kMostLegs = 2000;  // of a chart
 
 /// A variable's axis: name, factor, unit.
 ShownUnit variable_unit(const std::string& variable) {
@@ -197,22 +196,9 @@ Chart held_out_chart(const std::string& id, const std::vector<NamedHeldOut>& mod
     for (const LegPrediction& leg : held.legs) {
       distances.push_back(1000.0 * leg.arrival_error.norm());
     }
-    std::sort(distances.begin(), distances.end());
-    ChartColumn distance{"distance [mm]"};
-    ChartColumn share{"legs within it [%]"};
-    const std::size_t step = 1 + distances.size() / kMostPoints;
-    distance.numbers.push_back(0.0);
-    share.numbers.push_back(0.0);
-    const double count = static_cast<double>(distances.size());
-    for (std::size_t i = 0; i < distances.size(); i += step) {
-      distance.numbers.push_back(distances[i]);
-      share.numbers.push_back(100.0 * static_cast<double>(i + 1) / count);
-    }
-    distance.numbers.push_back(distances.back());
-    share.numbers.push_back(100.0);
     const std::string colour = k + 1 < models.size() ? "2" : "1";
     const std::string name = models.size() > 1 ? models[k].first : "";
-    chart.layers.push_back({LayerKind::line, name, {distance, share}, colour});
+    chart.layers.push_back(share_layer(name, std::move(distances), "mm", colour));
     ChartLayer rms{LayerKind::upright,
                    name + (name.empty() ? "root mean square" : ": root mean square"),
                    {{"root mean square [mm]", {1000.0 * held.arrival_rms}}},

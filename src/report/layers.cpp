@@ -31,6 +31,26 @@ void make_unique(std::vector<std::string>& texts) {
   }
 }
 
+ChartLayer share_layer(const std::string& legend, std::vector<double> distances,
+                       const std::string& unit, const std::string& colour) {
+  constexpr std::size_t kMostPoints = 500;
+  ChartLayer layer{
+      LayerKind::line, legend, {{"distance [" + unit + "]"}, {"within it [%]"}}, colour};
+  if (distances.empty()) return layer;
+  std::sort(distances.begin(), distances.end());
+  const auto add = [&layer](double distance, double share) {
+    layer.columns[0].numbers.push_back(distance);
+    layer.columns[1].numbers.push_back(share);
+  };
+  add(0.0, 0.0);
+  const std::size_t step = 1 + distances.size() / kMostPoints;
+  for (std::size_t k = 0; k < distances.size(); k += step) {
+    add(distances[k], 100.0 * static_cast<double>(k + 1) / static_cast<double>(distances.size()));
+  }
+  add(distances.back(), 100.0);
+  return layer;
+}
+
 ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedEllipse>& ellipses,
                          const std::string& colour) {
   ChartLayer layer{
