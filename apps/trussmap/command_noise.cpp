@@ -232,7 +232,7 @@ void run_noise(const NoiseOptions& options) {
     add_page(files,
              noise_page(shown, (options.tape.simulate ? "a simulated robot" : options.file) +
                                    ", path " + options.path),
-             options.tape.page);
+             {options.tape.page.html, {}});
   }
   if (!options.tape.write.empty()) {
     files.emplace_back(options.tape.write, format_end_errors(result.errors));

@@ -346,7 +346,9 @@ void run_umbmark(const UmbmarkOptions& options) {
                        draw_figure(square_figure(runs, options.side)));
     fs::create_directories(options.tape.page.plots);
   }
-  if (!options.tape.page.html.empty()) add_page(files, page_of(rounds, options), options.tape.page);
+  if (!options.tape.page.html.empty()) {
+    add_page(files, page_of(rounds, options), {options.tape.page.html, {}});
+  }
   for (std::size_t k = 0; k < rounds.size() && !options.tape.write.empty(); ++k) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "page_runtime.hpp"
 
+#include "trussmap/report/chart_svg.hpp"
+
 // Both files as they are, each between two names.
 #define TRUSSMAP_EMBED(name, file)                                               \
   __asm__(".pushsection .rodata\n.global " #name "\n" #name ":\n.incbin \"" file \
@@ -35,6 +37,12 @@ void add_plots_option(CLI::App& command, PageOptions& options) {
 
 void add_page(Files& files, const Page& page, const PageOptions& options) {
   if (!options.html.empty()) files.emplace_back(options.html, render_page(page, page_runtime()));
+  if (options.plots.empty()) return;
+  for (const Chart* chart : charts_of(page)) {
+    files.emplace_back(std::filesystem::path(options.plots) / (chart->id + ".svg"),
+                       draw_chart(*chart));
+  }
+  std::filesystem::create_directories(options.plots);
 }
 
 std::string subject_of(const std::vector<std::string>& recordings, const std::string& model) {
