@@ -118,28 +118,30 @@ Bins bins_of(const std::string& variable, const std::vector<double>& values) {
 
 /// Least squares by the modes that the data show; bins that no measurement sees are dropped.
 void estimate(std::vector<ResponseBin>& bins, const Score& score, double plausible,
-              const ScoreTest& tests) {
+              const ModelFit& fit, const ScoreTest& tests) {
   const Eigen::MatrixXd& M = score.projected;
   const Eigen::MatrixXd S = M.transpose() * M;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(S);
   const double least =
       9.0 * tests.dispersion() / (plausible * plausible * static_cast<double>(bins.size()));
   const Eigen::VectorXd g = modes.eigenvectors().transpose() * (M.transpose() * tests.residuals());
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(S.rows());
+  double explained = 0.0;
+  for (Eigen::Index mode = 0; mode < S.rows(); ++mode) {
+    if (modes.eigenvalues()[mode] < least) continue;
+    inverse[mode] = 1.0 / modes.eigenvalues()[mode];
+    explained += g[mode] * g[mode] * inverse[mode];
+  }
+  const double left = fit.adjustment.chi2 - explained;
+  const double dof = static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
+  const double dispersion = dof > 0.0 ? std::max(1.0, left / dof) : tests.dispersion();
   std::vector<ResponseBin> seen;
   for (Eigen::Index k = 0; k < S.rows(); ++k) {
     if (!(S(k, k) > 0.0)) continue;
-    double value = 0.0;
-    double variance = 0.0;
-    for (Eigen::Index mode = 0; mode < S.rows(); ++mode) {
-      const double strength = modes.eigenvalues()[mode];
-      if (strength < least) continue;
-      const double part = modes.eigenvectors()(k, mode);
-      value -= part * g[mode] / strength;
-      variance += part * part / strength;
-    }
+    const Eigen::VectorXd part = modes.eigenvectors().row(k);
     ResponseBin bin = bins[static_cast<std::size_t>(k)];
-    bin.estimate = value;
-    bin.sd = std::sqrt(tests.dispersion() * variance);
+    bin.estimate = -part.dot(inverse.cwiseProduct(g));
+    bin.sd = std::sqrt(dispersion * part.dot(inverse.cwiseProduct(part)));
     if (bin.sd > 0.0) seen.push_back(bin);
   }
   bins = std::move(seen);
@@ -202,10 +204,11 @@ Response response_along(const std::string& variable, const Effect& effect, const
   probe.shape = std::move(bins.shapes);
   const std::vector<Score> scores = tests.test({probe});
   result.bins = std::move(bins.bins);
-  estimate(result.bins, scores.front(), facts.plausible, tests);
+  estimate(result.bins, scores.front(), facts.plausible, fit, tests);
+  if (result.bins.empty()) return result;
   const bool round = variable == "heading";
-  result.curve =
-      effect_curve(effect, variable, round ? 0.0 : values.front(), round ? kTurn : values.back());
+  result.curve = effect_curve(effect, variable, round ? 0.0 : result.bins.front().at,
+                              round ? kTurn : result.bins.back().at);
   return result;
 }
 

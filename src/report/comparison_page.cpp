@@ -80,7 +80,8 @@ PageSection trend_section(const Comparison& result, const std::vector<TrendPictu
   for (std::size_t k = 0; k < trends.size(); ++k) {
     const Trend& trend = trends[k].trend;
     charts.push_back(response_chart(
-        fmt::format("trend-{}", k + 1), trend.kind + " against " + trends[k].response.variable,
+        fmt::format("trend-{}", k + 1),
+        trend.kind + " against " + variable_in_words(trends[k].response.variable),
         trend.p_adjusted < kClear
             ? fmt::format("A trend: it explains {:.1f} of chi\u00b2, p {}.", trend.score,
                           probability_text(trend.p_adjusted))
@@ -158,12 +159,12 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   if (!result.consistent) {
     page.notes.emplace_back(
         "What to do next: put the effect that the strongest trend speaks of into the model "
-        "(trussmap "
-        "add) and estimate it (trussmap fit).");
+        "(trussmap add) and estimate it (trussmap fit).");
   }
   page.sections.push_back({"The map as a truss",
                            {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
-                                                 result.routes, misfit_of(result))}}});
+                                                 result.routes, misfit_of(result)),
+                                     worst_chart("worst-legs", result.worst, kWorst)}}});
   page.sections.push_back(trend_section(result, trends));
   page.sections.push_back({"Is the noise right?", {}});
   ChartRow noise{source_chart("noise", {{"", result.sources}})};
@@ -174,8 +175,7 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   page.sections.push_back(
       {"Legs and routes",
        {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
-                 legs_chart("orientation", result.worst, LegError::orientation)},
-        ChartRow{worst_chart("worst-legs", result.worst, kWorst)}}});
+                 legs_chart("orientation", result.worst, LegError::orientation)}}});
   if (!result.routes.empty()) page.sections.back().blocks.emplace_back(route_table(result));
   if (!result.outliers.empty()) page.sections.back().blocks.emplace_back(outlier_table(result));
   return page;

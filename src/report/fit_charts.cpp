@@ -16,6 +16,27 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostLegs = 2000;  // of a chart
 
+/// All estimates and the curve, and intervals as far as they are not much longer.
+Range shown_range(const Response& response, double factor) {
+  Range near{0.0, 0.0};
+  const auto take = [&near](double value) {
+    near.low = std::min(near.low, value);
+    near.high = std::max(near.high, value);
+  };
+  for (const ResponseBin& bin : response.bins) take(factor * bin.estimate);
+  for (const Vector2& point : response.curve) take(factor * point.y());
+  const double reach = std::max(near.high - near.low, 1e-9);
+  Range range = near;
+  for (const ResponseBin& bin : response.bins) {
+    const double half = factor * kNormal95 * bin.sd;
+    range.low = std::min(range.low, factor * bin.estimate - half);
+    range.high = std::max(range.high, factor * bin.estimate + half);
+  }
+  const double margin = 0.05 * reach;
+  return {std::max(range.low, near.low - reach) - margin,
+          std::min(range.high, near.high + reach) + margin};
+}
+
 /// A variable's axis: name, factor, unit.
 ShownUnit variable_unit(const std::string& variable) {
   if (variable == "heading") return {kDegrees, "\u00b0"};
@@ -28,10 +49,7 @@ ShownUnit variable_unit(const std::string& variable) {
 }
 
 std::string variable_title(const std::string& variable) {
-  const std::string name = variable == "turn_rate"  ? "turn rate"
-                           : variable == "t"        ? "time"
-                           : variable == "distance" ? "distance driven"
-                                                    : variable;
+  const std::string name = variable_in_words(variable);
   const std::string unit = variable_unit(variable).name;
   return unit.empty() ? name : name + " [" + unit + "]";
 }
@@ -64,6 +82,13 @@ std::string shown(double value, const std::string& unit) {
   return fmt::format("{:.2g}{}{}", as.factor * value, as.name == "\u00b0" ? "" : " ", as.name);
 }
 
+std::string variable_in_words(const std::string& variable) {
+  return variable == "turn_rate"  ? "turn rate"
+         : variable == "t"        ? "time"
+         : variable == "distance" ? "distance driven"
+                                  : variable;
+}
+
 std::string channel_in_words(const std::string& channel) {
   if (channel == "travel") return "travel, measured too short by";
   if (channel == "wheels") return "both wheels, measured too short by";
@@ -93,7 +118,7 @@ Chart response_chart(const std::string& id, const std::string& title, const std:
   chart.caption = caption;
   chart.x.title = variable_title(response.variable);
   chart.y.title = channel_in_words(response.channel) + " [" + up.name + "]";
-  chart.y.zero = true;
+  chart.y.range = shown_range(response, up.factor);
   chart.height = 260.0;
   chart.layers.push_back({LayerKind::level, "", {{"no error", {0.0}}}, "faint"});
   ChartColumn at{chart.x.title};

@@ -189,9 +189,7 @@ SurveyErrors survey_errors(const BuiltMap& built) {
   return errors;
 }
 
-PageSection survey_section(const BuiltMap& built) {
-  PageSection section{"Against the survey", {}};
-  const SurveyErrors errors = survey_errors(built);
+Chart survey_chart(const SurveyErrors& errors) {
   Chart chart;
   chart.id = "survey";
   chart.title = "How far landmarks are from where the survey has them";
@@ -200,10 +198,13 @@ PageSection survey_section(const BuiltMap& built) {
       "to the left is better.";
   chart.x = {.title = "distance [m]", .zero = true};
   chart.y = {.title = "landmarks within it [%]", .range = Range{0.0, 100.0}};
-  chart.height = 280.0;
+  chart.height = 420.0;
   chart.layers.push_back(share_layer("dead reckoning", errors.before, "m", "2"));
   chart.layers.push_back(share_layer("the map", errors.map, "m", "1"));
-  section.blocks.emplace_back(ChartRow{std::move(chart)});
+  return chart;
+}
+
+PageTable survey_table(const SurveyErrors& errors) {
   PageTable table;
   table.caption = "Landmarks furthest from the survey";
   table.headings = {"landmark", "map off by [m]", "dead reckoning off by [m]"};
@@ -217,8 +218,7 @@ PageSection survey_section(const BuiltMap& built) {
     table.rows.push_back({errors.names[k], fmt::format("{:.3f}", errors.map[k]),
                           errors.before.empty() ? "-" : fmt::format("{:.3f}", errors.before[k])});
   }
-  section.blocks.emplace_back(std::move(table));
-  return section;
+  return table;
 }
 
 std::string verdict(const BuiltMap& built) {
@@ -256,8 +256,11 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   for (const std::string& name : built.survey.contradicting) {
     page.notes.push_back("Landmark " + name + " contradicts the survey and does not count.");
   }
-  page.sections.push_back({"The map", {ChartRow{map_chart(built)}}});
-  if (surveyed(built)) page.sections.push_back(survey_section(built));
+  ChartRow charts{map_chart(built)};
+  const SurveyErrors errors = survey_errors(built);
+  if (surveyed(built)) charts.push_back(survey_chart(errors));
+  page.sections.push_back({"The map", {std::move(charts)}});
+  if (surveyed(built)) page.sections.push_back({"Against the survey", {survey_table(errors)}});
   return page;
 }
 

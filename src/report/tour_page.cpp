@@ -17,21 +17,22 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostTours = 250;  // drawn
 
-const std::map<std::string, std::string>& words() {
-  static const std::map<std::string, std::string> kWords = {
-      {"dead_reckoning", "dead reckoning"},
-      {"raw", "single measurements"},
-      {"weighted_average", "weighted average"},
-      {"elastic_printed", "elastic, as printed"},
-      {"elastic", "elastic"},
-      {"gauss_markov", "Gauss-Markov"},
-      {"adjustment", "adjustment"}};
-  return kWords;
-}
+struct Look {
+  const char* words;
+  const char* colour;
+};
 
-std::string in_words(const std::string& method) {
-  const auto found = words().find(method);
-  return found == words().end() ? method : found->second;
+Look look_of(const std::string& method) {
+  static const std::map<std::string, Look> kLooks = {
+      {"dead_reckoning", {"dead reckoning", "5"}},
+      {"raw", {"single measurements", "8"}},
+      {"weighted_average", {"weighted average", "3"}},
+      {"elastic_printed", {"elastic, as printed", "4"}},
+      {"elastic", {"elastic", "2"}},
+      {"gauss_markov", {"Gauss-Markov", "6"}},
+      {"adjustment", {"adjustment", "1"}}};
+  const auto found = kLooks.find(method);
+  return found == kLooks.end() ? Look{method.c_str(), "ink"} : found->second;
 }
 
 using Pick = std::optional<SeedMean> (*)(const TourFigures&);
@@ -76,11 +77,9 @@ Chart error_chart(const TourResult& result, const Quantity& quantity) {
   const std::vector<std::size_t> tours = drawn_tours(result.tours.size());
   std::vector<ChartLayer> lines;
   std::vector<ChartLayer> points;
-  int number = 0;
   for (const std::string& method : tour_methods()) {
-    ++number;
     if (!quantity.pick(result.tours.front().at(method))) continue;
-    const std::string colour = std::to_string(number);
+    const auto [words, colour] = look_of(method);
     ChartColumn tour{"tour"};
     ChartColumn mean{quantity.axis};
     ChartColumn low{"95 % from"};
@@ -95,8 +94,8 @@ Chart error_chart(const TourResult& result, const Quantity& quantity) {
       high.numbers.push_back(value + reach);
     }
     chart.layers.push_back({LayerKind::band, "", {tour, low, high}, colour});
-    lines.push_back({LayerKind::line, in_words(method), {tour, mean}, colour});
-    points.push_back({LayerKind::dots, in_words(method), {tour, mean, low, high}, colour});
+    lines.push_back({LayerKind::line, words, {tour, mean}, colour});
+    points.push_back({LayerKind::dots, words, {tour, mean, low, high}, colour});
     points.back().size = tours.size() > 60 ? 2.0 : 3.0;
   }
   for (std::vector<ChartLayer>* more : {&lines, &points}) {
@@ -116,7 +115,7 @@ PageTable last_table(const TourResult& result) {
       return fmt::format("{:.{}f} \u00b1 {:.{}f}", factor * mean.mean, digits,
                          factor * mean.standard_error, digits);
     };
-    table.rows.push_back({in_words(method), cell(figures.stretch_error, 100.0, 2),
+    table.rows.push_back({look_of(method).words, cell(figures.stretch_error, 100.0, 2),
                           cell(figures.orientation_error, 1000.0, 1),
                           figures.position_error ? cell(*figures.position_error, 1.0, 3) : "-"});
   }

@@ -13,7 +13,7 @@
 // together, as a score test would (score_test.hpp): what poses and landmarks have absorbed of the
 // error is given back. Combinations of bins of which the data tell next to nothing (all alike, say,
 // for a compass with nothing to check its zero) are taken as 0. Standard errors are for the
-// dispersion that there is.
+// dispersion that the bins leave: small where they explain all there is, large where they do not.
 #pragma once
 
 #include "trussmap/criticism/score_test.hpp"

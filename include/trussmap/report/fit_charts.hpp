@@ -31,6 +31,8 @@ struct ShownUnit {
 [[nodiscard]] ShownUnit shown_unit(const std::string& unit);
 /// A value with the unit it is shown in: "2.1 mm", "0.31 deg", "4 %". Two digits.
 [[nodiscard]] std::string shown(double value, const std::string& unit);
+/// "turn rate" for turn_rate, and so on.
+[[nodiscard]] std::string variable_in_words(const std::string& variable);
 /// What a channel's error is called: "turning", "compass reading" ...
 [[nodiscard]] std::string channel_in_words(const std::string& channel);
 

@@ -214,7 +214,7 @@ export function specOf(chart, width) {
               range: legend.map(e => e[1])}],
     axes: [axis('bottom', chart.x, 'x'), axis('left', chart.y, 'y')],
     legends: legend.length
-        ? [{fill: 'legend', orient: 'top', symbolType: 'square', aria: false,
+        ? [{fill: 'legend', orient: 'top', direction: 'horizontal', symbolType: 'square', aria: false,
             columns: Math.max(1, Math.floor((width - 60) /
                 (36 + 7 * Math.max(...legend.map(e => Math.min(37, e[0].length))))))}]
         : [],
