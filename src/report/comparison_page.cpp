@@ -83,7 +83,8 @@ PageSection trend_section(const Comparison& result, const std::vector<TrendPictu
         fmt::format("trend-{}", k + 1),
         trend.kind + " against " + variable_in_words(trends[k].response.variable),
         trend.p_adjusted < kClear
-            ? fmt::format("A trend: it explains {:.1f} of chi\u00b2, p {}.", trend.score,
+            ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
+                          100.0 * trend.score / std::max(result.chi2, 1e-300),
                           probability_text(trend.p_adjusted))
             : fmt::format("No trend to speak of: p {}.", probability_text(trend.p_adjusted)),
         trends[k].response, "trend"));
@@ -143,12 +144,12 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   page.subject = subject;
   page.tone = result.consistent ? Tone::good : Tone::bad;
   page.verdict = comparison_verdict(result);
-  page.facts = {
-      {fmt::format("{:.2f}", misfit_of(result)), "chi\u00b2 per degree of freedom (1 is right)",
-       page.tone},
-      {probability_text(result.p_value), "chance of errors as large, if the model is right"},
-      {std::to_string(result.legs), "legs"},
-      {std::to_string(result.landmarks), "landmarks"}};
+  page.facts = {{fmt::format("{:.2f}", misfit_of(result)),
+                 "chi\u00b2 per degree of freedom (1 is right)", page.tone},
+                {result.p_value < 1e-12 ? "next to 0" : probability_text(result.p_value),
+                 "chance of errors as large, if the model is right"},
+                {std::to_string(result.legs), "legs"},
+                {std::to_string(result.landmarks), "landmarks"}};
   if (!result.held_out.legs.empty()) {
     page.facts.insert(page.facts.begin(),
                       {fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),

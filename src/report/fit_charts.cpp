@@ -210,7 +210,7 @@ Chart held_out_chart(const std::string& id, const std::vector<NamedHeldOut>& mod
   chart.title = "How far off held-out legs end";
   chart.caption =
       "Share of the legs, none of them seen by the fit, that end within a distance of where their "
-      "landmark is. Further to the left is better.";
+      "landmark is. Further to the left is better. Dashed: the root mean square.";
   chart.x = {.title = "distance [mm]", .zero = true};
   chart.y = {.title = "legs within it [%]", .range = Range{0.0, 100.0}};
   chart.height = 260.0;
@@ -225,7 +225,7 @@ Chart held_out_chart(const std::string& id, const std::vector<NamedHeldOut>& mod
     const std::string name = models.size() > 1 ? models[k].first : "";
     chart.layers.push_back(share_layer(name, std::move(distances), "mm", colour));
     ChartLayer rms{LayerKind::upright,
-                   name + (name.empty() ? "root mean square" : ": root mean square"),
+                   name.empty() ? "root mean square" : "",
                    {{"root mean square [mm]", {1000.0 * held.arrival_rms}}},
                    colour};
     rms.dashed = true;

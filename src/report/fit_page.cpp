@@ -27,12 +27,20 @@ std::string millimetres(const Comparison& one) {
   return fmt::format("{:.0f} mm", 1000.0 * one.held_out.arrival_rms);
 }
 
+/// The report's words in the signs that a page has.
+std::string typeset(std::string text) {
+  for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at)) {
+    text.replace(at, 2, "\u00b1");
+  }
+  return text;
+}
+
 std::string verdict(const Comparison& before, const Comparison& after,
                     const std::vector<FittedEffect>& effects) {
   std::string text;
   if (effects.size() == 1) {
     const EffectEstimate& only = effects.front().estimate;
-    text = only.effect.name + ": " + in_words(only.effect, only.sd) + ".";
+    text = only.effect.name + ": " + typeset(in_words(only.effect, only.sd)) + ".";
   } else {
     text = fmt::format("{} effects fitted.", effects.size());
   }
@@ -153,8 +161,10 @@ Page fit_page(const FittedModel& without, const FittedModel& with,
     page.facts.push_back({millimetres(after), "the same with them", page.tone});
   }
   for (const FittedEffect& one : effects) {
-    page.notes.push_back(one.estimate.effect.name + ": " +
-                         in_words(one.estimate.effect, one.estimate.sd));
+    if (effects.size() > 1) {
+      page.notes.push_back(one.estimate.effect.name + ": " +
+                           typeset(in_words(one.estimate.effect, one.estimate.sd)));
+    }
     for (const std::string& why : one.estimate.not_fitted) page.notes.push_back(why);
   }
   page.notes.insert(page.notes.end(), after.warnings.begin(), after.warnings.end());

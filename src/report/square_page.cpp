@@ -35,7 +35,7 @@ void add_cluster(Chart& chart, const std::vector<Eigen::Vector2d>& runs, const S
   }
   chart.layers.push_back(std::move(dots));
   ChartLayer centre = ellipse_layer(
-      name + " centre, 95 % ellipse",
+      "",
       {{name + " centre", kMillimetres * mean.mean, kMillimetres * kMillimetres * mean.covariance}},
       colour);
   if (centre.columns[0].numbers.empty()) return;
@@ -64,8 +64,8 @@ Chart round_chart(const SquareRound& round, std::size_t number, std::size_t roun
   chart.title = rounds > 1 ? fmt::format("Round {}: where the robot stopped", number)
                            : "Where the robot stopped after the square";
   chart.caption = fmt::format(
-      "Stopping positions, measured less calculated. The farther centre is {:.0f} mm from where "
-      "the odometry had it.",
+      "Stopping positions, measured less calculated; ellipses hold the centres with 95 % "
+      "confidence. The farther centre is {:.0f} mm from where the odometry had it.",
       kMillimetres * round.clusters.largest_offset.value);
   chart.x = {.title = "x error [mm]", .range = Range{-reach, reach}};
   chart.y = {.title = "y error [mm]", .range = Range{-reach, reach}};
@@ -143,11 +143,16 @@ std::string verdict(const SquareCalibration& found) {
         "Nothing left to correct: the systematic error of {:.0f} mm is within the runs' scatter.",
         size);
   }
+  const std::string before =
+      found.rounds.size() == 1
+          ? ""
+          : fmt::format(" ({:.0f} mm at first)",
+                        kMillimetres * found.rounds.front().clusters.largest_offset.value);
   return fmt::format(
-      "The square ends {:.0f} mm off; use a wheelbase of {} m, the left wheel's travel times "
+      "The square ends {:.0f} mm off{}; use a wheelbase of {} m, the left wheel's travel times "
       "{:.5f} "
       "and the right one's times {:.5f}.",
-      size, quantity_text(found.wheelbase.value, found.wheelbase.standard_error).value,
+      size, before, quantity_text(found.wheelbase.value, found.wheelbase.standard_error).value,
       found.left_factor.value, found.right_factor.value);
 }
 
