@@ -87,7 +87,7 @@ std::vector<std::pair<double, std::string>> ChartScale::ticks() const {
     }
   } else {
     const double pixels = std::abs(last - first);
-    values = round_ticks(range, std::max(2, static_cast<int>(pixels / 60.0)));
+    values = round_ticks(range, std::max(2, static_cast<int>(pixels / 45.0)));
   }
   const double step = (range.high - range.low) * 1e-9;
   for (const double value : values) {

@@ -54,14 +54,15 @@ std::string variable_title(const std::string& variable) {
   return unit.empty() ? name : name + " [" + unit + "]";
 }
 
-ChartLayer curve_layer(const NamedCurve& curve, double across, double up, const char* colour) {
+ChartLayer curve_layer(const NamedCurve& curve, const std::string& axis, double across, double up,
+                       const std::string& colour) {
   std::vector<double> x;
   std::vector<double> y;
   for (const Vector2& point : curve.points) {
     x.push_back(across * point.x());
     y.push_back(up * point.y());
   }
-  ChartLayer layer{LayerKind::line, curve.name, {{"", x}, {"", y}}, colour};
+  ChartLayer layer{LayerKind::line, curve.name, {{axis, x}, {"error", y}}, colour};
   layer.size = 2.5;
   return layer;
 }
@@ -132,11 +133,12 @@ Chart response_chart(const std::string& id, const std::string& title, const std:
     high.numbers.push_back(up.factor * (bin.estimate + kNormal95 * bin.sd));
   }
   if (!response.curve.empty()) {
-    chart.layers.push_back(curve_layer({curve_name, response.curve}, across, up.factor, "2"));
+    chart.layers.push_back(
+        curve_layer({curve_name, response.curve}, chart.x.title, across, up.factor, "2"));
   }
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     const std::string colour = std::to_string(3 + k % 6);
-    chart.layers.push_back(curve_layer(rivals[k], across, up.factor, colour.c_str()));
+    chart.layers.push_back(curve_layer(rivals[k], chart.x.title, across, up.factor, colour));
     chart.layers.back().dashed = true;
   }
   if (!at.numbers.empty()) {
@@ -223,7 +225,7 @@ Chart held_out_chart(const std::string& id, const std::vector<NamedHeldOut>& mod
     }
     const std::string colour = k + 1 < models.size() ? "2" : "1";
     const std::string name = models.size() > 1 ? models[k].first : "";
-    chart.layers.push_back(share_layer(name, std::move(distances), "mm", colour));
+    add_shares(chart, name, std::move(distances), "mm", colour);
     ChartLayer rms{LayerKind::upright,
                    name.empty() ? "root mean square" : "",
                    {{"root mean square [mm]", {1000.0 * held.arrival_rms}}},

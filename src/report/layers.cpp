@@ -31,24 +31,30 @@ void make_unique(std::vector<std::string>& texts) {
   }
 }
 
-ChartLayer share_layer(const std::string& legend, std::vector<double> distances,
-                       const std::string& unit, const std::string& colour) {
-  constexpr std::size_t kMostPoints = 500;
-  ChartLayer layer{
-      LayerKind::line, legend, {{"distance [" + unit + "]"}, {"within it [%]"}}, colour};
-  if (distances.empty()) return layer;
+void add_shares(Chart& chart, const std::string& legend, std::vector<double> distances,
+                const std::string& unit, const std::string& colour) {
+  constexpr std::size_t kMostPoints = 300;
+  if (distances.empty()) return;
   std::sort(distances.begin(), distances.end());
-  const auto add = [&layer](double distance, double share) {
-    layer.columns[0].numbers.push_back(distance);
-    layer.columns[1].numbers.push_back(share);
+  ChartLayer dots{
+      LayerKind::dots, legend, {{"distance [" + unit + "]"}, {"within it [%]"}}, colour};
+  const auto add = [&dots, &distances](std::size_t k) {
+    dots.columns[0].numbers.push_back(distances[k]);
+    dots.columns[1].numbers.push_back(100.0 * static_cast<double>(k + 1) /
+                                      static_cast<double>(distances.size()));
   };
-  add(0.0, 0.0);
   const std::size_t step = 1 + distances.size() / kMostPoints;
-  for (std::size_t k = 0; k < distances.size(); k += step) {
-    add(distances[k], 100.0 * static_cast<double>(k + 1) / static_cast<double>(distances.size()));
+  for (std::size_t k = 0; k + 1 < distances.size(); k += step) add(k);
+  add(distances.size() - 1);
+  dots.size = dots.columns[0].size() > 60 ? 1.5 : 3.0;
+  ChartLayer line = dots;
+  line.kind = LayerKind::line;
+  line.size = 0.0;
+  for (ChartColumn& column : line.columns) {
+    column.numbers.insert(column.numbers.begin(), 0.0);
   }
-  add(distances.back(), 100.0);
-  return layer;
+  chart.layers.push_back(std::move(line));
+  chart.layers.push_back(std::move(dots));
 }
 
 ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedEllipse>& ellipses,

@@ -26,9 +26,9 @@ inline constexpr double kNormal95 = 1.96;  ///< half a 95 % interval, in standar
 /// Gives equal texts numbers: categories must differ.
 void make_unique(std::vector<std::string>& texts);
 
-/// Share of distances (any unit) within a distance, in %.
-[[nodiscard]] ChartLayer share_layer(const std::string& legend, std::vector<double> distances,
-                                     const std::string& unit, const std::string& colour);
+/// Share of distances (any unit) within a distance, in %: a line, with dots where they are few.
+void add_shares(Chart& chart, const std::string& legend, std::vector<double> distances,
+                const std::string& unit, const std::string& colour);
 
 /// 95 % ellipses of landmarks. Those without a covariance (0) are left out.
 struct PlacedEllipse {

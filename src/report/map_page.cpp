@@ -199,8 +199,8 @@ Chart survey_chart(const SurveyErrors& errors) {
   chart.x = {.title = "distance [m]", .zero = true};
   chart.y = {.title = "landmarks within it [%]", .range = Range{0.0, 100.0}};
   chart.height = 420.0;
-  chart.layers.push_back(share_layer("dead reckoning", errors.before, "m", "2"));
-  chart.layers.push_back(share_layer("the map", errors.map, "m", "1"));
+  add_shares(chart, "dead reckoning", errors.before, "m", "2");
+  add_shares(chart, "the map", errors.map, "m", "1");
   return chart;
 }
 

@@ -26,7 +26,7 @@ std::string constant_text(const WheelConstant& wheel) {
 
 ChartLayer outline_layer(const std::string& name, const Vector2& centre, const Matrix2& covariance,
                          const std::string& colour) {
-  ChartLayer layer{LayerKind::line, name, {{""}, {""}}, colour};
+  ChartLayer layer{LayerKind::line, name, {{"across"}, {"up"}}, colour};
   for (const Vector2& p :
        ellipse_outline(kThousand * centre, covariance, kThousand * ellipse95_scale(2))) {
     layer.columns[0].numbers.push_back(p.x());

@@ -48,7 +48,8 @@ void add_cluster(Chart& chart, const std::vector<Eigen::Vector2d>& runs, const S
 }
 
 ChartLayer circle_layer(double radius) {
-  ChartLayer layer{LayerKind::line, "distance of the farther centre", {{""}, {""}}, "faint"};
+  ChartLayer layer{
+      LayerKind::line, "distance of the farther centre", {{"x [mm]"}, {"y [mm]"}}, "faint"};
   layer.dashed = true;
   layer.size = 1.5;
   for (const Vector2& p : ellipse_outline(Vector2::Zero(), Matrix2::Identity(), radius)) {

@@ -57,10 +57,8 @@ Chart arrival_chart(const TruthCalibration& found) {
   chart.x = {.title = "distance [mm]", .zero = true};
   chart.y = {.title = "legs within it [%]", .range = Range{0.0, 100.0}};
   chart.height = 300.0;
-  chart.layers.push_back(
-      share_layer("nominal", in_millimetres(found.nominal.distances), "mm", "2"));
-  chart.layers.push_back(
-      share_layer("calibrated", in_millimetres(found.calibrated.distances), "mm", "1"));
+  add_shares(chart, "nominal", in_millimetres(found.nominal.distances), "mm", "2");
+  add_shares(chart, "calibrated", in_millimetres(found.calibrated.distances), "mm", "1");
   return chart;
 }
 

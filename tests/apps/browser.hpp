@@ -51,11 +51,13 @@ inline std::string text_in(const std::filesystem::path& file) {
 /// The page's DOM after its scripts have run. With `patient`, timers run to their end as well.
 inline std::string dom_of(const std::filesystem::path& page, bool patient) {
   const std::string profile = (page.parent_path() / "profile").string();
-  return output_of(browser() +
-                   " --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
-                   "--no-first-run --window-size=1200,900 --user-data-dir=" +
-                   profile + (patient ? " --virtual-time-budget=30000" : "") +
-                   " --dump-dom file://" + page.string() + " 2>/dev/null");
+  return output_of(
+      browser() +
+      " --headless --no-sandbox --disable-gpu --disable-dev-shm-usage "
+      "--no-first-run --disable-extensions --disable-background-networking "
+      "--disable-component-update --disable-sync --window-size=1200,900 --user-data-dir=" +
+      profile + (patient ? " --virtual-time-budget=30000" : "") + " --dump-dom file://" +
+      page.string() + " 2>/dev/null");
 }
 
 /// Inserts a script that notes errors before everything, and `last` after everything.

@@ -101,8 +101,10 @@ function marksOf(layer, index, chart) {
   const said = {tooltip: {signal: 'datum'}, cursor: {value: 'default'}};
   const mark = (type, update, more = {}) =>
       ({type, name: 'layer' + index, from, aria: false, encode: {update}, clip: true, ...more});
-  const lively = (type, update, hover) =>
-      mark(type, {...update, ...said}, {encode: {update: {...update, ...said}, hover}});
+  // What has nothing to say does not answer.
+  const lively = (type, update, hover) => layer.columns.some(column => column.name)
+      ? mark(type, {}, {encode: {update: {...update, ...said}, hover}})
+      : mark(type, update, {interactive: false});
   const defined = (...columns) =>
       ({signal: columns.map(c => `isValid(datum.c${c})`).join(' && ')});
   switch (layer.kind) {
