@@ -13,7 +13,7 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kMostBars = 4000;
+constexpr std::size_t kMostBars = 2000;
 constexpr std::size_t kMostNames = 60;
 constexpr std::size_t kMostRows = 60;
 constexpr double kLoud = 4.0;  // standard deviations at which a bar has the strongest colour

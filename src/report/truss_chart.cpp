@@ -7,12 +7,15 @@
 #include <map>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "layers.hpp"
 
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kMostBars = 1500;  // drawn one by one
+constexpr std::size_t kMostBars = 400;       // drawn one by one
+constexpr std::size_t kMostLandmarks = 400;  // drawn
 constexpr std::size_t kMostNames = 60;
 /// chi^2/dof at which the strongest bar has the strongest colour: noise alone looks calm.
 constexpr double kLoud = 9.0;
@@ -86,6 +89,18 @@ void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> route
   if (!bars.shade.empty()) chart.layers.push_back(std::move(bars));
 }
 
+/// All landmarks, or those that are least sure.
+std::vector<FittedLandmark> drawn_landmarks(const FittedMap& map) {
+  std::vector<FittedLandmark> drawn = map.landmarks;
+  if (drawn.size() <= kMostLandmarks) return drawn;
+  std::stable_sort(drawn.begin(), drawn.end(),
+                   [](const FittedLandmark& a, const FittedLandmark& b) {
+                     return a.covariance.trace() > b.covariance.trace();
+                   });
+  drawn.resize(kMostLandmarks);
+  return drawn;
+}
+
 void add_landmarks(Chart& chart, const FittedMap& map) {
   ChartLayer dots{LayerKind::dots, "landmark", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "ink"};
   ChartLayer surveyed{
@@ -93,7 +108,7 @@ void add_landmarks(Chart& chart, const FittedMap& map) {
   ChartLayer names{LayerKind::labels, "", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "muted"};
   std::vector<PlacedEllipse> ellipses;
   const bool few = map.landmarks.size() <= kMostNames;
-  for (const FittedLandmark& one : map.landmarks) {
+  for (const FittedLandmark& one : drawn_landmarks(map)) {
     const auto add = [&one](ChartLayer& layer, const Vector2& at) {
       layer.columns[0].numbers.push_back(at.x());
       layer.columns[1].numbers.push_back(at.y());
@@ -126,6 +141,10 @@ Chart truss_chart(const std::string& id, const std::string& title, const FittedM
                         "landmarks together, a blue one pushes them apart: there the measurements "
                         "of the route disagree with all others. Small ellipses hold the landmark "
                         "with 95 % confidence, if the model is right.";
+  if (map.landmarks.size() > kMostLandmarks) {
+    chart.caption += fmt::format(" Shown are the {} landmarks least sure, of {}.", kMostLandmarks,
+                                 map.landmarks.size());
+  }
   chart.x.title = "x [m]";
   chart.y.title = "y [m]";
   chart.equal_aspect = true;
