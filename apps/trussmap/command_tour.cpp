@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -140,8 +141,15 @@ void print_result(const TourResult& result, const CommandOptions& options) {
       result.first_sight_after.orientation_error.mean);
 }
 
+TourResult toured(const CommandOptions& options) {
+  TourOptions experiment = experiment_options(options);
+  Progress progress(options.seeds, "seeds");
+  experiment.seeds_done = [&progress](int done) { progress.report(done); };
+  return run_tours(experiment);
+}
+
 void run_tour(const CommandOptions& options) {
-  const TourResult result = run_tours(experiment_options(options));
+  const TourResult result = toured(options);
   Files files;
   if (!options.json_file.empty()) {
     files.emplace_back(options.json_file, result_json(result).dump(2) + "\n");

@@ -120,9 +120,10 @@ std::string Pen::mark(const ChartLayer& layer, std::size_t row) const {
       return dot(at_x(layer, 0, row), at_y(layer, 1, row), layer.size > 0.0 ? layer.size : 4.0,
                  ink);
     case LayerKind::segments: {
+      const double wide = layer.size > 0.0 ? layer.size : layer.shade.empty() ? 2.5 : 1.0;
       const double width = layer.shade.empty()
-                               ? (layer.size > 0.0 ? layer.size : 2.5)
-                               : 2.0 + 4.0 * std::min(1.0, std::abs(layer.shade[row]));
+                               ? wide
+                               : wide * (2.0 + 4.0 * std::min(1.0, std::abs(layer.shade[row])));
       return rule(at_x(layer, 0, row), at_y(layer, 1, row), at_x(layer, 2, row),
                   at_y(layer, 3, row), ink, width, layer.dashed);
     }

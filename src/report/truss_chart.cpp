@@ -79,6 +79,7 @@ void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> route
     bars.columns[10].numbers.push_back(route.chi2);
     bars.shade.push_back(route.force / loudest);
   }
+  if (bars.shade.size() > 150) bars.size = 0.5;
   if (!net.empty()) chart.layers.push_back(net_layer("further routes", net));
   // The strongest last, above the others.
   std::reverse(bars.shade.begin(), bars.shade.end());

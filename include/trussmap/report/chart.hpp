@@ -59,7 +59,7 @@ struct ChartLayer {
   std::string name;  ///< in the legend; empty: not there
   std::vector<ChartColumn> columns;
   std::string colour = "1";
-  double size = 0.0;  ///< pixels: radius of a dot, width of a line; 0: the kind's own
+  double size = 0.0;  ///< pixels: radius of a dot, width of a line (shaded: a factor); 0: own
   bool dashed = false;
   double offset = 0.0;                ///< pixels along an axis of categories, to lie side by side
   std::vector<double> shade = {};     ///< one per mark, -1 to 1; empty: all in `colour`

@@ -123,7 +123,8 @@ function marksOf(layer, index, chart) {
       return [mark('area', {x: x(0), y: y(1), y2: y(2), fill: colour, fillOpacity: {value: 0.2},
                             defined: defined(0, 1, 2)}, {interactive: false})];
     case 'segments': {
-      const width = layer.shade ? {signal: '2 + 4 * datum.strength'} : {value: layer.size || 2.5};
+      const width = layer.shade ? {signal: `${layer.size || 1} * (2 + 4 * datum.strength)`}
+                                : {value: layer.size || 2.5};
       return [lively('rule', {x: x(0), y: y(1), x2: x(2), y2: y(3), ...line(2.5),
                               strokeWidth: width, strokeCap: {value: 'round'}},
                      {strokeWidth: {value: 8}})];
