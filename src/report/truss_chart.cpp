@@ -14,8 +14,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kMostBars = 400;       // drawn one by one
-constexpr std::size_t kMostLandmarks = 400;  // drawn
+constexpr std::size_t kMostBars = 250;       // drawn one by one
+constexpr std::size_t kMostLandmarks = 200;  // drawn
 constexpr std::size_t kMostNames = 60;
 /// chi^2/dof at which the strongest bar has the strongest colour: noise alone looks calm.
 constexpr double kLoud = 9.0;

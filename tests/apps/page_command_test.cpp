@@ -157,12 +157,12 @@ TEST(PageInBrowser, TenThousandLegsAreNotSlow) {
       "const ms = performance.now();"
       "document.body.append(Object.assign(document.createElement('pre'),"
       "{id: 'checked', textContent: JSON.stringify({ms, errors: pageErrors})}));}";
-  double small_ms = 1e6;
+  // Both in turn, so that what else the machine does slows both; further tries are for bad luck.
+  double small_ms = 1.0;
   double large_ms = 1e9;
-  // Once is enough where nothing else keeps the machine busy.
-  for (int round = 0; round < 4 && !(large_ms < 2.9 * small_ms); ++round) {
-    small_ms = std::min(small_ms, testing::checked(little, timed, false)["ms"].get<double>());
-    large_ms = std::min(large_ms, testing::checked(large, timed, false)["ms"].get<double>());
+  for (int round = 0; round < 4 && !(large_ms < 3.0 * small_ms); ++round) {
+    small_ms = testing::checked(little, timed, false)["ms"].get<double>();
+    large_ms = testing::checked(large, timed, false)["ms"].get<double>();
   }
   RecordProperty("small_ms", std::to_string(small_ms));
   RecordProperty("large_ms", std::to_string(large_ms));

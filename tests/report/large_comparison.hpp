@@ -35,8 +35,8 @@ inline Page large_comparison_page(int legs) {
     }
   }
   map.paths.push_back({});
-  for (int k = 0; k < 4000; ++k) {
-    map.paths.front().emplace_back(0.01 * k, 50.0 + 40.0 * std::sin(0.01 * k));
+  for (int k = 0; k < 2000; ++k) {
+    map.paths.front().emplace_back(0.02 * k, 50.0 + 40.0 * std::sin(0.02 * k));
   }
   for (int k = 0; k < legs; ++k) {
     result.worst.push_back({name(k % 97), name(k % 89), 10.0 * k, 100.0 * (legs - k) / legs, 4,

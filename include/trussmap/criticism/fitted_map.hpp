@@ -25,6 +25,6 @@ struct FittedMap {
 };
 
 /// At most about `points` points of paths in all.
-[[nodiscard]] FittedMap fitted_map(const ModelFit& fit, std::size_t points = 4000);
+[[nodiscard]] FittedMap fitted_map(const ModelFit& fit, std::size_t points = 2000);
 
 }  // namespace trussmap
