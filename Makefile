@@ -4,7 +4,8 @@
 # A short way to the usual things; CMake does the work (see CMakePresets.json).
 #   make               configure and build into build/
 #   make demo          install what is missing (Debian), build the command, run the worked examples
-#   make test          install what is missing (Debian), build everything, run all tests
+#   make test          install what is missing (Debian), build everything, run all tests; pages are
+#                      tested in a browser (Chromium), which is installed too
 #   make install-deps  install the Debian packages that the build needs
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -14,7 +15,7 @@ ifeq ($(wildcard build/CMakeCache.txt),)
 GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
-.PHONY: all demo test install-deps configure build command clean
+.PHONY: all demo test install-deps test-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -32,11 +33,14 @@ command: configure
 demo: install-deps command
 	@maps/demo.sh
 
-test: install-deps build
+test: test-deps build
 	@.ci/test build --parallel $(JOBS)
 
 install-deps:
 	@.ci/install-deps
+
+test-deps:
+	@.ci/install-deps chromium
 
 clean:
 	rm -rf build build-*

@@ -9,6 +9,7 @@
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/recording_csv.hpp"
 #include "trussmap/odometry/effect_correction.hpp"
+#include "trussmap/report/map_page.hpp"
 #include "trussmap/report/map_picture.hpp"
 
 #include <algorithm>
@@ -28,6 +29,7 @@
 #include "commands.hpp"
 #include "map_files.hpp"
 #include "option_checks.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -45,6 +47,7 @@ struct BuildOptions {
   std::string out;
   std::string json_file;
   std::string svg;
+  PageOptions page;
 };
 
 constexpr std::size_t kRejectedShown = 10;
@@ -293,7 +296,7 @@ void run_build(const BuildOptions& options) {
   if (adjusted)
     warnings.insert(warnings.end(), adjusted->warnings.begin(), adjusted->warnings.end());
 
-  std::vector<std::pair<fs::path, std::string>> files;
+  Files files;
   if (!options.out.empty()) {
     files.emplace_back(options.out, format_map(built.map, options.out,
                                                "trussmap build, method " + options.method));
@@ -307,6 +310,19 @@ void run_build(const BuildOptions& options) {
   }
   if (!options.svg.empty()) {
     files.emplace_back(options.svg, draw_map(picture_of(built, survey, judged, options.method)));
+  }
+  if (options.page.wanted()) {
+    BuiltMap shown;
+    shown.picture = picture_of(built, survey, judged, options.method);
+    shown.method = options.method;
+    shown.survey = judged.map;
+    shown.rms_dead_reckoning = judged.rms_dead_reckoning;
+    shown.legs = built.legs;
+    shown.first_sight = built.first_sight;
+    shown.refinements = built.refinements;
+    shown.rejected = built.rejected.size();
+    shown.warnings = warnings;
+    add_page(files, map_page(shown, subject_of(options.recordings, options.model)), options.page);
   }
   write_files(files);
   print_result(built, adjusted, options, judged_too, judged, warnings);
@@ -329,6 +345,8 @@ void setup_build(CLI::App& app) {
   command->add_option("--out", options->out, "The map (.graphml, .g2o, .geojson or .dot)");
   command->add_option("--json", options->json_file, "The figures, complete (JSON)");
   command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command
       ->add_option(
           "--eta", options->eta,

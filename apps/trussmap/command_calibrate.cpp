@@ -8,9 +8,11 @@
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/recording_csv.hpp"
+#include "trussmap/report/calibration_pages.hpp"
 #include "trussmap/report/table.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -22,6 +24,7 @@
 
 #include "commands.hpp"
 #include "option_checks.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -37,6 +40,7 @@ struct CalibrateOptions {
   double leg = 1.0;  // m
   std::vector<std::string> test;
   std::vector<std::string> without;
+  PageOptions page;
 };
 
 struct HeldOut {
@@ -188,6 +192,14 @@ std::string verdict(const HeldOut& held) {
   return (gain > 0.0 ? "calibrated: " : "calibration does not help: ") + figures + "\n";
 }
 
+/// The same as a sentence.
+std::string page_verdict(const HeldOut& held) {
+  std::string sentence = verdict(held);
+  sentence.back() = '.';
+  sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
+  return sentence;
+}
+
 std::string text(const Tested& test) {
   const auto line = [](const char* what, double before, double after, const char* unit) {
     return fmt::format("  {}  {:8.1f} -> {:.1f} {}\n", what, 1000.0 * before, 1000.0 * after, unit);
@@ -258,10 +270,16 @@ void run_calibrate(const CalibrateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw InputError(options.model, 0, error.what());
   }
-  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(found.model));
   if (!options.json.empty()) {
     files.emplace_back(options.json, json(found, held, test).dump(2) + "\n");
+  }
+  if (options.page.wanted()) {
+    add_page(files,
+             truth_page({found, held.nominal, held.calibrated, page_verdict(held)},
+                        subject_of(options.recordings, options.model)),
+             options.page);
   }
   write_files(files);
   fmt::print("{}", text(found, held, test));
@@ -297,6 +315,8 @@ void setup_calibrate(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember({"survey", "truth"}))
       ->type_name("WHAT,...");
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->footer(
       "E_d, E_b and E_s become the model's effects wheel diameter ratio, wheelbase and wheel\n"
       "scale. Standard errors hold for the noise that the model states for truth, survey and\n"

@@ -4,6 +4,7 @@
 // trussmap compare: how far a model is from measurements, and where.
 #include "trussmap/criticism/comparison.hpp"
 #include "trussmap/io/atomic_file.hpp"
+#include "trussmap/report/comparison_page.hpp"
 #include "trussmap/report/table.hpp"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 
 #include "commands.hpp"
 #include "model_recordings.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -23,6 +25,7 @@ using nlohmann::ordered_json;
 struct CompareOptions {
   ModelRecordingsOptions input;
   std::size_t worst = 5;
+  PageOptions page;
 };
 
 ordered_json json(const Comparison& result) {
@@ -208,8 +211,20 @@ void run_compare(const CompareOptions& options) {
   how.problem = problem_options(options.input);
   how.legs = options.input.legs;
   how.gate = gate_of(options.input);
-  const Comparison result = compare(input.recordings, input.model, how);
-  if (!options.input.json.empty()) write_file(options.input.json, json(result).dump(2) + "\n");
+  const ModelFit fit = fit_to_compare(input.recordings, input.model, how);
+  const ScoreTest tests(fit);
+  const Comparison result = compare(input.recordings, input.model, how, fit, tests);
+  Files files;
+  if (!options.input.json.empty()) {
+    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+  }
+  if (options.page.wanted()) {
+    add_page(files,
+             comparison_page(result, fitted_map(fit), trend_pictures(result, fit, tests),
+                             subject_of(options.input.recordings, options.input.model)),
+             options.page);
+  }
+  write_files(files);
   print(result, options);
 }
 
@@ -221,6 +236,8 @@ void setup_compare(CLI::App& app) {
       "compare", "Compare a model with recordings: is it consistent, and where does it fail?");
   add_model_recordings(*command, options->input);
   command->add_option("--worst", options->worst, "Legs and routes to list")->capture_default_str();
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->footer(
       "Survey and truth are used as measurements. A bar force is what a route pulls (+) or pushes\n"
       "(-) its landmarks with. JSON holds all legs, routes and trends.");

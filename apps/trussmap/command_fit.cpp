@@ -7,6 +7,7 @@
 #include "trussmap/criticism/score_test.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/model_toml.hpp"
+#include "trussmap/report/fit_page.hpp"
 #include "trussmap/report/table.hpp"
 
 #include <memory>
@@ -15,6 +16,7 @@
 
 #include "commands.hpp"
 #include "model_recordings.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -24,6 +26,7 @@ using nlohmann::ordered_json;
 struct FitOptions {
   ModelRecordingsOptions input;
   std::string out;
+  PageOptions page;
 };
 
 /// The model as given and as fitted, side by side.
@@ -121,6 +124,36 @@ void print(const FitResult& result) {
   for (const std::string& warning : after.warnings) fmt::print("warning: {}\n", warning);
 }
 
+/// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
+FittedModel shown_model(const ModelRecordings& input, const ModelFit& fit, const ScoreTest& tests,
+                        const FitOptions& options) {
+  ComparisonOptions how;
+  how.problem = problem_options(options.input);
+  how.legs = options.input.legs;
+  how.gate = gate_of(options.input);
+  return {compare(input.recordings, fit.model, how, fit, tests), fitted_map(fit)};
+}
+
+Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {
+  const ScoreTest before(result.before);
+  const ScoreTest after(result.after);
+  std::vector<FittedEffect> effects;
+  for (const EffectEstimate& one : result.after.effects) {
+    FittedEffect effect{one, {}};
+    const std::string variable = natural_variable(one.effect);
+    if (!variable.empty()) {
+      effect.response = response_along(variable, one.effect, result.before, before);
+    }
+    effects.push_back(std::move(effect));
+  }
+  FittedModel without = shown_model(input, result.before, before, options);
+  without.comparison.held_out = result.held_out_before;
+  FittedModel with = shown_model(input, result.after, after, options);
+  with.comparison.held_out = result.held_out_after;
+  return fit_page(without, with, effects,
+                  subject_of(options.input.recordings, options.input.model));
+}
+
 void run_fit(const FitOptions& options) {
   const ModelRecordings input = read_model_recordings(options.input);
   if (input.model.effects.empty()) {
@@ -128,11 +161,12 @@ void run_fit(const FitOptions& options) {
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
   const FitResult result = fit_both(input, options);
-  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.after.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
+  if (options.page.wanted()) add_page(files, page_of(input, result, options), options.page);
   write_files(files);
   print(result);
 }
@@ -146,6 +180,8 @@ void setup_fit(CLI::App& app) {
   add_model_recordings(*command, options->input);
   command->add_option("--out", options->out, "Write the model with its coefficients (TOML)")
       ->type_name("FILE");
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->footer(
       "Effects without coefficients start at 0. A coefficient that these recordings cannot show "
       "is\n"

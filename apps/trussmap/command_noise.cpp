@@ -10,6 +10,7 @@
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/runs_csv.hpp"
 #include "trussmap/report/calibration_figures.hpp"
+#include "trussmap/report/calibration_pages.hpp"
 #include "trussmap/report/table.hpp"
 #include "trussmap/simulation/random_stream.hpp"
 
@@ -211,7 +212,7 @@ std::string text(const Result& result) {
 void run_noise(const NoiseOptions& options) {
   Model model = starting_model(options.tape);
   const Result result = analyse(options, model);
-  std::vector<std::pair<fs::path, std::string>> files;
+  Files files;
   if (!options.tape.out.empty()) {
     model.noise.left = result.estimate.left.k;
     model.noise.right = result.estimate.right.k;
@@ -220,10 +221,18 @@ void run_noise(const NoiseOptions& options) {
   if (!options.tape.json.empty()) {
     files.emplace_back(options.tape.json, json(result, options).dump(2) + "\n");
   }
-  if (!options.tape.plots.empty()) {
-    files.emplace_back(fs::path(options.tape.plots) / "noise.svg",
+  if (!options.tape.page.plots.empty()) {
+    files.emplace_back(fs::path(options.tape.page.plots) / "noise.svg",
                        draw_figure(noise_figure(result.errors, result.estimate)));
-    fs::create_directories(options.tape.plots);
+    fs::create_directories(options.tape.page.plots);
+  }
+  if (!options.tape.page.html.empty()) {
+    const NoiseCalibration shown{result.errors, result.estimate, result.fit,
+                                 path_length(result.experiment.path), result.doubts};
+    add_page(files,
+             noise_page(shown, (options.tape.simulate ? "a simulated robot" : options.file) +
+                                   ", path " + options.path),
+             {options.tape.page.html, {}});
   }
   if (!options.tape.write.empty()) {
     files.emplace_back(options.tape.write, format_end_errors(result.errors));

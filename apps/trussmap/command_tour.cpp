@@ -4,6 +4,7 @@
 // trussmap tour: the elastic paper's experiment.
 #include "trussmap/experiment/tour_experiment.hpp"
 #include "trussmap/io/atomic_file.hpp"
+#include "trussmap/report/tour_page.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -15,6 +16,8 @@
 
 #include "commands.hpp"
 #include "option_checks.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -34,6 +37,7 @@ struct CommandOptions {
   double compass_error = 0.03;  // rad
   std::string eta = "all";
   std::string json_file;
+  PageOptions page;
 };
 
 TourOptions experiment_options(const CommandOptions& options) {
@@ -137,9 +141,25 @@ void print_result(const TourResult& result, const CommandOptions& options) {
       result.first_sight_after.orientation_error.mean);
 }
 
+TourResult toured(const CommandOptions& options) {
+  TourOptions experiment = experiment_options(options);
+  Progress progress(options.seeds, "seeds");
+  experiment.seeds_done = [&progress](int done) { progress.report(done); };
+  return run_tours(experiment);
+}
+
 void run_tour(const CommandOptions& options) {
-  const TourResult result = run_tours(experiment_options(options));
-  if (!options.json_file.empty()) write_file(options.json_file, result_json(result).dump(2) + "\n");
+  const TourResult result = toured(options);
+  Files files;
+  if (!options.json_file.empty()) {
+    files.emplace_back(options.json_file, result_json(result).dump(2) + "\n");
+  }
+  if (options.page.wanted()) {
+    const std::string world = options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
+    add_page(files, tour_page(result, options.seeds, world + ", walk " + options.walk),
+             options.page);
+  }
+  write_files(files);
   print_result(result, options);
 }
 
@@ -192,6 +212,8 @@ void setup_tour(CLI::App& app) {
       ->check(eta_text())
       ->capture_default_str();
   command->add_option("--json", options->json_file, "The figures, complete (JSON)");
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->callback([options] { run_tour(*options); });
 }
 

@@ -8,6 +8,7 @@
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/io/runs_csv.hpp"
 #include "trussmap/report/calibration_figures.hpp"
+#include "trussmap/report/calibration_pages.hpp"
 #include "trussmap/report/table.hpp"
 #include "trussmap/simulation/random_stream.hpp"
 
@@ -270,6 +271,33 @@ std::string one_way_text(const Round& round) {
       one_way.error_before, one_way.error_same_way, one_way.error_other_way);
 }
 
+std::vector<std::string> doubts_of(const std::vector<Round>& rounds) {
+  std::vector<std::string> doubts;
+  for (const Round& round : rounds) {
+    for (const std::string& doubt : round.doubts) {
+      doubts.push_back(rounds.size() == 1
+                           ? doubt
+                           : fmt::format("round {}: {}", &round - rounds.data() + 1, doubt));
+    }
+  }
+  return doubts;
+}
+
+Page page_of(const std::vector<Round>& rounds, const UmbmarkOptions& options) {
+  const Total use = total(rounds.back(), chosen(rounds.back(), options));
+  SquareCalibration shown;
+  for (const Round& round : rounds) {
+    shown.rounds.push_back({round.runs, round.clusters, round.exact, round.formulas});
+  }
+  shown.side = options.side;
+  shown.wheelbase = use.wheelbase;
+  shown.left_factor = use.left_factor;
+  shown.right_factor = use.right_factor;
+  shown.doubts = doubts_of(rounds);
+  return square_page(shown,
+                     options.tape.simulate ? "a simulated robot" : subject_of(options.files, ""));
+}
+
 std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options) {
   std::string out = verdict(rounds.back(), rounds.size());
   if (rounds.size() > 1) {
@@ -289,15 +317,7 @@ std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options
   }
   out += corrections_text(last, options) + solutions_text(last) + clusters_text(last);
   if (rounds.size() == 1 && last.clusters.second_round_worthwhile) out += one_way_text(last);
-  std::vector<std::string> doubts;
-  for (const Round& round : rounds) {
-    for (const std::string& doubt : round.doubts) {
-      doubts.push_back(rounds.size() == 1
-                           ? doubt
-                           : fmt::format("round {}: {}", &round - rounds.data() + 1, doubt));
-    }
-  }
-  return out + warnings_text(doubts);
+  return out + warnings_text(doubts_of(rounds));
 }
 
 /// RUNS.csv, RUNS_2.csv, RUNS_3.csv ...
@@ -310,7 +330,7 @@ fs::path round_file(const fs::path& first, std::size_t round) {
 void run_umbmark(const UmbmarkOptions& options) {
   Model model = starting_model(options.tape);
   const std::vector<Round> rounds = all_rounds(options, model);
-  std::vector<std::pair<fs::path, std::string>> files;
+  Files files;
   if (!options.tape.out.empty()) {
     set_geometry_errors(model, total(rounds.back(), chosen(rounds.back(), options)).errors);
     files.emplace_back(options.tape.out, format_model(model));
@@ -318,13 +338,16 @@ void run_umbmark(const UmbmarkOptions& options) {
   if (!options.tape.json.empty()) {
     files.emplace_back(options.tape.json, json(rounds, options).dump(2) + "\n");
   }
-  if (!options.tape.plots.empty()) {
+  if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;
     runs.reserve(rounds.size());
     for (const Round& round : rounds) runs.push_back(round.runs);
-    files.emplace_back(fs::path(options.tape.plots) / "umbmark.svg",
+    files.emplace_back(fs::path(options.tape.page.plots) / "umbmark.svg",
                        draw_figure(square_figure(runs, options.side)));
-    fs::create_directories(options.tape.plots);
+    fs::create_directories(options.tape.page.plots);
+  }
+  if (!options.tape.page.html.empty()) {
+    add_page(files, page_of(rounds, options), {options.tape.page.html, {}});
   }
   for (std::size_t k = 0; k < rounds.size() && !options.tape.write.empty(); ++k) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));

@@ -23,8 +23,8 @@ void add_tape_options(CLI::App& command, TapeOptions& options) {
   command.add_option("--out", options.out, "Write the model with what was found (TOML)")
       ->type_name("FILE");
   command.add_option("--json", options.json, "Write every figure as JSON")->type_name("FILE");
-  command.add_option("--plots", options.plots, "Folder to write the picture to (SVG)")
-      ->type_name("DIR");
+  add_html_option(command, options.page);
+  add_plots_option(command, options.page);
 
   const std::string group = "Rehearsal with a simulated robot";
   command.add_flag("--simulate", options.simulate, "Let a simulated robot make the runs")

@@ -17,6 +17,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "page_runtime.hpp"
+
 namespace trussmap::app {
 
 struct TapeOptions {
@@ -24,7 +26,7 @@ struct TapeOptions {
   std::optional<double> wheelbase;  // m
   std::string out;
   std::string json;
-  std::string plots;
+  PageOptions page;
   bool simulate = false;
   double true_e_d = 1.0;
   double true_e_b = 1.0;

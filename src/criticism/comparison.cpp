@@ -182,16 +182,29 @@ std::vector<Outlier> find_outliers(const ModelFit& fit, double dispersion) {
   return result;
 }
 
-}  // namespace
-
-Comparison compare(const std::vector<Recording>& recordings, const Model& model,
-                   const ComparisonOptions& options) {
+ModelFitOptions how_to_fit(const ComparisonOptions& options) {
   ModelFitOptions how;
   how.fit_effects = false;
   how.problem = options.problem;
   how.gate = options.gate;
-  const ModelFit fit = fit_model(recordings, model, how);
-  const ScoreTest tests(fit);
+  return how;
+}
+
+}  // namespace
+
+Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+                   const ComparisonOptions& options) {
+  const ModelFit fit = fit_to_compare(recordings, model, options);
+  return compare(recordings, model, options, fit, ScoreTest(fit));
+}
+
+ModelFit fit_to_compare(const std::vector<Recording>& recordings, const Model& model,
+                        const ComparisonOptions& options) {
+  return fit_model(recordings, model, how_to_fit(options));
+}
+
+Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+                   const ComparisonOptions& options, const ModelFit& fit, const ScoreTest& tests) {
   Comparison result;
   result.chi2 = fit.adjustment.chi2;
   result.dof = fit.adjustment.dof;
@@ -204,7 +217,7 @@ Comparison compare(const std::vector<Recording>& recordings, const Model& model,
   result.sources = calibrate_sources(fit, tests);
   result.outliers = find_outliers(fit, tests.dispersion());
   result.advice = advice_on(recordings, model, options.problem);
-  result.held_out = predict_held_out(recordings, fit, how, options.legs);
+  result.held_out = predict_held_out(recordings, fit, how_to_fit(options), options.legs);
   return result;
 }
 

@@ -198,11 +198,16 @@ std::vector<SeedErrors> run_seeds(const TourOptions& options) {
   std::atomic<int> next{0};
   std::exception_ptr failure;
   std::mutex failing;
+  std::mutex reporting;
+  int done = 0;
   const auto work = [&] {
     for (int k = next++; k < options.seeds; k = next++) {
       try {
         results[idx(k)] =
             SeedRun(options, options.first_seed + static_cast<std::uint64_t>(k)).run();
+        const std::lock_guard<std::mutex> lock(reporting);
+        ++done;
+        if (options.seeds_done) options.seeds_done(done);
       } catch (...) {
         const std::lock_guard<std::mutex> lock(failing);
         failure = std::current_exception();

@@ -104,6 +104,15 @@ struct ComparisonOptions {
 [[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const Model& model,
                                  const ComparisonOptions& options = {});
 
+/// The fit that compare() judges: coefficients as the model has them.
+[[nodiscard]] ModelFit fit_to_compare(const std::vector<Recording>& recordings, const Model& model,
+                                      const ComparisonOptions& options = {});
+
+/// The same where the fit is there already; `tests` are of this fit.
+[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+                                 const ComparisonOptions& options, const ModelFit& fit,
+                                 const ScoreTest& tests);
+
 /// Variables that trends are sought against: the built-in ones that vary, and every covariate.
 [[nodiscard]] std::vector<Trend> find_trends(const ModelFit& fit, const ScoreTest& tests);
 

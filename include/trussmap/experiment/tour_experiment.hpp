@@ -26,6 +26,7 @@
 #include "trussmap/simulation/tours.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ struct TourOptions {
   double odometry_error = 0.05;  ///< fraction of the stretch
   double compass_error = 0.03;   ///< rad
   Eta eta{.kind = Eta::Kind::all};
+  std::function<void(int)> seeds_done = {};  ///< called after each seed, by one thread at a time
 };
 
 /// Mean over the seeds, and its standard error.

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "page_runtime.hpp"
+
+#include "trussmap/report/chart_svg.hpp"
+
+// Both files as they are, each between two names.
+#define TRUSSMAP_EMBED(name, file)                                               \
+  __asm__(".pushsection .rodata\n.global " #name "\n" #name ":\n.incbin \"" file \
+          "\"\n.global " #name "_end\n" #name "_end:\n.byte 0\n.popsection\n")
+TRUSSMAP_EMBED(trussmap_page_script, TRUSSMAP_PAGE_SCRIPT);
+TRUSSMAP_EMBED(trussmap_page_style, TRUSSMAP_PAGE_STYLE);
+
+extern "C" {
+extern const char trussmap_page_script[];
+extern const char trussmap_page_script_end[];
+extern const char trussmap_page_style[];
+extern const char trussmap_page_style_end[];
+}
+
+namespace trussmap::app {
+
+PageRuntime page_runtime() {
+  return {{trussmap_page_style, trussmap_page_style_end},
+          {trussmap_page_script, trussmap_page_script_end}};
+}
+
+void add_html_option(CLI::App& command, PageOptions& options) {
+  command.add_option("--html", options.html, "Write a page with charts, one file (HTML)")
+      ->type_name("FILE");
+}
+
+void add_plots_option(CLI::App& command, PageOptions& options) {
+  command.add_option("--plots", options.plots, "Folder to write the charts to, one by one (SVG)")
+      ->type_name("DIR");
+}
+
+void add_page(Files& files, const Page& page, const PageOptions& options) {
+  if (!options.html.empty()) files.emplace_back(options.html, render_page(page, page_runtime()));
+  if (options.plots.empty()) return;
+  for (const Chart* chart : charts_of(page)) {
+    files.emplace_back(std::filesystem::path(options.plots) / (chart->id + ".svg"),
+                       draw_chart(*chart));
+  }
+  std::filesystem::create_directories(options.plots);
+}
+
+std::string subject_of(const std::vector<std::string>& recordings, const std::string& model) {
+  constexpr std::size_t kNamed = 3;
+  std::string text;
+  for (std::size_t k = 0; k < recordings.size() && k < kNamed; ++k) {
+    text += (k > 0 ? ", " : "") + recordings[k];
+  }
+  if (recordings.size() > kNamed) {
+    text += " and " + std::to_string(recordings.size() - kNamed) + " more";
+  }
+  return text + (model.empty() ? "" : " with " + model);
+}
+
+}  // namespace trussmap::app

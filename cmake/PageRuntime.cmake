@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+#
+# The script that draws the charts of a page: src/report/page together with Vega, bundled and
+# minified by esbuild. Both come from the system (Debian: esbuild, libjs-vega).
+#
+# trussmap_page_script(VARIABLE) sets VARIABLE to the script's path, and makes a rule for it.
+find_program(ESBUILD esbuild)
+find_path(VEGA_DIR vega-view.min.js
+          PATHS /usr/share/javascript/vega /usr/share/nodejs/vega /usr/local/share/javascript/vega)
+if(NOT ESBUILD OR NOT VEGA_DIR)
+  message(FATAL_ERROR
+    "The command's pages need esbuild and Vega's modules: apt-get install esbuild libjs-vega "
+    "(or set ESBUILD and VEGA_DIR). The library alone needs neither: -D TRUSSMAP_BUILD_APPS=OFF.")
+endif()
+
+function(trussmap_page_script variable)
+  set(source ${PROJECT_SOURCE_DIR}/src/report/page)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/page.min.js)
+  foreach(module canvas dataflow encode event-selector expression format functions loader parser
+                 runtime scale scenegraph statistics time transforms util view view-transforms)
+    list(APPEND aliases --alias:vega-${module}=${VEGA_DIR}/vega-${module}.min.js)
+  endforeach()
+  # One module is required by another name than its file's.
+  list(APPEND aliases --alias:vega-selections=${VEGA_DIR}/vega-selection.min.js)
+  add_custom_command(
+    OUTPUT ${script}
+    COMMAND ${ESBUILD} ${source}/page.js --bundle --minify --format=iife --target=es2021
+            --charset=ascii --legal-comments=inline --log-level=warning ${aliases}
+            --outfile=${script}
+    DEPENDS ${source}/page.js ${source}/spec.js ${source}/vega.js ${source}/notice.js
+    COMMENT "Bundling the script of the pages"
+    VERBATIM)
+  set(${variable} ${script} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/comparison_page.hpp"
+
+#include "trussmap/report/fit_charts.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kWorst = 12;
+constexpr std::size_t kRoutes = 30;
+constexpr std::size_t kTrends = 12;
+constexpr double kClear = 0.05;
+
+double misfit_of(const Comparison& one) {
+  return one.chi2 / std::max(1, one.dof);
+}
+
+std::string against_words(const Trend& trend) {
+  return trend.against == "all" ? "everything alike" : trend.against;
+}
+
+PageTable trend_table(const Comparison& result) {
+  PageTable table;
+  table.caption = fmt::format("Trends, strongest first (of {} looked for)", result.trends.size());
+  table.headings = {"error of", "goes with", "explains chi\u00b2", "size (rms)", "p, adjusted"};
+  table.texts = 2;
+  for (const Trend& trend : result.trends) {
+    if (table.rows.size() == kTrends) break;
+    table.rows.push_back({trend.kind, against_words(trend), fmt::format("{:.1f}", trend.score),
+                          shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
+    table.tones.push_back(trend.p_adjusted < kClear ? Tone::bad : Tone::neutral);
+  }
+  return table;
+}
+
+PageTable route_table(const Comparison& result) {
+  PageTable table;
+  table.caption = fmt::format("Routes by strain (the first {} of {})",
+                              std::min(kRoutes, result.routes.size()), result.routes.size());
+  table.headings = {"from",        "to",           "driven", "chi\u00b2", "bar force [1/m]",
+                    "stretch [%]", "turned [mrad]"};
+  table.texts = 2;
+  for (std::size_t k = 0; k < std::min(kRoutes, result.routes.size()); ++k) {
+    const RouteMisfit& route = result.routes[k];
+    table.rows.push_back({route.from, route.to, std::to_string(route.traversals),
+                          fmt::format("{:.1f}", route.chi2), fmt::format("{:+.0f}", route.force),
+                          fmt::format("{:+.2f}", 100.0 * route.stretch_error),
+                          fmt::format("{:+.1f}", 1000.0 * route.orientation_error)});
+  }
+  return table;
+}
+
+PageTable outlier_table(const Comparison& result) {
+  PageTable table;
+  table.caption = "Measurements that all others contradict";
+  table.headings = {"what", "chi\u00b2", "values", "p, adjusted"};
+  for (const Outlier& one : result.outliers) {
+    if (table.rows.size() == kRoutes) break;
+    table.rows.push_back({one.what, fmt::format("{:.1f}", one.statistic), std::to_string(one.dof),
+                          probability_text(one.p_adjusted)});
+  }
+  return table;
+}
+
+PageSection trend_section(const Comparison& result, const std::vector<TrendPicture>& trends) {
+  PageSection section{"What the errors go with", {}};
+  section.blocks.emplace_back(
+      "For every variable, the error that goes with it most. Points are what the recordings show, "
+      "with 95 % intervals; the line is the trend that a score test finds. Points on zero: nothing "
+      "there.");
+  ChartRow charts;
+  for (std::size_t k = 0; k < trends.size(); ++k) {
+    const Trend& trend = trends[k].trend;
+    charts.push_back(response_chart(
+        fmt::format("trend-{}", k + 1),
+        trend.kind + " against " + variable_in_words(trends[k].response.variable),
+        trend.p_adjusted < kClear
+            ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
+                          100.0 * trend.score / std::max(result.chi2, 1e-300),
+                          probability_text(trend.p_adjusted))
+            : fmt::format("No trend to speak of: p {}.", probability_text(trend.p_adjusted)),
+        trends[k].response, "trend"));
+  }
+  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
+  section.blocks.emplace_back(trend_table(result));
+  return section;
+}
+
+}  // namespace
+
+std::vector<TrendPicture> trend_pictures(const Comparison& comparison, const ModelFit& fit,
+                                         const ScoreTest& tests) {
+  std::vector<TrendPicture> pictures;
+  std::set<std::string> seen;
+  for (const Trend& trend : comparison.trends) {  // strongest first
+    const std::string variable = natural_variable(trend.effect);
+    if (variable.empty() || seen.contains(variable)) continue;
+    Response response = response_along(variable, trend.effect, fit, tests);
+    if (response.bins.empty()) continue;
+    seen.insert(variable);
+    pictures.push_back({trend, std::move(response)});
+  }
+  return pictures;
+}
+
+std::string comparison_verdict(const Comparison& result) {
+  const std::string held = result.held_out.legs.empty()
+                               ? ""
+                               : fmt::format("{:.0f} mm", 1000.0 * result.held_out.arrival_rms);
+  if (result.consistent) {
+    return "The model explains these measurements" +
+           (held.empty() ? std::string(" to within its noise.")
+                         : ": legs that it has not seen end " + held +
+                               " off, as its noise lets one expect.");
+  }
+  std::string text = fmt::format(
+      "The model does not explain these measurements: errors are {:.1f} times what its "
+      "noise allows",
+      std::sqrt(misfit_of(result)));
+  if (!held.empty()) text += ", and legs that it has not seen end " + held + " off";
+  text += ".";
+  if (!result.trends.empty() && result.trends.front().p_adjusted < kClear) {
+    const Trend& first = result.trends.front();
+    text += fmt::format(
+        " Most telling: the {} error{} ({}).", first.kind,
+        first.against == "all" ? ", everywhere alike" : " goes with " + against_words(first),
+        shown(first.size, first.unit));
+  }
+  return text;
+}
+
+Page comparison_page(const Comparison& result, const FittedMap& map,
+                     const std::vector<TrendPicture>& trends, const std::string& subject) {
+  Page page;
+  page.command = "compare";
+  page.subject = subject;
+  page.tone = result.consistent ? Tone::good : Tone::bad;
+  page.verdict = comparison_verdict(result);
+  page.facts = {{fmt::format("{:.2f}", misfit_of(result)),
+                 "chi\u00b2 per degree of freedom (1 is right)", page.tone},
+                {result.p_value < 1e-12 ? "next to 0" : probability_text(result.p_value),
+                 "chance of errors as large, if the model is right"},
+                {std::to_string(result.legs), "legs"},
+                {std::to_string(result.landmarks), "landmarks"}};
+  if (!result.held_out.legs.empty()) {
+    page.facts.insert(page.facts.begin(),
+                      {fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
+                       "held-out legs end so far off (rms)", page.tone});
+  }
+  page.notes = result.advice;
+  page.notes.insert(page.notes.end(), result.warnings.begin(), result.warnings.end());
+  if (!result.consistent) {
+    page.notes.emplace_back(
+        "What to do next: put the effect that the strongest trend speaks of into the model "
+        "(trussmap add) and estimate it (trussmap fit).");
+  }
+  page.sections.push_back({"The map as a truss",
+                           {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
+                                                 result.routes, misfit_of(result)),
+                                     worst_chart("worst-legs", result.worst, kWorst)}}});
+  page.sections.push_back(trend_section(result, trends));
+  page.sections.push_back({"Is the noise right?", {}});
+  ChartRow noise{source_chart("noise", {{"", result.sources}})};
+  if (!result.held_out.legs.empty()) {
+    noise.push_back(held_out_chart("held-out", {{"", result.held_out}}));
+  }
+  page.sections.back().blocks.emplace_back(std::move(noise));
+  page.sections.push_back(
+      {"Legs and routes",
+       {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
+                 legs_chart("orientation", result.worst, LegError::orientation)}}});
+  if (!result.routes.empty()) page.sections.back().blocks.emplace_back(route_table(result));
+  if (!result.outliers.empty()) page.sections.back().blocks.emplace_back(outlier_table(result));
+  return page;
+}
+
+}  // namespace trussmap

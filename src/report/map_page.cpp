@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/map_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "layers.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kMostBars = 2000;
+constexpr std::size_t kMostNames = 60;
+constexpr std::size_t kMostRows = 60;
+constexpr double kLoud = 4.0;  // standard deviations at which a bar has the strongest colour
+
+bool surveyed(const BuiltMap& built) {
+  return built.survey.landmarks >= 3;
+}
+
+/// What is wrong between a route's ends in the map and its measurements: along it, and in all.
+struct Strain {
+  double along = 0.0;  // m, + is longer in the map than measured
+  double sds = 0.0;    // along, in standard deviations of the mean
+};
+
+Strain strain_of(const LandmarkGraph& map, const Route& route) {
+  const Vector2 span = map.landmark(route.target).position - map.landmark(route.source).position;
+  const Vector2 along = span.normalized();
+  Strain strain;
+  strain.along = (span - route.displacement).dot(along);
+  const double variance = along.dot(route.covariance * along) / std::max(1, route.traversals);
+  if (variance > 0.0) strain.sds = strain.along / std::sqrt(variance);
+  return strain;
+}
+
+ChartLayer before_layer(const BuiltMap& built) {
+  const MapPicture& picture = built.picture;
+  ChartLayer layer{LayerKind::net, "dead reckoning", {{"x [m]"}, {"y [m]"}}, "faint"};
+  for (int k = 0; k < picture.map.routes(); ++k) {
+    const Route& route = picture.map.route(k);
+    const auto from = picture.before.find(picture.map.landmark(route.source).name);
+    const auto to = picture.before.find(picture.map.landmark(route.target).name);
+    if (from == picture.before.end() || to == picture.before.end()) continue;
+    for (const Vector2& p : {picture.map_onto_truth.apply(from->second),
+                             picture.map_onto_truth.apply(to->second), Vector2(kAbsent, kAbsent)}) {
+      layer.columns[0].numbers.push_back(p.x());
+      layer.columns[1].numbers.push_back(p.y());
+    }
+  }
+  return layer;
+}
+
+ChartLayer bar_layer(const BuiltMap& built) {
+  ChartLayer layer{LayerKind::segments,
+                   "",
+                   {{""},
+                    {""},
+                    {""},
+                    {""},
+                    {"from"},
+                    {"to"},
+                    {"driven"},
+                    {"length in the map [m]"},
+                    {"stretched by [mm]"},
+                    {"in standard deviations"}}};
+  layer.key = {"shorter than measured", "as measured", "longer than measured"};
+  const MapPicture& picture = built.picture;
+  const auto count = static_cast<std::size_t>(picture.map.routes());
+  for (const std::size_t k : thinned(count, kMostBars)) {
+    const Route& route = picture.map.route(static_cast<int>(k));
+    const Landmark& source = picture.map.landmark(route.source);
+    const Landmark& target = picture.map.landmark(route.target);
+    const Vector2 a = picture.map_onto_truth.apply(source.position);
+    const Vector2 b = picture.map_onto_truth.apply(target.position);
+    const Strain strain = strain_of(picture.map, route);
+    const double numbers[] = {a.x(), a.y(), b.x(), b.y()};
+    for (std::size_t i = 0; i < 4; ++i) layer.columns[i].numbers.push_back(numbers[i]);
+    layer.columns[4].texts.push_back(source.name);
+    layer.columns[5].texts.push_back(target.name);
+    layer.columns[6].numbers.push_back(route.traversals);
+    layer.columns[7].numbers.push_back((target.position - source.position).norm());
+    layer.columns[8].numbers.push_back(1000.0 * strain.along);
+    layer.columns[9].numbers.push_back(strain.sds);
+    layer.shade.push_back(strain.sds / kLoud);
+  }
+  return layer;
+}
+
+void add_landmarks(Chart& chart, const BuiltMap& built) {
+  const MapPicture& picture = built.picture;
+  ChartLayer dots{LayerKind::dots,
+                  "landmark",
+                  {{"x [m]"}, {"y [m]"}, {"landmark"}, {"off the survey by [m]"}},
+                  "ink"};
+  ChartLayer truth{
+      LayerKind::dots, "as surveyed", {{"x [m]"}, {"y [m]"}, {"surveyed landmark"}}, "3"};
+  ChartLayer names{LayerKind::labels, "", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "muted"};
+  std::vector<PlacedEllipse> ellipses;
+  const bool few = static_cast<std::size_t>(picture.map.landmarks()) <= kMostNames;
+  const Matrix2 turn = rotation(picture.map_onto_truth.angle);
+  for (int k = 0; k < picture.map.landmarks(); ++k) {
+    const Landmark& one = picture.map.landmark(k);
+    const Vector2 at = picture.map_onto_truth.apply(one.position);
+    const auto known = picture.truth.find(one.name);
+    double off = kAbsent;
+    if (known != picture.truth.end()) {
+      off = (at - known->second).norm();
+      truth.columns[0].numbers.push_back(known->second.x());
+      truth.columns[1].numbers.push_back(known->second.y());
+      truth.columns[2].texts.push_back(one.name);
+    }
+    dots.columns[0].numbers.push_back(at.x());
+    dots.columns[1].numbers.push_back(at.y());
+    dots.columns[2].texts.push_back(one.name);
+    dots.columns[3].numbers.push_back(off);
+    if (one.covariance) {
+      ellipses.push_back({one.name, at, turn * *one.covariance * turn.transpose()});
+    }
+  }
+  if (few) {
+    names.columns = {dots.columns[0], dots.columns[1], dots.columns[2]};
+  }
+  dots.size = few ? 3.5 : 2.0;
+  truth.size = few ? 5.5 : 3.0;
+  if (!truth.columns[2].texts.empty()) chart.layers.push_back(std::move(truth));
+  ChartLayer ellipse = ellipse_layer("95 % ellipse", ellipses, "1");
+  if (!ellipse.columns[0].numbers.empty()) chart.layers.push_back(std::move(ellipse));
+  chart.layers.push_back(std::move(dots));
+  if (few) chart.layers.push_back(std::move(names));
+}
+
+Chart map_chart(const BuiltMap& built) {
+  Chart chart;
+  chart.id = "map";
+  chart.title = "The map, before and after";
+  chart.caption =
+      "Faint: the routes between landmarks as dead reckoning has them. Coloured: the map. A bar "
+      "that is longer or shorter than its measurements gives way to the other routes; one of four "
+      "standard deviations has the strongest colour." +
+      std::string(surveyed(built) ? " Green: where the survey has the landmarks; the map is laid "
+                                    "over it by rotation and translation."
+                                  : "");
+  chart.x.title = "x [m]";
+  chart.y.title = "y [m]";
+  chart.equal_aspect = true;
+  chart.height = 520.0;
+  ChartLayer before = before_layer(built);
+  if (!before.columns[0].numbers.empty()) chart.layers.push_back(std::move(before));
+  ChartLayer bars = bar_layer(built);
+  if (!bars.shade.empty()) chart.layers.push_back(std::move(bars));
+  add_landmarks(chart, built);
+  return chart;
+}
+
+/// Distances from the survey: of the map, and of dead reckoning laid over it on its own.
+struct SurveyErrors {
+  std::vector<std::string> names;
+  std::vector<double> map;     // m
+  std::vector<double> before;  // m
+};
+
+SurveyErrors survey_errors(const BuiltMap& built) {
+  const MapPicture& picture = built.picture;
+  SurveyErrors errors;
+  std::vector<Vector2> reckoned;
+  std::vector<Vector2> truth;
+  for (const auto& [name, at] : picture.truth) {
+    const std::optional<int> landmark = picture.map.find(name);
+    const auto before = picture.before.find(name);
+    if (!landmark || before == picture.before.end()) continue;
+    const std::vector<std::string>& odd = built.survey.contradicting;
+    if (std::find(odd.begin(), odd.end(), name) != odd.end()) continue;
+    errors.names.push_back(name);
+    errors.map.push_back(
+        (picture.map_onto_truth.apply(picture.map.landmark(*landmark).position) - at).norm());
+    reckoned.push_back(before->second);
+    truth.push_back(at);
+  }
+  if (reckoned.size() < 2) return errors;
+  const Alignment over = align_rigidly(reckoned, truth);
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    errors.before.push_back((over.apply(reckoned[k]) - truth[k]).norm());
+  }
+  return errors;
+}
+
+Chart survey_chart(const SurveyErrors& errors) {
+  Chart chart;
+  chart.id = "survey";
+  chart.title = "How far landmarks are from where the survey has them";
+  chart.caption =
+      "Share of the landmarks within a distance, after the best rotation and translation. Further "
+      "to the left is better.";
+  chart.x = {.title = "distance [m]", .zero = true};
+  chart.y = {.title = "landmarks within it [%]", .range = Range{0.0, 100.0}};
+  chart.height = 420.0;
+  add_shares(chart, "dead reckoning", errors.before, "m", "2");
+  add_shares(chart, "the map", errors.map, "m", "1");
+  return chart;
+}
+
+PageTable survey_table(const SurveyErrors& errors) {
+  PageTable table;
+  table.caption = "Landmarks furthest from the survey";
+  table.headings = {"landmark", "map off by [m]", "dead reckoning off by [m]"};
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < errors.names.size(); ++k) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&errors](std::size_t a, std::size_t b) {
+    return errors.map[a] > errors.map[b];
+  });
+  for (const std::size_t k : order) {
+    if (table.rows.size() == kMostRows) break;
+    table.rows.push_back({errors.names[k], fmt::format("{:.3f}", errors.map[k]),
+                          errors.before.empty() ? "-" : fmt::format("{:.3f}", errors.before[k])});
+  }
+  return table;
+}
+
+std::string verdict(const BuiltMap& built) {
+  const std::string size = fmt::format("A map of {} landmarks and {} routes",
+                                       built.picture.map.landmarks(), built.picture.map.routes());
+  if (!surveyed(built)) return size + ", from " + std::to_string(built.legs) + " legs.";
+  return fmt::format("{}, {:.2g} m off the survey (rms); dead reckoning alone is {:.2g} m off.",
+                     size, built.survey.rigid.rms, built.rms_dead_reckoning);
+}
+
+}  // namespace
+
+Page map_page(const BuiltMap& built, const std::string& subject) {
+  Page page;
+  page.command = "build";
+  page.subject = subject + ", method " + built.method;
+  page.verdict = verdict(built);
+  if (surveyed(built)) {
+    const bool better = built.survey.rigid.rms <= built.rms_dead_reckoning;
+    page.tone = better ? Tone::good : Tone::bad;
+    page.facts.push_back(
+        {fmt::format("{:.3f} m", built.survey.rigid.rms), "map off the survey (rms)", page.tone});
+    page.facts.push_back(
+        {fmt::format("{:.3f} m", built.rms_dead_reckoning), "dead reckoning off the survey (rms)"});
+    page.facts.push_back(
+        {fmt::format("{:+.1f} %", 100.0 * (1.0 / built.survey.similarity.scale - 1.0)),
+         "map too large by"});
+  }
+  page.facts.push_back({std::to_string(built.legs), "legs"});
+  page.facts.push_back({std::to_string(built.first_sight), "loops closed at first sight"});
+  page.facts.push_back({std::to_string(built.refinements), "known routes driven again"});
+  page.facts.push_back({std::to_string(built.rejected), "sightings kept out",
+                        built.rejected > 0 ? Tone::bad : Tone::neutral});
+  page.notes = built.warnings;
+  for (const std::string& name : built.survey.contradicting) {
+    page.notes.push_back("Landmark " + name + " contradicts the survey and does not count.");
+  }
+  ChartRow charts{map_chart(built)};
+  const SurveyErrors errors = survey_errors(built);
+  if (surveyed(built)) charts.push_back(survey_chart(errors));
+  page.sections.push_back({"The map", {std::move(charts)}});
+  if (surveyed(built)) page.sections.push_back({"Against the survey", {survey_table(errors)}});
+  return page;
+}
+
+}  // namespace trussmap

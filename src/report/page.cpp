@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/page.hpp"
+
+#include "trussmap/core/xml_text.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+const char* class_of(Tone tone) {
+  return tone == Tone::good ? "good" : tone == Tone::bad ? "bad" : "neutral";
+}
+
+std::string element(const char* name, const std::string& text) {
+  return fmt::format("<{0}>{1}</{0}>\n", name, xml_escaped(text));
+}
+
+/// A figure of a chart: its caption and data are in the page, the script draws it.
+std::string html(const Chart& chart) {
+  return fmt::format(
+      "<figure class=\"chart\" id=\"{0}\">\n"
+      "<h3>{1}</h3>\n"
+      "<div class=\"picture\" style=\"min-height:{2:g}px\"></div>\n"
+      "<figcaption>{3}</figcaption>\n"
+      "<script type=\"application/json\">{4}</script>\n"
+      "</figure>\n",
+      xml_escaped(chart.id), xml_escaped(chart.title), chart.height, xml_escaped(chart.caption),
+      chart_json(chart));
+}
+
+std::string html(const PageTable& table) {
+  std::string text = "<div class=\"table\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+                     xml_escaped(table.caption) + "\"><table>\n" +
+                     (table.caption.empty() ? "" : element("caption", table.caption));
+  const auto cell = [&table](std::size_t column) {
+    return column < table.texts ? "" : " class=\"number\"";
+  };
+  text += "<thead><tr>";
+  for (std::size_t k = 0; k < table.headings.size(); ++k) {
+    text += fmt::format("<th scope=\"col\"{}>{}</th>", cell(k), xml_escaped(table.headings[k]));
+  }
+  text += "</tr></thead>\n<tbody>\n";
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const Tone tone = row < table.tones.size() ? table.tones[row] : Tone::neutral;
+    text += fmt::format("<tr class=\"{}\">", class_of(tone));
+    for (std::size_t k = 0; k < table.rows[row].size(); ++k) {
+      text += fmt::format("<td{}>{}</td>", cell(k), xml_escaped(table.rows[row][k]));
+    }
+    text += "</tr>\n";
+  }
+  return text + "</tbody></table></div>\n";
+}
+
+struct BlockText {
+  std::string operator()(const std::string& text) const { return element("p", text); }
+  std::string operator()(const PageTable& table) const { return html(table); }
+  std::string operator()(const ChartRow& charts) const {
+    std::string text =
+        fmt::format("<div class=\"charts {}\">\n", charts.size() > 1 ? "many" : "one");
+    for (const Chart& chart : charts) text += html(chart);
+    return text + "</div>\n";
+  }
+};
+
+std::string first_screen(const Page& page) {
+  std::string text = fmt::format(
+      "<header class=\"{}\">\n<p class=\"command\">trussmap {} <span>{}</span></p>\n<h1>{}</h1>\n",
+      class_of(page.tone), xml_escaped(page.command), xml_escaped(page.subject),
+      xml_escaped(page.verdict));
+  if (!page.facts.empty()) {
+    text += "<dl class=\"facts\">\n";
+    for (const PageFact& fact : page.facts) {
+      text += fmt::format("<div class=\"{}\"><dt>{}</dt><dd>{}</dd></div>\n", class_of(fact.tone),
+                          xml_escaped(fact.what), xml_escaped(fact.value));
+    }
+    text += "</dl>\n";
+  }
+  if (!page.notes.empty()) {
+    text += "<ul class=\"notes\">\n";
+    for (const std::string& note : page.notes) text += element("li", note);
+    text += "</ul>\n";
+  }
+  return text + "</header>\n";
+}
+
+std::string contents(const Page& page) {
+  std::string text = "<nav aria-label=\"Sections\"><ul>\n";
+  for (std::size_t k = 0; k < page.sections.size(); ++k) {
+    text += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1,
+                        xml_escaped(page.sections[k].title));
+  }
+  return text + "</ul></nav>\n";
+}
+
+}  // namespace
+
+std::vector<const Chart*> charts_of(const Page& page) {
+  std::vector<const Chart*> charts;
+  for (const PageSection& section : page.sections) {
+    for (const PageBlock& block : section.blocks) {
+      const auto* row = std::get_if<ChartRow>(&block);
+      if (row == nullptr) continue;
+      for (const Chart& chart : *row) charts.push_back(&chart);
+    }
+  }
+  return charts;
+}
+
+std::string render_page(const Page& page, const PageRuntime& runtime) {
+  std::set<std::string> ids;
+  for (const Chart* chart : charts_of(page)) {
+    if (!ids.insert(chart->id).second) {
+      throw std::invalid_argument("two charts of a page are called " + chart->id);
+    }
+  }
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n";
+  text += element("title", "trussmap " + page.command + ": " + page.verdict);
+  text += fmt::format("<style>\n{}</style>\n</head>\n<body>\n<main>\n", runtime.style);
+  text += first_screen(page);
+  if (page.sections.size() > 1) text += contents(page);
+  for (std::size_t k = 0; k < page.sections.size(); ++k) {
+    text += fmt::format("<section id=\"section-{}\">\n", k + 1);
+    text += element("h2", page.sections[k].title);
+    for (const PageBlock& block : page.sections[k].blocks) text += std::visit(BlockText{}, block);
+    text += "</section>\n";
+  }
+  text +=
+      "</main>\n<noscript><p>The charts need JavaScript; the figures and tables above do not.</p>"
+      "</noscript>\n"
+      "<footer><p>Made by trussmap. Charts drawn with Vega. This file holds all its data and "
+      "loads nothing.</p></footer>\n"
+      "<div id=\"tip\" role=\"tooltip\" hidden></div>\n"
+      "<div id=\"said\" class=\"unseen\" aria-live=\"polite\"></div>\n"
+      "<div class=\"paper\" hidden></div>\n";
+  text += fmt::format("<script>{}</script>\n</body>\n</html>\n", runtime.script);
+  return text;
+}
+
+}  // namespace trussmap

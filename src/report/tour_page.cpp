@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/tour_page.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "layers.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr std::size_t kMostTours = 250;  // drawn
+
+struct Look {
+  const char* words;
+  const char* colour;
+};
+
+Look look_of(const std::string& method) {
+  static const std::map<std::string, Look> kLooks = {
+      {"dead_reckoning", {"dead reckoning", "5"}},
+      {"raw", {"single measurements", "8"}},
+      {"weighted_average", {"weighted average", "3"}},
+      {"elastic_printed", {"elastic, as printed", "4"}},
+      {"elastic", {"elastic", "2"}},
+      {"gauss_markov", {"Gauss-Markov", "6"}},
+      {"adjustment", {"adjustment", "1"}}};
+  const auto found = kLooks.find(method);
+  return found == kLooks.end() ? Look{method.c_str(), "ink"} : found->second;
+}
+
+using Pick = std::optional<SeedMean> (*)(const TourFigures&);
+
+std::optional<SeedMean> stretch(const TourFigures& figures) {
+  return figures.stretch_error;
+}
+std::optional<SeedMean> orientation(const TourFigures& figures) {
+  return figures.orientation_error;
+}
+std::optional<SeedMean> position(const TourFigures& figures) {
+  return figures.position_error;
+}
+
+struct Quantity {
+  const char* id;
+  const char* title;
+  const char* axis;
+  double factor;
+  Pick pick;
+};
+
+/// The first tours all, later ones thinned out.
+std::vector<std::size_t> drawn_tours(std::size_t count) {
+  std::vector<std::size_t> tours;
+  const std::size_t step = 1 + count / kMostTours;
+  for (std::size_t k = 0; k < count; k += k < 20 ? 1 : step) tours.push_back(k);
+  if (tours.back() != count - 1) tours.push_back(count - 1);
+  return tours;
+}
+
+Chart error_chart(const TourResult& result, const Quantity& quantity) {
+  Chart chart;
+  chart.id = quantity.id;
+  chart.title = quantity.title;
+  chart.caption =
+      "Mean error of each method's map after every tour; bands are 95 % intervals of the mean over "
+      "the seeds. Lower is better.";
+  chart.x.title = "tour";
+  chart.y = {.title = quantity.axis, .log = true};
+  chart.height = 380.0;
+  const std::vector<std::size_t> tours = drawn_tours(result.tours.size());
+  std::vector<ChartLayer> lines;
+  std::vector<ChartLayer> points;
+  for (const std::string& method : tour_methods()) {
+    if (!quantity.pick(result.tours.front().at(method))) continue;
+    const auto [words, colour] = look_of(method);
+    ChartColumn tour{"tour"};
+    ChartColumn mean{quantity.axis};
+    ChartColumn low{"95 % from"};
+    ChartColumn high{"to"};
+    for (const std::size_t k : tours) {
+      const SeedMean error = *quantity.pick(result.tours[k].at(method));
+      const double value = quantity.factor * error.mean;
+      const double reach = quantity.factor * kNormal95 * error.standard_error;
+      tour.numbers.push_back(static_cast<double>(k + 1));
+      mean.numbers.push_back(value);
+      low.numbers.push_back(std::max(value - reach, 0.1 * value));
+      high.numbers.push_back(value + reach);
+    }
+    chart.layers.push_back({LayerKind::band, "", {tour, low, high}, colour});
+    lines.push_back({LayerKind::line, words, {tour, mean}, colour});
+    points.push_back({LayerKind::dots, words, {tour, mean, low, high}, colour});
+    points.back().size = tours.size() > 60 ? 2.0 : 3.0;
+  }
+  for (std::vector<ChartLayer>* more : {&lines, &points}) {
+    for (ChartLayer& layer : *more) chart.layers.push_back(std::move(layer));
+  }
+  return chart;
+}
+
+PageTable last_table(const TourResult& result) {
+  PageTable table;
+  table.caption = fmt::format("After tour {}", result.tours.size());
+  table.headings = {"method", "stretch error [%]", "orientation error [mrad]",
+                    "position error [m]"};
+  for (const std::string& method : tour_methods()) {
+    const TourFigures& figures = result.tours.back().at(method);
+    const auto cell = [](const SeedMean& mean, double factor, int digits) {
+      return fmt::format("{:.{}f} \u00b1 {:.{}f}", factor * mean.mean, digits,
+                         factor * mean.standard_error, digits);
+    };
+    table.rows.push_back({look_of(method).words, cell(figures.stretch_error, 100.0, 2),
+                          cell(figures.orientation_error, 1000.0, 1),
+                          figures.position_error ? cell(*figures.position_error, 1.0, 3) : "-"});
+  }
+  return table;
+}
+
+Chart first_sight_chart(const TourResult& result) {
+  Chart chart;
+  chart.id = "first-sight";
+  chart.title = "First sight, tour 1";
+  chart.caption =
+      "Errors of the routes before and after first-sight correction alone: it makes the map "
+      "consistent, not the single route better.";
+  chart.x = {.title = "error [%; orientation: hundredths of a radian]", .zero = true};
+  chart.y.categories = {"stretch, before", "stretch, after", "orientation, before",
+                        "orientation, after"};
+  chart.height = bars_height(4);
+  ChartColumn value{"error"};
+  ChartColumn low{"95 % from"};
+  ChartColumn high{"to"};
+  const TourFigures& before = result.first_sight_before;
+  const TourFigures& after = result.first_sight_after;
+  for (const SeedMean& mean : {before.stretch_error, after.stretch_error, before.orientation_error,
+                               after.orientation_error}) {
+    value.numbers.push_back(100.0 * mean.mean);
+    low.numbers.push_back(100.0 * (mean.mean - kNormal95 * mean.standard_error));
+    high.numbers.push_back(100.0 * (mean.mean + kNormal95 * mean.standard_error));
+  }
+  chart.layers.push_back(
+      {LayerKind::intervals, "", {{"", {}, chart.y.categories}, value, low, high}, "1"});
+  return chart;
+}
+
+}  // namespace
+
+Page tour_page(const TourResult& result, int seeds, const std::string& subject) {
+  const MethodFigures& last = result.tours.back();
+  const TourFigures& elastic = last.at("elastic");
+  const TourFigures& raw = last.at("raw");
+  const TourFigures& best = last.at("adjustment");
+  Page page;
+  page.command = "tour";
+  page.subject = subject;
+  page.verdict = fmt::format(
+      "After {} tours routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
+      "askew, {:.1f} times better than single measurements ({:.2f} %).",
+      result.tours.size(), 100.0 * elastic.stretch_error.mean,
+      kDegrees * elastic.orientation_error.mean,
+      raw.stretch_error.mean / std::max(elastic.stretch_error.mean, 1e-12),
+      100.0 * raw.stretch_error.mean);
+  page.facts = {
+      {fmt::format("{:.2f} %", 100.0 * raw.stretch_error.mean),
+       "stretch error, single measurements"},
+      {fmt::format("{:.2f} %", 100.0 * elastic.stretch_error.mean), "stretch error, elastic"},
+      {fmt::format("{:.2f} %", 100.0 * best.stretch_error.mean),
+       "stretch error, adjustment: the best possible"},
+      {std::to_string(seeds), "seeds averaged over"}};
+  if (elastic.position_error) {
+    page.facts.push_back(
+        {fmt::format("{:.2f} m", elastic.position_error->mean), "position error, elastic"});
+  }
+  const Quantity quantities[] = {
+      {"stretch", "Routes too long or too short", "mean stretch error [%]", 100.0, stretch},
+      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegrees, orientation},
+      {"position", "Landmarks off", "mean position error [m]", 1.0, position}};
+  PageSection section{"Errors, tour by tour", {}};
+  for (const Quantity& one : quantities) {
+    section.blocks.emplace_back(ChartRow{error_chart(result, one)});
+  }
+  section.blocks.emplace_back(last_table(result));
+  page.sections.push_back(std::move(section));
+  page.sections.push_back(
+      {"First sight",
+       {std::string("The paper's Table I, one map: 4.9 % and 0.033 rad before, 4.6 % and 0.032 rad "
+                    "after."),
+        ChartRow{first_sight_chart(result)}}});
+  return page;
+}
+
+}  // namespace trussmap

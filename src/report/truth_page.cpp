@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/calibration_pages.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <fmt/format.h>
+
+#include "layers.hpp"
+
+namespace trussmap {
+namespace {
+
+struct Row {
+  const char* name;
+  const std::optional<Calibrated>& found;
+};
+
+Chart interval_chart(const char* id, const char* title, const char* caption, const char* axis,
+                     const std::vector<Row>& rows, double nominal, double factor) {
+  Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.caption = caption;
+  chart.x = {.title = axis, .zero = true};
+  ChartLayer layer{LayerKind::intervals, "", {{""}, {axis}, {"95 % from"}, {"to"}}, "1"};
+  for (const Row& row : rows) {
+    if (!row.found) continue;
+    const double value = factor * (row.found->value - nominal);
+    const double reach = factor * kNormal95 * row.found->sd;
+    chart.y.categories.emplace_back(row.name);
+    layer.columns[0].texts.emplace_back(row.name);
+    layer.columns[1].numbers.push_back(value);
+    layer.columns[2].numbers.push_back(value - reach);
+    layer.columns[3].numbers.push_back(value + reach);
+  }
+  chart.height = bars_height(chart.y.categories.size());
+  if (nominal != 0.0) {
+    chart.layers.push_back({LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
+  }
+  if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
+  return chart;
+}
+
+std::vector<double> in_millimetres(const std::vector<double>& metres) {
+  std::vector<double> result;
+  for (const double value : metres) result.push_back(1000.0 * value);
+  return result;
+}
+
+Chart arrival_chart(const TruthCalibration& found) {
+  Chart chart;
+  chart.id = "held-out";
+  chart.title = "How far off held-out legs end";
+  chart.caption =
+      "Share of the legs, none of them used for the calibration that is judged, that end within a "
+      "distance of the truth. Further to the left is better.";
+  chart.x = {.title = "distance [mm]", .zero = true};
+  chart.y = {.title = "legs within it [%]", .range = Range{0.0, 100.0}};
+  chart.height = 300.0;
+  add_shares(chart, "nominal", in_millimetres(found.nominal.distances), "mm", "2");
+  add_shares(chart, "calibrated", in_millimetres(found.calibrated.distances), "mm", "1");
+  return chart;
+}
+
+PageTable table_of(const WheelCalibration& wheels) {
+  PageTable table;
+  table.caption = "What was found";
+  table.headings = {"", "value", "standard error", "unit"};
+  const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
+                            const char* unit) {
+    if (!one) {
+      table.rows.push_back({name, "not determined", "", unit});
+      return;
+    }
+    const QuantityText text = quantity_text(one->value, one->sd);
+    table.rows.push_back({name, text.value, text.error, unit});
+  };
+  row("E_d, right wheel over left", wheels.diameter_ratio, "");
+  row("E_b, wheelbase over nominal", wheels.wheelbase_ratio, "");
+  row("E_s, true over measured travel", wheels.scale, "");
+  row("k, left wheel's noise", wheels.noise_left, "m^1/2");
+  row("k, right wheel's noise", wheels.noise_right, "m^1/2");
+  return table;
+}
+
+}  // namespace
+
+Page truth_page(const TruthCalibration& found, const std::string& subject) {
+  const WheelCalibration& wheels = found.wheels;
+  Page page;
+  page.command = "calibrate";
+  page.subject = subject;
+  page.verdict = found.verdict;
+  const bool judged = found.calibrated.legs() > 0;
+  const bool better = judged && found.calibrated.rms() <= found.nominal.rms();
+  page.tone = !judged ? Tone::neutral : better ? Tone::good : Tone::bad;
+  if (judged) {
+    page.facts.push_back({fmt::format("{:.1f} mm", 1000.0 * found.nominal.rms()),
+                          "held-out legs end so far off, nominal"});
+    page.facts.push_back({fmt::format("{:.1f} mm", 1000.0 * found.calibrated.rms()),
+                          "the same, calibrated", page.tone});
+  }
+  page.facts.push_back({fmt::format("{:.2f}", wheels.dof > 0 ? wheels.chi2 / wheels.dof : 0.0),
+                        "chi\u00b2 per degree of freedom (1 is right)"});
+  for (const std::string& one : wheels.undetermined) page.notes.push_back("Not determined: " + one);
+  if (judged) {
+    page.sections.push_back({"What the calibration gains", {ChartRow{arrival_chart(found)}}});
+  }
+  ChartRow charts{interval_chart("ratios", "Wheels and wheelbase, in percent of nominal",
+                                 "With 95 % intervals; 0 is a robot that is as its model has it.",
+                                 "off by [%]",
+                                 {{"E_d: right wheel over left", wheels.diameter_ratio},
+                                  {"E_b: wheelbase", wheels.wheelbase_ratio},
+                                  {"E_s: travel", wheels.scale}},
+                                 1.0, 100.0)};
+  charts.push_back(interval_chart(
+      "noise", "Noise of each wheel",
+      "k with its 95 % interval: after d metres the wheel's travel is uncertain by k times the "
+      "root "
+      "of d.",
+      "k [10\u207b\u00b3 m^1/2]",
+      {{"left wheel", wheels.noise_left}, {"right wheel", wheels.noise_right}}, 0.0, 1000.0));
+  page.sections.push_back({"What was found", {std::move(charts), table_of(wheels)}});
+  return page;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/response.hpp"
+
+#include "trussmap/criticism/fitted_map.hpp"
+#include "trussmap/io/model_toml.hpp"
+#include "trussmap/io/recording_csv.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+Effect effect(const std::string& channel, const std::vector<std::string>& shape,
+              const std::vector<double>& coefficients = {}) {
+  Effect one;
+  one.name = "e";
+  one.channel = channel;
+  one.shape = shape;
+  one.coefficients = coefficients;
+  return one;
+}
+
+/// The riddle, as its owner believes the robot to be; its compass has 0.04 sin h - 0.03 cos h.
+struct Riddle {
+  std::vector<Recording> recordings{
+      read_recording(std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle")};
+  ModelFit fit = fit_model(
+      recordings, read_model(std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle/model.toml"));
+  ScoreTest tests{fit};
+};
+
+TEST(Response, FollowsTheEffectThatIsThere) {
+  const Riddle riddle;
+  const Effect truth = effect("compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
+  const Response found = response_along("heading", truth, riddle.fit, riddle.tests);
+  ASSERT_GE(found.bins.size(), 4U);
+  EXPECT_EQ(found.unit, "rad");
+  double squares = 0.0;
+  for (const ResponseBin& bin : found.bins) {
+    const double expected = 0.04 * std::sin(bin.at) - 0.03 * std::cos(bin.at);
+    EXPECT_NEAR(bin.estimate, expected, 4.0 * bin.sd) << bin.at;
+    squares += std::pow(bin.estimate - expected, 2);
+    EXPECT_LT(bin.low, bin.at);
+    EXPECT_GT(bin.high, bin.at);
+  }
+  // The effect's own rms is 0.035.
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(found.bins.size())), 0.01);
+}
+
+TEST(Response, IsNothingWhereTheModelHasTheEffect) {
+  const Riddle riddle;
+  Model model = riddle.fit.model;
+  model.effects = {effect("compass", {"sin(heading)", "cos(heading)"})};
+  const ModelFit fit = fit_model(riddle.recordings, model);
+  const ScoreTest tests(fit);
+  const Response left = response_along("heading", effect("compass", {"1"}), fit, tests);
+  for (const ResponseBin& bin : left.bins) EXPECT_NEAR(bin.estimate, 0.0, 4.0 * bin.sd) << bin.at;
+}
+
+TEST(Response, HasNoBinsWhereTheVariableIsNotThereOrNeverChanges) {
+  const Riddle riddle;
+  EXPECT_TRUE(
+      response_along("ghosts", effect("turn", {"1"}), riddle.fit, riddle.tests).bins.empty());
+  EXPECT_TRUE(
+      response_along("session", effect("turn", {"1"}), riddle.fit, riddle.tests).bins.empty());
+}
+
+TEST(Response, TheCurveIsTheFormula) {
+  const Effect hard_iron = effect("compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
+  const std::vector<Vector2> curve =
+      effect_curve(hard_iron, "heading", 0.0, 2.0 * std::numbers::pi);
+  ASSERT_FALSE(curve.empty());
+  for (const Vector2& p : curve) {
+    EXPECT_NEAR(p.y(), 0.04 * std::sin(p.x()) - 0.03 * std::cos(p.x()), 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(curve.front().x(), 0.0);
+  EXPECT_DOUBLE_EQ(curve.back().x(), 2.0 * std::numbers::pi);
+  EXPECT_TRUE(effect_curve(hard_iron, "speed", 0.0, 1.0).empty());
+  for (const Vector2& p : effect_curve(effect("turn", {"1"}, {0.02}), "turn_rate", -1.0, 1.0)) {
+    EXPECT_DOUBLE_EQ(p.y(), 0.02);
+  }
+}
+
+TEST(Response, AnEffectIsShownAgainstWhatItSpeaksOf) {
+  EXPECT_EQ(natural_variable(effect("compass", {"sin(heading)", "cos(heading)"})), "heading");
+  EXPECT_EQ(natural_variable(effect("wheels", {"payload_kg"})), "payload_kg");
+  EXPECT_EQ(natural_variable(effect("turn", {"1"})), "turn_rate");
+  EXPECT_EQ(natural_variable(effect("travel", {"1"})), "speed");
+  EXPECT_EQ(natural_variable(effect("travel", {"exp(-((x-1)^2+(y-2)^2))"})), "");
+}
+
+TEST(FittedMap, HasEveryLandmarkAndAPathOfAsManyPointsAsWanted) {
+  const Riddle riddle;
+  const FittedMap map = fitted_map(riddle.fit, 100);
+  EXPECT_EQ(map.landmarks.size(), riddle.fit.problem.landmarks.size());
+  for (const FittedLandmark& one : map.landmarks) {
+    ASSERT_TRUE(one.survey) << one.name;
+    EXPECT_LT((one.position - *one.survey).norm(), 0.5) << one.name;
+  }
+  ASSERT_EQ(map.paths.size(), 1U);
+  EXPECT_LE(map.paths.front().size(), 102U);
+  EXPECT_GE(map.paths.front().size(), 50U);
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/page.hpp"
+
+#include <regex>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/large_comparison.hpp"
+#include "report/some_charts.hpp"
+
+namespace trussmap {
+namespace {
+
+const PageRuntime kRuntime{"main { color: red }\n", "/* the script */"};
+
+Page page_with(const std::string& name) {
+  Page page;
+  page.command = "compare";
+  page.subject = name;
+  page.verdict = "Verdict on " + name;
+  page.facts = {{"1 " + name, "what " + name, Tone::good}};
+  page.notes = {"Note on " + name};
+  page.sections = {
+      {"Section " + name,
+       {"Text " + name, PageTable{"Caption " + name, {name, "n"}, {{name, name}}, 1, {Tone::bad}},
+        testing::charts_of_every_kind(name)}}};
+  return page;
+}
+
+Page hostile_page() {
+  return page_with(testing::kHostile);
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+TEST(Page, HostileNamesStayText) {
+  const std::string html = render_page(hostile_page(), kRuntime);
+  EXPECT_EQ(html.find("<script>document"), std::string::npos);
+  EXPECT_EQ(html.find("<img"), std::string::npos);
+  EXPECT_EQ(html.find("<!--"), std::string::npos);
+  // One element of data per chart and the script: nobody else's.
+  EXPECT_EQ(count(html, "<script"), 5U);
+  EXPECT_EQ(count(html, "</script"), 5U);
+}
+
+TEST(Page, LoadsNothing) {
+  const std::string html = render_page(page_with("A"), kRuntime);
+  EXPECT_FALSE(std::regex_search(html, std::regex("<[a-z]+[^<>]* src=")));
+  EXPECT_FALSE(std::regex_search(html, std::regex("<[a-z]+[^<>]* href=\"[^#]")));
+  EXPECT_EQ(html.find("<link"), std::string::npos);
+  EXPECT_EQ(html.find("http:"), std::string::npos);
+  EXPECT_EQ(html.find("https:"), std::string::npos);
+}
+
+TEST(Page, IsTheSameForTheSameInput) {
+  EXPECT_EQ(render_page(hostile_page(), kRuntime), render_page(hostile_page(), kRuntime));
+}
+
+TEST(Page, SaysTheVerdictFirst) {
+  const std::string html = render_page(hostile_page(), kRuntime);
+  EXPECT_LT(html.find("<h1>"), html.find("<h2>"));
+  EXPECT_LT(html.find("<h1>"), html.find("<figure"));
+  EXPECT_LT(html.find("<h1>"), html.find("<table"));
+}
+
+TEST(Page, EveryChartHasATitleACaptionAndItsData) {
+  const Page page = hostile_page();
+  const std::string html = render_page(page, kRuntime);
+  EXPECT_EQ(count(html, "<figure class=\"chart\""), charts_of(page).size());
+  EXPECT_EQ(count(html, "<figcaption>"), charts_of(page).size());
+  const std::regex data("<script type=\"application/json\">([^<]*)</script>");
+  std::size_t parsed = 0;
+  for (std::sregex_iterator k(html.begin(), html.end(), data), end; k != end; ++k) {
+    EXPECT_TRUE(nlohmann::json::accept((*k)[1].str()));
+    ++parsed;
+  }
+  EXPECT_EQ(parsed, charts_of(page).size());
+}
+
+TEST(Page, ChartsOfOneNameAreRefused) {
+  Page page = hostile_page();
+  page.sections.push_back(page.sections.front());
+  EXPECT_THROW(static_cast<void>(render_page(page, kRuntime)), std::invalid_argument);
+}
+
+TEST(Page, TenThousandLegsStaySmall) {
+  const Page page = testing::large_comparison_page(10000);
+  for (const Chart* chart : charts_of(page)) {
+    EXPECT_LE(mark_count(*chart), kMostMarks) << chart->id;
+    EXPECT_GT(mark_count(*chart), 0U) << chart->id;
+  }
+  EXPECT_LT(render_page(page, kRuntime).size(), 4'000'000U);  // the script has half a megabyte
+}
+
+}  // namespace
+}  // namespace trussmap
