@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Worlds, robots and effects for the criticism's figures: all drawn from a seed.
+#pragma once
+
+#include "trussmap/effects/model.hpp"
+#include "trussmap/recording/recording.hpp"
+#include "trussmap/simulation/mesh_world.hpp"
+#include "trussmap/simulation/true_motion.hpp"
+#include "trussmap/simulation/wheeled_robot.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace trussmap::bench {
+
+struct World {
+  Mesh mesh;
+  std::vector<int> walk;
+  DrivingStyle style;
+  WheeledRobot robot;
+  bool surveyed = true;
+  Model model;  ///< true noise, no effect
+  std::uint64_t seed = 0;
+};
+
+enum class Survey { yes, no, either };
+
+/// 60 to 300 legs, several noise levels; with or without survey, compass and range sensor.
+[[nodiscard]] World draw_world(std::uint64_t seed, Survey survey = Survey::either);
+
+/// The world's recording with these effects (channel, shape and coefficients given).
+[[nodiscard]] Recording record_in(const World& world, const std::vector<Effect>& effects);
+
+/// An effect and what it needs to be shown.
+struct Subject {
+  Effect effect;  ///< without coefficients
+  bool needs_compass = false;
+  bool needs_range = false;
+};
+
+/// More than 25 of the catalogue's; places lie in the world.
+[[nodiscard]] std::vector<Subject> subjects(const World& world);
+
+/// Shapes that no catalogue has.
+[[nodiscard]] std::vector<Subject> odd_subjects(const World& world);
+
+}  // namespace trussmap::bench

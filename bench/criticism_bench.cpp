@@ -1,0 +1,329 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// How well diagnose and discover do, on recordings drawn from seeds 1, 2, ...:
+//
+//   false-alarms   effect-free recordings in which an effect is named
+//   identify       one effect, 2 and 3 times the smallest detectable size: is its look-alike class
+//                  first? And does the error fall as far as with the true model?
+//   two            two effects at 3 times, columns' cosine below 0.7: are both found?
+//   odd            shapes outside the catalogue at 3 times: right channel and variable?
+#include "trussmap/criticism/discovery.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "bench_worlds.hpp"
+
+namespace trussmap::bench {
+namespace {
+
+struct Options {
+  std::vector<std::string> parts;
+  std::uint64_t first = 1;
+  int recordings = 20;  ///< per effect and size
+  int clean = 1000;
+  bool loops = false;  ///< without survey
+  bool ladder = true;
+  bool verbose = false;
+};
+
+double percent(int part, int whole) {
+  return whole > 0 ? 100.0 * part / whole : 0.0;
+}
+
+/// Coefficients along a random direction whose expected score is `times`^2 * 24.4; empty where the
+/// world does not show the effect at a plausible size.
+std::vector<double> sized(const Subject& subject, const World& world, const ScoreTest& tests,
+                          double times, std::uint64_t seed) {
+  const Score score = tests.test({subject.effect}).front();
+  if (score.dof < static_cast<int>(subject.effect.shape.size())) return {};
+  std::mt19937_64 random(seed * 1299709 + world.seed);
+  Eigen::VectorXd direction(score.projected.cols());
+  std::normal_distribution<double> normal;
+  for (double& d : direction) d = normal(random);
+  // A loss is one.
+  if (subject.effect.channel == "advance") direction = -direction.cwiseAbs();
+  const double size = (score.projected * direction).norm();
+  if (!(size > 0.0)) return {};
+  direction *= times * std::sqrt(kDetectableScore) / size;
+  // What would have to be implausibly large counts as not shown.
+  const double plausible = facts_of(*parse_channel(subject.effect.channel)).plausible;
+  for (Eigen::Index k = 0; k < direction.size(); ++k) {
+    if (std::abs(direction[k]) * score.largest[static_cast<std::size_t>(k)] > plausible) return {};
+  }
+  return {direction.begin(), direction.end()};
+}
+
+/// How much of one effect's trace the other's columns can show.
+double cosine(const Effect& truth, const Effect& found, const ScoreTest& tests) {
+  const std::vector<Score> scores = tests.test({truth, found});
+  Eigen::VectorXd trace = Eigen::VectorXd::Zero(scores[0].projected.rows());
+  for (std::size_t k = 0; k < truth.coefficients.size(); ++k) {
+    trace += truth.coefficients[k] * scores[0].projected.col(static_cast<Eigen::Index>(k));
+  }
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(scores[1].projected);
+  return (scores[1].projected * factor.solve(trace)).norm() / std::max(trace.norm(), 1e-300);
+}
+
+bool shows(const World& world, const Subject& subject) {
+  return (world.robot.compass || !subject.needs_compass) &&
+         (world.robot.range_sensor || !subject.needs_range);
+}
+
+void false_alarms(const Options& options) {
+  int named = 0;
+  int misfits = 0;
+  std::size_t least_tried = 1000000;
+  for (int k = 0; k < options.clean; ++k) {
+    const World world = draw_world(options.first + static_cast<std::uint64_t>(k));
+    const Diagnosis result = diagnose({record_in(world, {})}, world.model);
+    least_tried = std::min(least_tried, result.tried);
+    if (result.verdict == Diagnosis::Verdict::missing) {
+      ++named;
+      if (options.verbose) {
+        const Finding& one = result.findings.front();
+        fmt::print(
+            "  seed {}: {} (score {:.1f}, dof {}, p {:.3f}); legs {} survey {} compass {} "
+            "range {}\n",
+            world.seed, result.missing, one.score, one.dof, one.p_adjusted, world.walk.size() - 1,
+            world.surveyed, world.robot.compass, world.robot.range_sensor);
+      }
+    }
+    misfits += result.verdict == Diagnosis::Verdict::unexplained_misfit ? 1 : 0;
+  }
+  fmt::print("false alarms: {} of {} ({:.1f} %), unexplained misfits {}; at least {} tests each\n",
+             named, options.clean, percent(named, options.clean), misfits, least_tried);
+}
+
+struct Tally {
+  int shown = 0;
+  int first = 0;
+  int named = 0;
+  int promise = 0;  ///< first steps whose score and error came as promised
+  int fell = 0;
+  int wrong = 0;
+  int ladders = 0;
+  double ratios = 0.0;  ///< sum: held-out error under the true model to the effect-free one's
+};
+
+void identify(const Options& options) {
+  const std::size_t count = subjects(draw_world(1)).size();
+  for (const double times : {2.0, 3.0}) {
+    std::map<std::string, Tally> tallies;
+    Tally all;
+    for (std::size_t e = 0; e < count; ++e) {
+      int done = 0;
+      for (std::uint64_t seed = options.first; done < options.recordings && seed < 5000; ++seed) {
+        const World world = draw_world(seed * 100 + e, options.loops ? Survey::no : Survey::either);
+        const Subject subject = subjects(world)[e];
+        const std::string name = subject.effect.name.substr(0, subject.effect.name.find(" (x="));
+        if (seed > options.first + 10U * static_cast<std::uint64_t>(options.recordings)) break;
+        if (!shows(world, subject)) continue;
+        const ModelFit clean = fit_model({record_in(world, {})}, world.model);
+        const ScoreTest tests(clean);
+        Effect truth = subject.effect;
+        truth.coefficients = sized(subject, world, tests, times, seed);
+        if (truth.coefficients.empty()) continue;
+        ++done;
+        const std::vector<Recording> recordings{record_in(world, {truth})};
+        Tally& tally = tallies[name];
+        ++tally.shown;
+        Diagnosis result;
+        Discovery ladder;
+        if (options.ladder) {
+          ladder = discover(recordings, world.model);
+        }
+        result = diagnose(recordings, world.model);
+        const bool named = result.verdict == Diagnosis::Verdict::missing;
+        const bool right =
+            named && cosine(truth, result.findings.front().candidate.effect, tests) >= 0.95;
+        tally.named += named ? 1 : 0;
+        tally.first += right ? 1 : 0;
+        if (!right && options.verbose) {
+          fmt::print(
+              "  x{:.0f} {} (world {}): {} {}\n", times, truth.name, world.seed,
+              named ? result.missing : "not named",
+              named ? fmt::format("cosine {:.3f} score {:.1f}",
+                                  cosine(truth, result.findings.front().candidate.effect, tests),
+                                  result.findings.front().score)
+                    : "");
+        }
+        if (!options.ladder) continue;
+        Model with = world.model;
+        with.effects = {truth};
+        with.effects[0].coefficients.clear();
+        const ModelFit best = fit_model(recordings, with);
+        const double floor = predict_held_out(recordings, best, {}).arrival_rms;
+        ++tally.ladders;
+        tally.ratios += floor / predict_held_out({record_in(world, {})}, clean, {}).arrival_rms;
+        if (ladder.steps.size() > 1) {
+          const DiscoveryStep& before = ladder.steps[0];
+          const DiscoveryStep& after = ladder.steps[1];
+          const double fell = before.chi2 - after.chi2;
+          const bool score_kept = std::abs(after.promised_chi2 - fell) <= 0.1 * fell;
+          const bool error_kept =
+              std::abs(after.promised.arrival_rms - after.held_out.arrival_rms) <=
+              0.2 * after.held_out.arrival_rms;
+          tally.promise += score_kept && error_kept ? 1 : 0;
+        }
+        const double reached = ladder.steps.back().held_out.arrival_rms;
+        tally.fell += reached <= 1.10 * floor ? 1 : 0;
+        tally.wrong += ladder.fit.model.effects.size() > 1 ? 1 : 0;
+        if (options.verbose && (reached > 1.10 * floor || ladder.fit.model.effects.size() > 1)) {
+          std::string found;
+          for (const Effect& one : ladder.fit.model.effects) found += " [" + one.name + "]";
+          fmt::print("  x{:.0f} {} (world {}): ladder {:.1f} mm, true model {:.1f} mm:{} ({})\n",
+                     times, truth.name, world.seed, 1e3 * reached, 1e3 * floor, found,
+                     ladder.stopped);
+        }
+      }
+    }
+    for (const auto& [name, one] : tallies) {
+      all.shown += one.shown;
+      all.first += one.first;
+      all.named += one.named;
+      all.fell += one.fell;
+      all.wrong += one.wrong;
+      all.ladders += one.ladders;
+      all.ratios += one.ratios;
+      all.promise += one.promise;
+      fmt::print("  x{:.0f} {:<34} first {:3d}/{:3d} named {:3d} fell {:3d} more {:2d}\n", times,
+                 name, one.first, one.shown, one.named, one.fell, one.wrong);
+    }
+    fmt::print(
+        "identify at {:.0f} times, {}: class first in {} of {} ({:.1f} %), not named {:.1f} "
+        "%; error within 1.10 of the true model's in {:.1f} %, a further effect in {:.1f} %; true "
+        "model's error {:.3f} of the effect-free one's; first steps as promised {:.1f} %\n",
+        times, options.loops ? "loop closures alone" : "all worlds", all.first, all.shown,
+        percent(all.first, all.shown), percent(all.shown - all.named, all.shown),
+        percent(all.fell, all.ladders), percent(all.wrong, all.ladders),
+        all.ladders > 0 ? all.ratios / all.ladders : 0.0, percent(all.promise, all.ladders));
+  }
+}
+
+void two(const Options& options) {
+  int shown = 0;
+  int both = 0;
+  for (std::uint64_t seed = options.first; shown < 5 * options.recordings; ++seed) {
+    const World world = draw_world(seed + 500000);
+    std::mt19937_64 random(seed);
+    std::vector<Subject> list = subjects(world);
+    std::shuffle(list.begin(), list.end(), random);
+    std::erase_if(list, [&](const Subject& one) { return !shows(world, one); });
+    const ModelFit clean = fit_model({record_in(world, {})}, world.model);
+    const ScoreTest tests(clean);
+    std::vector<Effect> truths;
+    for (const Subject& subject : list) {
+      Effect truth = subject.effect;
+      truth.coefficients = sized(subject, world, tests, 3.0, seed);
+      if (truth.coefficients.empty()) continue;
+      if (!truths.empty() &&
+          (cosine(truth, truths[0], tests) >= 0.7 || cosine(truths[0], truth, tests) >= 0.7)) {
+        continue;
+      }
+      truths.push_back(truth);
+      if (truths.size() == 2) break;
+    }
+    if (truths.size() < 2) continue;
+    ++shown;
+    const Discovery found = discover({record_in(world, truths)}, world.model);
+    int hit = 0;
+    for (const Effect& truth : truths) {
+      hit += std::any_of(found.fit.model.effects.begin(), found.fit.model.effects.end(),
+                         [&](const Effect& one) { return cosine(truth, one, tests) >= 0.95; })
+                 ? 1
+                 : 0;
+    }
+    both += hit == 2 ? 1 : 0;
+    if (hit < 2 && options.verbose) {
+      std::string names;
+      for (const Effect& one : found.fit.model.effects) names += " [" + one.name + "]";
+      fmt::print("  world {}: {} + {} ->{} ({})\n", world.seed, truths[0].name, truths[1].name,
+                 names, found.stopped);
+    }
+  }
+  fmt::print("two effects at 3 times: both found in {} of {} ({:.1f} %)\n", both, shown,
+             percent(both, shown));
+}
+
+void odd(const Options& options) {
+  int shown = 0;
+  int right = 0;
+  const std::size_t count = odd_subjects(draw_world(1)).size();
+  for (std::size_t e = 0; e < count; ++e) {
+    int done = 0;
+    for (std::uint64_t seed = options.first; done < options.recordings; ++seed) {
+      const World world = draw_world(seed * 100 + e + 900000);
+      const Subject subject = odd_subjects(world)[e];
+      if (seed > options.first + 10U * static_cast<std::uint64_t>(options.recordings)) break;
+      if (!shows(world, subject)) continue;
+      const ModelFit clean = fit_model({record_in(world, {})}, world.model);
+      const ScoreTest tests(clean);
+      Effect truth = subject.effect;
+      truth.coefficients = sized(subject, world, tests, 3.0, seed);
+      if (truth.coefficients.empty()) continue;
+      ++done;
+      ++shown;
+      const Diagnosis result = diagnose({record_in(world, {truth})}, world.model);
+      std::string word = "payload_kg";
+      if (truth.shape.front().find("speed") != std::string::npos) word = "speed";
+      if (truth.shape.front().find("(t-") != std::string::npos) word = "t";
+      const auto says = [&](const Effect& one) {
+        if (one.channel != truth.channel) return false;
+        return std::any_of(one.shape.begin(), one.shape.end(), [&](const std::string& shape) {
+          return shape.find(word == "t" ? "t-" : word) != std::string::npos || shape == word;
+        });
+      };
+      bool ok = false;
+      if (result.verdict == Diagnosis::Verdict::missing) {
+        const Finding& first = result.findings.front();
+        ok = says(first.candidate.effect) ||
+             std::any_of(first.look_alikes.begin(), first.look_alikes.end(),
+                         [&](const LookAlike& one) { return says(one.effect); });
+      }
+      right += ok ? 1 : 0;
+      if (!ok && options.verbose) {
+        fmt::print("  {} (world {}): {}\n", truth.name, world.seed,
+                   result.missing.empty() ? "not named" : result.missing);
+      }
+    }
+  }
+  fmt::print("odd shapes at 3 times: right channel and variable in {} of {} ({:.1f} %)\n", right,
+             shown, percent(right, shown));
+}
+
+}  // namespace
+}  // namespace trussmap::bench
+
+int main(int argc, char** argv) {
+  using namespace trussmap::bench;
+  CLI::App app("How well diagnose and discover do on simulated recordings");
+  Options options;
+  app.add_option("parts", options.parts, "What to measure (default: all)")
+      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd"}));
+  app.add_option("--first", options.first, "First seed")->capture_default_str();
+  app.add_option("--recordings", options.recordings, "Recordings per effect and size")
+      ->capture_default_str();
+  app.add_option("--clean", options.clean, "Effect-free recordings")->capture_default_str();
+  app.add_flag("--loops", options.loops, "Without a survey throughout");
+  app.add_flag("!--no-ladder", options.ladder, "Do not run discover beside diagnose");
+  app.add_flag("--verbose", options.verbose, "Name what went wrong");
+  CLI11_PARSE(app, argc, argv);
+  const auto wants = [&](const char* part) {
+    return options.parts.empty() ||
+           std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
+  };
+  if (wants("false-alarms")) false_alarms(options);
+  if (wants("identify")) identify(options);
+  if (wants("two")) two(options);
+  if (wants("odd")) odd(options);
+  return 0;
+}
