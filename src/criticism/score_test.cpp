@@ -47,6 +47,12 @@ EffectColumns ScoreTest::columns(const Effect& effect) const {
   return effect_columns({fresh}, context_);
 }
 
+Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
+  Eigen::MatrixXd left = M - system_->times(system_->solve_nodes(system_->transposed_times(M)));
+  if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+  return left;
+}
+
 Score ScoreTest::score_of(const EffectColumns& columns, const Effect& effect,
                           const Eigen::MatrixXd& whole, const Eigen::MatrixXd& projected) const {
   const Eigen::Index count = projected.cols();
@@ -121,8 +127,7 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const 
     }
     const Eigen::MatrixXd M =
         system_->columns_of(border, fit_.adjustment.state, fit_.adjustment.coefficients);
-    Eigen::MatrixXd left = M - system_->times(system_->solve_nodes(system_->transposed_times(M)));
-    if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+    const Eigen::MatrixXd left = projected(M);
     Eigen::Index at = 0;
     for (std::size_t k = first; k < next; ++k) {
       const EffectColumns& own = columns[k - first];

@@ -54,9 +54,14 @@ class ScoreTest {
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
+  /// M less its projections on J and on the columns of the effects that the model has.
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
+
   [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return system_->residuals(); }
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  /// Orthonormal columns that those effects span, projected.
+  [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   [[nodiscard]] const ShapeContext& context() const { return context_; }
 
  private:
