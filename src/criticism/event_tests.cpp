@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -38,86 +38,161 @@ struct Found {
   Eigen::VectorXd size;
 };
 
+struct Scored {
+  std::vector<Found> places;
+  double tried = 0.0;  ///< places that differ
+};
+
+/// How many independent tests so many that overlap are worth: (sum sqrt l)^2 / sum l over the
+/// eigenvalues l of their correlations (Galwey 2009).
+double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
+  const Eigen::Index count = S.cols() / width;
+  if (count == 1) return 1.0;
+  Eigen::VectorXd size(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    size[k] = std::sqrt(S.block(k * width, k * width, width, width).norm());
+  }
+  Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const double both = size[i] * size[j];
+      if (both > 0.0) {
+        alike(i, j) = S.block(i * width, j * width, width, width).norm() / both;
+      }
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(alike);
+  const Eigen::ArrayXd l = axes.eigenvalues().array().max(0.0);
+  return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
+}
+
 class Scorer {
  public:
   Scorer(const ModelFit& fit, const RecordingSystem& system, const FitProjection& P)
       : fit_(fit), system_(system), P_(P), r_(P.times(system.residuals())) {}
 
-  /// All places of all events; solves are shared.
-  [[nodiscard]] std::vector<std::vector<Found>> score(
-      const std::vector<SingleEvent>& events) const {
-    std::vector<std::vector<Found>> result(events.size());
-    std::vector<std::pair<std::size_t, std::size_t>> waiting;
+  /// Solves are shared by events that need some.
+  [[nodiscard]] std::vector<Scored> score(const std::vector<SingleEvent>& events) const {
+    std::vector<Scored> result(events.size());
+    std::vector<std::size_t> waiting;
     Eigen::Index columns = 0;
     for (std::size_t e = 0; e < events.size(); ++e) {
-      result[e].resize(events[e].places.size());
-      for (std::size_t place = 0; place < events[e].places.size(); ++place) {
-        const Dummies& dummies = events[e].places[place];
-        if (dummies.parts.size() == 1) {
-          result[e][place] = alone(dummies);
-        } else if (!dummies.parts.empty()) {
-          waiting.push_back({e, place});
-          columns += dummies.parts.front().rows.cols();
-        }
-        if (columns >= kBatch) solve(events, waiting, columns, result);
+      const bool local = std::all_of(events[e].places.begin(), events[e].places.end(),
+                                     [](const Dummies& one) { return one.parts.size() == 1; });
+      if (local) {
+        result[e] = score_locally(events[e]);
+        continue;
       }
+      waiting.push_back(e);
+      columns += static_cast<Eigen::Index>(events[e].places.size()) * width(events[e]);
+      if (columns >= kBatch) solve(events, waiting, columns, result);
     }
     solve(events, waiting, columns, result);
     return result;
   }
 
  private:
-  [[nodiscard]] Found alone(const Dummies& dummies) const {
-    const auto& [k, M] = dummies.parts.front();
-    const auto here = r_.segment(system_.first_row(k), M.rows());
-    return judge(M.transpose() * here, M.transpose() * P_.own_block(k) * M,
-                 M.colwise().squaredNorm(), dummies.plausible);
+  [[nodiscard]] static Eigen::Index width(const SingleEvent& event) {
+    return event.places.front().parts.front().rows.cols();
   }
 
-  void solve(const std::vector<SingleEvent>& events,
-             std::vector<std::pair<std::size_t, std::size_t>>& waiting, Eigen::Index& columns,
-             std::vector<std::vector<Found>>& result) const {
+  /// Every place is within one measurement, and so is a group.
+  [[nodiscard]] Scored score_locally(const SingleEvent& event) const {
+    Scored result;
+    for (std::size_t first = 0; first < event.places.size();) {
+      const std::size_t k = event.places[first].parts.front().measurement;
+      const Eigen::MatrixXd own = P_.own_block(k);
+      const auto here = r_.segment(system_.first_row(k), own.rows());
+      std::size_t next = first;
+      while (next < event.places.size() && event.places[next].group == event.places[first].group) {
+        const Eigen::MatrixXd& M = event.places[next].parts.front().rows;
+        result.places.push_back(judge(M.transpose() * here, M.transpose() * own * M,
+                                      M.colwise().squaredNorm(), event.places[next].plausible));
+        ++next;
+      }
+      const Eigen::Index count = event.places[first].parts.front().rows.cols();
+      Eigen::MatrixXd all(own.rows(), count * static_cast<Eigen::Index>(next - first));
+      for (std::size_t place = first; place < next; ++place) {
+        all.middleCols(count * static_cast<Eigen::Index>(place - first), count) =
+            event.places[place].parts.front().rows;
+      }
+      result.tried += effective_tries(all.transpose() * own * all, count);
+      first = next;
+    }
+    return result;
+  }
+
+  void solve(const std::vector<SingleEvent>& events, std::vector<std::size_t>& waiting,
+             Eigen::Index& columns, std::vector<Scored>& result) const {
     const BlockSystem& normal = system_.normal_equations();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(normal.unknowns(), columns);
+    Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
+    Eigen::VectorXd whole = Eigen::VectorXd::Zero(columns);
     Eigen::Index at = 0;
-    for (const auto& [e, place] : waiting) {
-      const Dummies& dummies = events[e].places[place];
-      const Eigen::Index count = dummies.parts.front().rows.cols();
-      for (const auto& [k, M] : dummies.parts) {
-        const Measurement& one = fit_.problem.measurements[k];
-        const auto add = [&](int node, const RowsByNode& J) {
-          const int size = node < 0 ? 0 : normal.size(node);
-          if (size == 0) return;
-          right.block(normal.offset(node), at, size, count) +=
-              J.topLeftCorner(one.rows, size).transpose() * M;
-        };
-        add(one.from, P_.rows_of(k).from);
-        add(one.to, P_.rows_of(k).to);
+    for (const std::size_t e : waiting) {
+      const Eigen::Index count = width(events[e]);
+      for (const Dummies& dummies : events[e].places) {
+        for (const auto& [k, M] : dummies.parts) {
+          const Measurement& one = fit_.problem.measurements[k];
+          const int first = system_.first_row(k);
+          const auto add = [&](int node, const RowsByNode& J) {
+            const int size = node < 0 ? 0 : normal.size(node);
+            if (size == 0) return;
+            right.block(normal.offset(node), at, size, count) +=
+                J.topLeftCorner(one.rows, size).transpose() * M;
+          };
+          add(one.from, P_.rows_of(k).from);
+          add(one.to, P_.rows_of(k).to);
+          g.segment(at, count) += M.transpose() * r_.segment(first, M.rows());
+          whole.segment(at, count) += M.colwise().squaredNorm();
+          aside.middleCols(at, count) += P_.set_aside().middleRows(first, M.rows()).transpose() * M;
+        }
+        at += count;
       }
-      at += count;
     }
     const Eigen::MatrixXd x = system_.solve_nodes(right);
     at = 0;
-    for (const auto& [e, place] : waiting) {
-      const Dummies& dummies = events[e].places[place];
-      const Eigen::Index count = dummies.parts.front().rows.cols();
-      Eigen::VectorXd g = Eigen::VectorXd::Zero(count);
-      Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(count, count);
-      Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(P_.set_aside().cols(), count);
-      for (const auto& [k, M] : dummies.parts) {
-        const int first = system_.first_row(k);
-        g += M.transpose() * r_.segment(first, M.rows());
-        whole += M.transpose() * M;
-        aside += P_.set_aside().middleRows(first, M.rows()).transpose() * M;
+    for (const std::size_t e : waiting) {
+      const SingleEvent& event = events[e];
+      const Eigen::Index count = width(event);
+      const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
+      const auto Q = aside.middleCols(at, all);
+      const Eigen::MatrixXd S = gram(event) -
+                                right.middleCols(at, all).transpose() * x.middleCols(at, all) -
+                                Q.transpose() * Q;
+      for (Eigen::Index own = 0; own < all; own += count) {
+        result[e].places.push_back(
+            judge(g.segment(at + own, count), S.block(own, own, count, count),
+                  whole.segment(at + own, count),
+                  event.places[static_cast<std::size_t>(own / count)].plausible));
       }
-      const Eigen::MatrixXd S = whole -
-                                right.middleCols(at, count).transpose() * x.middleCols(at, count) -
-                                aside.transpose() * aside;
-      result[e][place] = judge(g, S, whole.diagonal(), dummies.plausible);
-      at += count;
+      result[e].tried = effective_tries(S, count);
+      at += all;
     }
     waiting.clear();
     columns = 0;
+  }
+
+  /// M'M of all places together.
+  [[nodiscard]] static Eigen::MatrixXd gram(const SingleEvent& event) {
+    const Eigen::Index count = width(event);
+    const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
+    std::map<std::size_t, std::vector<std::pair<Eigen::Index, const Eigen::MatrixXd*>>> rows;
+    for (std::size_t place = 0; place < event.places.size(); ++place) {
+      for (const auto& [k, M] : event.places[place].parts) {
+        rows[k].push_back({count * static_cast<Eigen::Index>(place), &M});
+      }
+    }
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
+    for (const auto& [k, here] : rows) {
+      for (const auto& [i, M] : here) {
+        for (const auto& [j, N] : here) {
+          result.block(i, j, count, count) += M->transpose() * *N;
+        }
+      }
+    }
+    return result;
   }
 
   /// Of what can be seen, g' S^-1 g; with a prior, as ScoreTest has it.
@@ -213,23 +288,22 @@ std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
   const Eigen::MatrixXd apart = aside.cols() > 0 ? aside : Eigen::MatrixXd(system.rows(), 0);
   const FitProjection P(fit, fit.problem, system, apart);
   const std::vector<SingleEvent> events = single_events(fit, tests, P);
-  const std::vector<std::vector<Found>> found = Scorer(fit, system, P).score(events);
+  const std::vector<Scored> scored = Scorer(fit, system, P).score(events);
   std::vector<Ranked> ranked;
   for (std::size_t e = 0; e < events.size(); ++e) {
+    const std::vector<Found>& found = scored[e].places;
     std::size_t best = 0;
-    double tried = 0.0;
-    for (std::size_t place = 0; place < found[e].size(); ++place) {
-      if (found[e][place].log_p < found[e][best].log_p) best = place;
-      tried += found[e][place].dof > 0 ? 1.0 : 0.0;
+    for (std::size_t place = 1; place < found.size(); ++place) {
+      if (found[place].log_p < found[best].log_p) best = place;
     }
-    if (tried == 0.0) continue;
+    if (found[best].dof == 0) continue;
     Ranked one;
     one.test.kind = events[e].kind;
     one.test.name = events[e].name;
-    one.test.in_words = events[e].words(best, found[e][best].size);
-    one.test.score = found[e][best].score;
-    one.test.dof = found[e][best].dof;
-    one.log_p = std::min(0.0, found[e][best].log_p + std::log(tried));
+    one.test.in_words = events[e].words(best, found[best].size);
+    one.test.score = found[best].score;
+    one.test.dof = found[best].dof;
+    one.log_p = std::min(0.0, found[best].log_p + std::log(scored[e].tried));
     one.dummies = &events[e].places[best];
     if (one.test.kind != "session") {
       for (const DummyRows& part : one.dummies->parts) {

@@ -62,10 +62,10 @@ std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& contex
   add("per second", "m/sqrt(s)", 0.0, noise);
   noise = silence();
   noise.heading_per_s = 1.0;
-  add("per second, heading", "rad/sqrt(s)", 0.0, noise);
+  add("per second, heading", "rad/sqrt(s)", kClearly, noise);
   noise = silence();
   noise.travel_per_s = 1.0;
-  add("per second, travel", "m/sqrt(s)", 0.0, noise);
+  add("per second, travel", "m/sqrt(s)", kClearly, noise);
   noise = silence();
   noise.heading_per_rad = 1.0;
   add("per radian turned", "rad/sqrt(rad)", kClearly, noise);

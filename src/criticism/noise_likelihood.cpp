@@ -95,13 +95,23 @@ NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
     at += step;
     value = {value[1], value[2], deviance(law, std::exp(at + step))};
   }
-  const double bend = value[0] - 2.0 * value[1] + value[2];
-  Best result{std::exp(at), std::max(0.0, -value[1])};
-  if (!(bend > 0.0)) return result;
-  const double vertex = at + std::clamp(0.5 * (value[0] - value[2]) / bend, -1.0, 1.0) * step;
-  const double there = deviance(law, std::exp(vertex));
-  if (there < value[1]) result = {std::exp(vertex), std::max(0.0, -there)};
-  return result;
+  // Twice, the second time with a third of the step: the curve is no parabola far from its bottom.
+  for (int look = 0; look < 2; ++look) {
+    const double bend = value[0] - 2.0 * value[1] + value[2];
+    if (bend > 0.0) {
+      const double vertex = at + std::clamp(0.5 * (value[0] - value[2]) / bend, -1.0, 1.0) * step;
+      const double there = deviance(law, std::exp(vertex));
+      if (there < value[1]) {
+        at = vertex;
+        value[1] = there;
+      }
+    }
+    if (look > 0) break;
+    step /= 3.0;
+    value[0] = deviance(law, std::exp(at - step));
+    value[2] = deviance(law, std::exp(at + step));
+  }
+  return {std::exp(at), std::max(0.0, -value[1])};
 }
 
 }  // namespace trussmap

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
+constexpr std::size_t kBumps = 3;       // places tried in a piece
 
 class Collector {
  public:
@@ -62,25 +63,64 @@ class Collector {
                                     leg.time.to, of_session(leg.session)),
                         {},
                         {}};
+      std::vector<std::string> bumped;  // the wheel, per place
       for (int node = from.from; node != to.from;) {
         const auto found = piece_from.find(node);
         if (found == piece_from.end()) break;
         const Measurement& piece = at(found->second);
         node = piece.to;
         if (projection_.left_out(found->second)) continue;
-        Eigen::MatrixXd change = Eigen::MatrixXd::Zero(piece.rows, 3);
-        change.topRows<3>().setIdentity();
-        if (piece.rows == 4) change(3, 2) = -0.5;
-        event.places.push_back({{changed(found->second, change)}});
+        add_bumps(found->second, event.places, bumped);
       }
-      event.words = [name = event.name](std::size_t, const Eigen::VectorXd& size) {
-        return fmt::format(
-            "something moved the robot by {:.1f} cm ahead, {:.1f} cm to the left and {:.1f} deg "
-            "that its wheels do not say, in the leg {}",
-            100.0 * size[0], 100.0 * size[1], kDegrees * size[2], name);
+      event.words = [name = event.name, bumped](std::size_t place, const Eigen::VectorXd& size) {
+        if (size.size() > 1) {
+          return fmt::format(
+              "something moved the robot by {:.1f} cm ahead, {:.1f} cm to the left and {:.1f} deg "
+              "that its wheels do not say, in the leg {}",
+              100.0 * size[0], 100.0 * size[1], kDegrees * size[2], name);
+        }
+        return fmt::format("the {} wheel said {:.1f} cm too {} at once, in the leg {}",
+                           bumped[place], 100.0 * std::abs(size[0]),
+                           size[0] < 0.0 ? "much" : "little", name);
       };
       if (!event.places.empty()) events_.push_back(std::move(event));
     }
+  }
+
+  /// Motion beyond the record after some of a piece's rows: of one wheel, or any.
+  void add_bumps(std::size_t k, std::vector<Dummies>& places,
+                 std::vector<std::string>& bumped) const {
+    const Measurement& piece = at(k);
+    const std::vector<PieceRow>& rows = problem_.pieces[piece.source];
+    std::vector<Pose> ends;
+    std::vector<int> readings;
+    Pose end;
+    int count = 0;
+    for (const PieceRow& row : rows) {
+      const double half = 0.5 * row.turn;
+      end = compose(end, {row.path * std::cos(half), row.path * std::sin(half), row.turn});
+      ends.push_back(end);
+      readings.push_back(count);
+      count += std::isnan(row.reading) ? 0 : 1;
+    }
+    const double by_turn = 1.0 / fit_.model.robot.wheelbase;
+    const auto by_motion = [&](std::size_t row) {
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(piece.rows, 3);
+      change.topLeftCorner<2, 2>() = rotation(ends[row].heading);
+      change.block<2, 1>(0, 2) = quarter_turn(end.position() - ends[row].position());
+      change(2, 2) = 1.0;
+      if (piece.rows == 4) change(3, 2) = -static_cast<double>(count - readings[row]) / count;
+      return change;
+    };
+    const int group = static_cast<int>(places.size());
+    for (std::size_t part = 0; part < kBumps; ++part) {
+      const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, -by_turn))}, {}, group});
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, by_turn))}, {}, group});
+      bumped.insert(bumped.end(), {"left", "right"});
+    }
+    places.push_back({{changed(k, by_motion(rows.size() / 2))}, {}, group + 1});
+    bumped.emplace_back("");
   }
 
   void add_sightings() {

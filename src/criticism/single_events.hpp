@@ -23,6 +23,7 @@ struct DummyRows {
 struct Dummies {
   std::vector<DummyRows> parts;
   Eigen::VectorXd plausible = {};  ///< sd of a prior on each coefficient; empty: none
+  int group = 0;                   ///< of an event's places that may be much the same
 };
 
 struct SingleEvent {
