@@ -183,8 +183,9 @@ NoiseTest shape_test(const char* name, const char* words, double found,
   const double sd =
       std::sqrt((drawn.array() - mean).square().sum() / static_cast<double>(drawn.size() - 1));
   const double z = sd > 0.0 ? (found - mean) / sd : 0.0;
+  const double skewness = (drawn.array() - mean).cube().mean() / std::max(sd * sd * sd, 1e-300);
   test.score = z > 0.0 ? z * z : 0.0;
-  test.p_value = normal_tail(z);
+  test.p_value = skewed_tail(z, skewness);
   test.size = found - mean;
   return test;
 }
@@ -233,11 +234,10 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
 
   NoiseLikelihood likelihood(fit, apart);
   std::vector<NoiseTest> result;
-  std::vector<double> margins;
-  std::vector<NoiseLaw> laws = noise_laws(fit, tests.context());
-  std::erase_if(laws, [&](const NoiseLaw& law) {
+  std::vector<NoiseLaw> laws;
+  for (NoiseLaw& law : noise_laws(fit, tests.context())) {
     const LawScore score = score_of(law, problem, system, P, own, r, probes);
-    if (!score.seen) return true;
+    if (!score.seen) continue;
     NoiseTest test;
     test.law = law.name;
     test.unit = law.unit;
@@ -252,9 +252,8 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
     test.size = std::sqrt(variance);
     test.in_words = noise_in_words(law, test.size, fit.model);
     result.push_back(std::move(test));
-    margins.push_back(law.margin);
-    return false;
-  });
+    laws.push_back(std::move(law));
+  }
 
   const auto adjust_p = [&result] {
     std::vector<double> p_values;
@@ -263,7 +262,7 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
     for (std::size_t k = 0; k < result.size(); ++k) result[k].p_adjusted = adjusted[k];
   };
   const auto claim = [&](std::size_t k) {
-    return result[k].score - (k < margins.size() ? margins[k] : 0.0);
+    return result[k].score - (k < laws.size() ? laws[k].margin : 0.0);
   };
   if (!result.empty()) {
     adjust_p();

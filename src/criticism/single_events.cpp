@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
-constexpr std::size_t kBumps = 3;       // places tried in a piece
+constexpr std::size_t kBumps = 5;       // places tried in a drive; on the spot only the 3 numbers
+constexpr double kLeastDrive = 0.1;     // m
 
 class Collector {
  public:
@@ -112,8 +113,11 @@ class Collector {
       if (piece.rows == 4) change(3, 2) = -static_cast<double>(count - readings[row]) / count;
       return change;
     };
-    const int group = static_cast<int>(places.size());
-    for (std::size_t part = 0; part < kBumps; ++part) {
+    double path = 0.0;
+    for (const PieceRow& row : rows) path += std::abs(row.path);
+    const bool drives = path > kLeastDrive;
+    const int group = 2 * static_cast<int>(places.size());
+    for (std::size_t part = 0; drives && part < kBumps; ++part) {
       const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));
       places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, -by_turn))}, {}, group});
       places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, by_turn))}, {}, group});

@@ -8,24 +8,28 @@
 //   M   whitened rows of the event's dummies     P   1 - the hat matrix of all unknowns
 //   g = M' r,  S = M' P M,  score = g' S^-1 g: the chi^2 that allowing for it takes away
 //
-//   kind       dummies                                                             dof    tried
-//   leg        motion beyond the record (ahead, left, turn) in one of its pieces   3      its
-//   pieces landmark   a step of its place from one session on; from one visit on          2 the
-//   visits
-//              its survey position                                                 2
-//   sighting   what it says (data_snooping.hpp: the same statistic)                1, 2
-//   session    scales of travel and turn, compass offset, delay, of it alone       1 - 4
+//   kind       dummies                                                              dof    tried
+//   leg        a jump in one wheel's travel, at five places of each of its drives   1
+//              any motion beyond the record, half-way through any of its pieces     3      all
+//              these
+//   landmark   a step of its place from one session on                              2
+//              from one visit of a session on                                       2      <= 16
+//              its survey position                                                  2
+//   sighting   what it says (data_snooping.hpp: the same statistic)                 1, 2
+//   session    scales of travel and turn, compass offset, delay, of it alone        1 - 4
 //
-// A leg's turn happens half-way through the piece, as far as the compass's mean is concerned. Where
-// several places are tried, the best counts and its p-value is times their number. Scores are
-// judged against the dispersion that the event leaves, phi = max(1, (chi^2 - score)/(dof - own)).
-// What sits in the fit's rows alone costs no solve (truss/selected_inverse.hpp); only landmarks'
-// steps and sessions do.
+// Where several places are tried, the best counts, and its p-value is times the number of
+// independent tests that they are worth (Galwey 2009). Scores are judged against the dispersion
+// that the event leaves, phi = max(1, (chi^2 - score)/(dof - own)). What sits in one measurement's
+// rows costs no solve (truss/selected_inverse.hpp); only landmarks' steps and sessions do.
 //
-// One event shows in several places: a wrong sighting in the legs on both sides, a bump in the
-// sightings around it. The one of least p-value - the likeliest for its freedom - comes first; ask
-// for the next with the first taken out (`aside`). A step at a landmark's last visit is a wrong
-// sighting; in a session's only visit, too, and is then listed before it.
+// One event shows in several places: a wrong sighting in the legs on both sides, a bump at a leg's
+// end in the next one's turn. The one of least p-value - the likeliest for its freedom - comes
+// first; ask for the next with the first taken out (`aside`). A landmark's step at its last visit
+// is a wrong sighting and left to that; between sessions it is listed before the sighting.
+//
+// On 56 legs a bump of 5 sds (with which all else determines it) is first in nine of ten cases,
+// where one who is told the row and the wheel has it first in 95 of 100; from 6.5 on, in 98.
 #pragma once
 
 #include "trussmap/criticism/score_test.hpp"
