@@ -226,29 +226,29 @@ TEST(EventTests, WhatIsTakenOutIsNotFoundAgain) {
 }
 
 TEST(SlowEventTests, ABumpOfFiveStandardDeviationsIsFirst) {
-  constexpr int kSeeds = 40;
+  constexpr int kSeeds = 25;
   int first = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Bump one = bumped({}, 5.0, seed);
     const EventTest found = events_of(one.world).front();
     first += found.kind == "leg" && found.name == one.name ? 1 : 0;
   }
-  EXPECT_GE(first, 0.8 * kSeeds);  // expected 0.9, less 2 sds of a count
+  EXPECT_GE(first, 0.76 * kSeeds);  // of 200, 180 are: 0.9 less 2.3 sds of a count
 }
 
 TEST(SlowEventTests, ALandmarkMovedByFiveStandardDeviationsIsFirst) {
-  constexpr int kSeeds = 40;
+  constexpr int kSeeds = 25;
   int first = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     std::string landmark;
     const EventTest found = events_of(with_moved_landmark(5.0, seed, landmark)).front();
     first += found.kind == "landmark" && found.name == landmark ? 1 : 0;
   }
-  EXPECT_GE(first, 0.85 * kSeeds);
+  EXPECT_GE(first, 0.76 * kSeeds);  // of 200, 182 are: 0.91 less 2.6 sds of a count
 }
 
 TEST(SlowEventTests, WhereNothingHappenedNothingIsNamed) {
-  constexpr int kSeeds = 80;
+  constexpr int kSeeds = 50;
   int named = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     named += events_of(simulate_world({true, true, false, 1, 2}, seed)).front().p_adjusted < 0.05;
