@@ -61,12 +61,16 @@ ScoreTest::ScoreTest(const ModelFit& fit)
   }
 }
 
+Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
+  const RecordingSystem& system = *clean_system_;
+  Eigen::MatrixXd left = M - system.times(system.solve_nodes(system.transposed_times(M)));
+  if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+  return left;
+}
+
 void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return;
-  const RecordingSystem& system = *clean_system_;
-  Eigen::MatrixXd left =
-      columns - system.times(system.solve_nodes(system.transposed_times(columns)));
-  left -= present_ * (present_.transpose() * left);
+  Eigen::MatrixXd left = projected(columns);
   // Columns of any unit: only their directions count, and those that have none left go.
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < left.cols(); ++k) {

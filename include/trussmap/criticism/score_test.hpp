@@ -63,6 +63,9 @@ class ScoreTest {
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
+  /// M less its projections on J and on what is present.
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
+
   /// Takes further whitened columns as present from now on: what they explain is no longer there
   /// to be explained.
   void take_out(const Eigen::MatrixXd& columns);
@@ -70,6 +73,8 @@ class ScoreTest {
   [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
   /// Of the fit, less what the columns taken out explain.
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
+  /// Orthonormal columns that the model's effects, and what was taken out, span.
+  [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
   [[nodiscard]] const ShapeContext& context() const { return context_; }

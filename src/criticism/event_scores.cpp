@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "event_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+namespace trussmap {
+namespace {
+
+constexpr double kUnchecked = 1e-6;
+constexpr Eigen::Index kBatch = 64;  // columns solved at a time
+
+/// How many independent tests so many that overlap are worth: (sum sqrt l)^2 / sum l over the
+/// eigenvalues l of their correlations (Galwey 2009).
+double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
+  const Eigen::Index count = S.cols() / width;
+  if (count == 1) return 1.0;
+  Eigen::VectorXd size(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    size[k] = std::sqrt(S.block(k * width, k * width, width, width).norm());
+  }
+  Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const double both = size[i] * size[j];
+      if (both > 0.0) {
+        alike(i, j) = S.block(i * width, j * width, width, width).norm() / both;
+      }
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(alike);
+  const Eigen::ArrayXd l = axes.eigenvalues().array().max(0.0);
+  return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
+}
+
+class Scorer {
+ public:
+  Scorer(const ModelFit& fit, const RecordingSystem& system, const FitProjection& P)
+      : fit_(fit), system_(system), P_(P), r_(P.times(system.residuals())) {}
+
+  /// Solves are shared by events that need some.
+  [[nodiscard]] std::vector<Scored> score(const std::vector<SingleEvent>& events) const {
+    std::vector<Scored> result(events.size());
+    std::vector<std::size_t> waiting;
+    Eigen::Index columns = 0;
+    for (std::size_t e = 0; e < events.size(); ++e) {
+      const bool local = std::all_of(events[e].places.begin(), events[e].places.end(),
+                                     [](const Dummies& one) { return one.parts.size() == 1; });
+      if (local) {
+        result[e] = score_locally(events[e]);
+        continue;
+      }
+      waiting.push_back(e);
+      columns += static_cast<Eigen::Index>(events[e].places.size()) * width(events[e]);
+      if (columns >= kBatch) solve(events, waiting, columns, result);
+    }
+    solve(events, waiting, columns, result);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] static Eigen::Index width(const SingleEvent& event) {
+    return event.places.front().parts.front().rows.cols();
+  }
+
+  /// Every place is within one measurement, and so is a group.
+  [[nodiscard]] Scored score_locally(const SingleEvent& event) const {
+    Scored result;
+    for (std::size_t first = 0; first < event.places.size();) {
+      const std::size_t k = event.places[first].parts.front().measurement;
+      const Eigen::MatrixXd own = P_.own_block(k);
+      const auto here = r_.segment(system_.first_row(k), own.rows());
+      std::size_t next = first;
+      while (next < event.places.size() && event.places[next].group == event.places[first].group) {
+        const Eigen::MatrixXd& M = event.places[next].parts.front().rows;
+        result.places.push_back(judge(M.transpose() * here, M.transpose() * own * M,
+                                      M.colwise().squaredNorm(), event.places[next].plausible));
+        ++next;
+      }
+      const Eigen::Index count = event.places[first].parts.front().rows.cols();
+      Eigen::MatrixXd all(own.rows(), count * static_cast<Eigen::Index>(next - first));
+      for (std::size_t place = first; place < next; ++place) {
+        all.middleCols(count * static_cast<Eigen::Index>(place - first), count) =
+            event.places[place].parts.front().rows;
+      }
+      result.tried += effective_tries(all.transpose() * own * all, count);
+      first = next;
+    }
+    return result;
+  }
+
+  void solve(const std::vector<SingleEvent>& events, std::vector<std::size_t>& waiting,
+             Eigen::Index& columns, std::vector<Scored>& result) const {
+    const BlockSystem& normal = system_.normal_equations();
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(normal.unknowns(), columns);
+    Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
+    Eigen::VectorXd whole = Eigen::VectorXd::Zero(columns);
+    Eigen::Index at = 0;
+    for (const std::size_t e : waiting) {
+      const Eigen::Index count = width(events[e]);
+      for (const Dummies& dummies : events[e].places) {
+        for (const auto& [k, M] : dummies.parts) {
+          const Measurement& one = fit_.problem.measurements[k];
+          const int first = system_.first_row(k);
+          const auto add = [&](int node, const RowsByNode& J) {
+            const int size = node < 0 ? 0 : normal.size(node);
+            if (size == 0) return;
+            right.block(normal.offset(node), at, size, count) +=
+                J.topLeftCorner(one.rows, size).transpose() * M;
+          };
+          add(one.from, P_.rows_of(k).from);
+          add(one.to, P_.rows_of(k).to);
+          g.segment(at, count) += M.transpose() * r_.segment(first, M.rows());
+          whole.segment(at, count) += M.colwise().squaredNorm();
+          aside.middleCols(at, count) += P_.set_aside().middleRows(first, M.rows()).transpose() * M;
+        }
+        at += count;
+      }
+    }
+    const Eigen::MatrixXd x = system_.solve_nodes(right);
+    at = 0;
+    for (const std::size_t e : waiting) {
+      const SingleEvent& event = events[e];
+      const Eigen::Index count = width(event);
+      const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
+      const auto Q = aside.middleCols(at, all);
+      const Eigen::MatrixXd S = gram(event) -
+                                right.middleCols(at, all).transpose() * x.middleCols(at, all) -
+                                Q.transpose() * Q;
+      for (Eigen::Index own = 0; own < all; own += count) {
+        result[e].places.push_back(
+            judge(g.segment(at + own, count), S.block(own, own, count, count),
+                  whole.segment(at + own, count),
+                  event.places[static_cast<std::size_t>(own / count)].plausible));
+      }
+      result[e].tried = effective_tries(S, count);
+      at += all;
+    }
+    waiting.clear();
+    columns = 0;
+  }
+
+  /// M'M of all places together.
+  [[nodiscard]] static Eigen::MatrixXd gram(const SingleEvent& event) {
+    const Eigen::Index count = width(event);
+    const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
+    std::map<std::size_t, std::vector<std::pair<Eigen::Index, const Eigen::MatrixXd*>>> rows;
+    for (std::size_t place = 0; place < event.places.size(); ++place) {
+      for (const auto& [k, M] : event.places[place].parts) {
+        rows[k].push_back({count * static_cast<Eigen::Index>(place), &M});
+      }
+    }
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(all, all);
+    for (const auto& [k, here] : rows) {
+      for (const auto& [i, M] : here) {
+        for (const auto& [j, N] : here) {
+          result.block(i, j, count, count) += M->transpose() * *N;
+        }
+      }
+    }
+    return result;
+  }
+
+  /// Of what can be seen, g' S^-1 g; with a prior, as ScoreTest has it.
+  [[nodiscard]] Found judge(const Eigen::VectorXd& g, const Eigen::MatrixXd& S,
+                            const Eigen::VectorXd& whole, const Eigen::VectorXd& plausible) const {
+    const bool prior = plausible.size() > 0;
+    const double chi2 = fit_.adjustment.chi2;
+    const int dof = fit_.adjustment.dof;
+    const double dispersion = dof > 0 ? std::max(1.0, chi2 / dof) : 1.0;
+    Found result;
+    result.size = Eigen::VectorXd::Zero(g.size());
+    std::vector<Eigen::Index> seen;
+    for (Eigen::Index k = 0; k < g.size(); ++k) {
+      bool counts = S(k, k) > (prior ? kLeastShare : kUnchecked) * whole[k] && S(k, k) > 0.0;
+      if (prior) {
+        counts = counts && std::sqrt(dispersion / S(k, k)) < kLargestUncertainty * plausible[k];
+      }
+      if (counts) seen.push_back(k);
+    }
+    if (seen.empty()) return result;
+    const Eigen::VectorXd scale = S(seen, seen).diagonal().cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd scaled = scale.asDiagonal() * S(seen, seen) * scale.asDiagonal();
+    if (prior) {
+      const Eigen::VectorXd sds = plausible(seen);
+      scaled.diagonal() += dispersion * scale.cwiseAbs2().cwiseQuotient(sds.cwiseAbs2());
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scaled);
+    const Eigen::VectorXd along = axes.eigenvectors().transpose() * scale.cwiseProduct(g(seen));
+    Eigen::VectorXd size = Eigen::VectorXd::Zero(along.size());
+    for (Eigen::Index k = 0; k < along.size(); ++k) {
+      if (axes.eigenvalues()[k] < kUnchecked) continue;
+      ++result.dof;
+      result.score += along[k] * along[k] / axes.eigenvalues()[k];
+      size -= along[k] / axes.eigenvalues()[k] * axes.eigenvectors().col(k);
+    }
+    result.size(seen) = scale.cwiseProduct(size);
+    const double left = dof > result.dof ? (chi2 - result.score) / (dof - result.dof) : 1.0;
+    result.log_p = log_chi2_p_value(result.score / std::max(1.0, left), result.dof);
+    return result;
+  }
+
+  const ModelFit& fit_;
+  const RecordingSystem& system_;
+  const FitProjection& P_;
+  Eigen::VectorXd r_;
+};
+
+}  // namespace
+
+double log_chi2_p_value(double chi2, int dof) {
+  if (dof == 0) return 0.0;
+  const double p = chi2_p_value(chi2, dof);
+  if (p > 1e-280) return std::log(p);
+  return -0.5 * chi2 + (0.5 * dof - 1.0) * std::log(0.5 * chi2) - std::lgamma(0.5 * dof);
+}
+
+std::vector<Scored> score_events(const ModelFit& fit, const RecordingSystem& system,
+                                 const FitProjection& projection,
+                                 const std::vector<SingleEvent>& events) {
+  return Scorer(fit, system, projection).score(events);
+}
+
+}  // namespace trussmap

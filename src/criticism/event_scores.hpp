@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Scores of single events, g' (M' P M)^-1 g: those within one measurement from its own block of P,
+// the others by solves that are shared.
+#pragma once
+
+#include <vector>
+
+#include "fit_projection.hpp"
+#include "single_events.hpp"
+
+namespace trussmap {
+
+/// What a place explains, against the dispersion that it leaves.
+struct Found {
+  double score = 0.0;  ///< chi^2 that it explains
+  int dof = 0;
+  double log_p = 0.0;    ///< natural logarithm of the p-value
+  Eigen::VectorXd size;  ///< of the dummies' coefficients; 0 where unseen
+};
+
+struct Scored {
+  std::vector<Found> places;
+  double tried = 0.0;  ///< independent tests that they are worth
+};
+
+/// One per event. `projection` is that of the fit itself.
+[[nodiscard]] std::vector<Scored> score_events(const ModelFit& fit, const RecordingSystem& system,
+                                               const FitProjection& projection,
+                                               const std::vector<SingleEvent>& events);
+
+/// Natural logarithm of the upper tail of chi^2, also where the tail itself is 0.
+[[nodiscard]] double log_chi2_p_value(double chi2, int dof);
+
+}  // namespace trussmap

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/event_tests.hpp"
+
+#include "trussmap/criticism/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "event_scores.hpp"
+#include "fit_projection.hpp"
+#include "single_events.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr double kLevel = 0.05;
+constexpr std::size_t kMostKept = 64;
+
+struct Ranked {
+  EventTest test;
+  double log_p = 0.0;
+  const Dummies* dummies = nullptr;
+};
+
+/// Sightings that the fit leaves out, against the fit without them.
+void add_left_out(const ModelFit& fit, const RecordingSystem& system, std::vector<Ranked>& ranked) {
+  if (fit.adjustment.left_out.empty()) return;
+  RecordingSystem whole(fit.problem, fit.columns.border);
+  whole.linearise(fit.adjustment.state, fit.adjustment.coefficients);
+  for (const int left_out : fit.adjustment.left_out) {
+    const std::size_t k = idx(left_out);
+    const Measurement& one = fit.problem.measurements[k];
+    const Eigen::MatrixXd J = whole.transposed_rows(k);
+    const Eigen::VectorXd r = whole.residuals().segment(whole.first_row(k), one.rows);
+    const Eigen::MatrixXd R =
+        Eigen::MatrixXd::Identity(one.rows, one.rows) + J.transpose() * system.solve(J);
+    Ranked event;
+    event.test.kind = one.kind == MeasurementKind::survey ? "landmark" : "sighting";
+    event.test.name = describe(fit.problem, one);
+    event.test.in_words = event.test.name + " contradicts the rest, and is left out";
+    event.test.score = r.dot(R.inverse() * r);
+    event.test.dof = one.rows;
+    const double dispersion =
+        fit.adjustment.dof > 0 ? std::max(1.0, fit.adjustment.chi2 / fit.adjustment.dof) : 1.0;
+    event.log_p = log_chi2_p_value(event.test.score / dispersion, one.rows);
+    event.test.measurements = {k};
+    ranked.push_back(std::move(event));
+  }
+}
+
+Eigen::MatrixXd dense(const Dummies& dummies, const RecordingSystem& system) {
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(system.rows(), dummies.parts.front().rows.cols());
+  for (const auto& [k, rows] : dummies.parts) {
+    M.middleRows(system.first_row(k), rows.rows()) = rows;
+  }
+  return M;
+}
+
+}  // namespace
+
+std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
+                                   const Eigen::MatrixXd& aside) {
+  const RecordingSystem& system = tests.system();
+  const Eigen::MatrixXd apart = aside.cols() > 0 ? aside : Eigen::MatrixXd(system.rows(), 0);
+  const FitProjection P(fit, fit.problem, system, apart);
+  const std::vector<SingleEvent> events = single_events(fit, tests, P);
+  const std::vector<Scored> scored = score_events(fit, system, P, events);
+  std::vector<Ranked> ranked;
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const std::vector<Found>& found = scored[e].places;
+    std::size_t best = 0;
+    for (std::size_t place = 1; place < found.size(); ++place) {
+      if (found[place].log_p < found[best].log_p) best = place;
+    }
+    if (found[best].dof == 0) continue;
+    Ranked one;
+    one.test.kind = events[e].kind;
+    one.test.name = events[e].name;
+    one.test.in_words = events[e].words(best, found[best].size);
+    one.test.score = found[best].score;
+    one.test.dof = found[best].dof;
+    one.log_p = std::min(0.0, found[best].log_p + std::log(scored[e].tried));
+    one.dummies = &events[e].places[best];
+    if (one.test.kind != "session") {
+      for (const DummyRows& part : one.dummies->parts) {
+        one.test.measurements.push_back(part.measurement);
+      }
+    }
+    ranked.push_back(std::move(one));
+  }
+  add_left_out(fit, system, ranked);
+  std::vector<double> p_values;
+  for (Ranked& one : ranked) {
+    one.test.p_value = std::exp(one.log_p);
+    p_values.push_back(one.test.p_value);
+  }
+  const std::vector<double> adjusted = holm(p_values);
+  for (std::size_t k = 0; k < ranked.size(); ++k) ranked[k].test.p_adjusted = adjusted[k];
+  // Equal to rounding is equal: then the order of the kinds decides.
+  const auto key = [](const Ranked& one) { return std::round(1e6 * one.log_p); };
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [&](const Ranked& a, const Ranked& b) { return key(a) < key(b); });
+  std::vector<EventTest> result;
+  for (Ranked& one : ranked) {
+    if (one.test.p_adjusted < kLevel && result.size() < kMostKept && one.dummies != nullptr) {
+      one.test.projected = P.times(dense(*one.dummies, system));
+    }
+    result.push_back(std::move(one.test));
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What each law of noise adds to the covariance of each measurement.
+#pragma once
+
+#include "trussmap/criticism/effect_columns.hpp"
+#include "trussmap/criticism/model_fit.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct NoiseLaw {
+  std::string name;
+  std::string unit;
+  double margin = 0.0;         ///< by which its score must exceed those of laws without
+  std::vector<Matrix4> added;  ///< per measurement: covariance per unit of variance, in its values
+};
+
+/// Those that add something anywhere.
+[[nodiscard]] std::vector<NoiseLaw> noise_laws(const ModelFit& fit, const ShapeContext& context);
+
+/// "each start adds 4.0 mm of travel noise"; `sd` in the law's unit.
+[[nodiscard]] std::string noise_in_words(const NoiseLaw& law, double sd, const Model& model);
+
+}  // namespace trussmap

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "noise_likelihood.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace trussmap {
+
+NoiseLikelihood::NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& aside)
+    : fit_(fit),
+      aside_stated_(aside),
+      problem_(fit.problem),
+      system_(problem_, fit.columns.border),
+      left_out_(fit.problem.measurements.size(), false) {
+  if (aside_stated_.cols() == 0) aside_stated_.resize(system_.rows(), 0);
+  aside_ = aside_stated_;
+  std::vector<double> weights(problem_.measurements.size(), 1.0);
+  for (const int k : fit.adjustment.left_out) {
+    left_out_[idx(k)] = true;
+    weights[idx(k)] = 0.0;
+  }
+  system_.set_weights(weights);
+  for (const Measurement& one : problem_.measurements) {
+    Matrix4 colour = Matrix4::Zero();
+    colour.topLeftCorner(one.rows, one.rows) =
+        one.whitener.topLeftCorner(one.rows, one.rows).inverse();
+    colour_.push_back(colour);
+  }
+  stated_ = minus_two_log();
+}
+
+double NoiseLikelihood::minus_two_log() {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    if (left_out_[k]) continue;
+    const Measurement& one = problem_.measurements[k];
+    sum -= 2.0 * one.whitener.diagonal().head(one.rows).array().log().sum();
+  }
+  const double chi2 = system_.linearise(fit_.adjustment.state, fit_.adjustment.coefficients);
+  const RecordingSystem::Step step = system_.solve_step();
+  sum += system_.log_determinant() + chi2 - step.promised;
+  if (aside_.cols() == 0) return sum;
+  const Eigen::MatrixXd& M = system_.border();
+  const Eigen::Index nodes = step.nodes.size();
+  Eigen::MatrixXd right(nodes + M.cols(), aside_.cols());
+  right.topRows(nodes) = system_.transposed_times(aside_);
+  right.bottomRows(M.cols()) = M.transpose() * aside_;
+  const Eigen::MatrixXd S = aside_.transpose() * aside_ - right.transpose() * system_.solve(right);
+  Eigen::VectorXd left = system_.residuals() + system_.times(step.nodes);
+  if (M.cols() > 0) left += M * step.coefficients;
+  const Eigen::VectorXd g = aside_.transpose() * left;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(S);
+  return sum + factor.vectorD().array().abs().log().sum() - g.dot(factor.solve(g));
+}
+
+double NoiseLikelihood::deviance(const NoiseLaw& law, double variance) {
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    Measurement& one = problem_.measurements[k];
+    const Matrix4& stated = fit_.problem.measurements[k].whitener;
+    const bool noisier = variance > 0.0 && !law.added[k].isZero(0.0);
+    one.whitener =
+        noisier
+            ? whitener_of(colour_[k] * colour_[k].transpose() + variance * law.added[k], one.rows)
+            : stated;
+    if (aside_.cols() == 0) continue;
+    const int at = system_.first_row(k);
+    aside_.middleRows(at, one.rows) =
+        (one.whitener * colour_[k]).topLeftCorner(one.rows, one.rows) *
+        aside_stated_.middleRows(at, one.rows);
+  }
+  return minus_two_log() - stated_;
+}
+
+NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
+  // Downhill in steps of e in the variance, then the vertex of the parabola through the last three.
+  constexpr int kMostSteps = 12;
+  double at = std::log(guess);
+  double step = 1.0;
+  std::array<double, 3> value{};  // at - step, at, at + step
+  value[1] = deviance(law, std::exp(at));
+  value[2] = deviance(law, std::exp(at + step));
+  if (value[2] > value[1]) {
+    step = -step;
+    value[0] = value[2];
+    value[2] = deviance(law, std::exp(at + step));
+  } else {
+    value[0] = value[1] + 1.0;  // not needed: the first step goes on
+  }
+  for (int k = 0; k < kMostSteps && value[2] < value[1]; ++k) {
+    at += step;
+    value = {value[1], value[2], deviance(law, std::exp(at + step))};
+  }
+  // Twice, the second time with a third of the step: the curve is no parabola far from its bottom.
+  for (int look = 0; look < 2; ++look) {
+    const double bend = value[0] - 2.0 * value[1] + value[2];
+    if (bend > 0.0) {
+      const double vertex = at + std::clamp(0.5 * (value[0] - value[2]) / bend, -1.0, 1.0) * step;
+      const double there = deviance(law, std::exp(vertex));
+      if (there < value[1]) {
+        at = vertex;
+        value[1] = there;
+      }
+    }
+    if (look > 0) break;
+    step /= 3.0;
+    value[0] = deviance(law, std::exp(at - step));
+    value[2] = deviance(law, std::exp(at + step));
+  }
+  return {std::exp(at), std::max(0.0, -value[1])};
+}
+
+}  // namespace trussmap

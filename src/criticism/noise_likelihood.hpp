@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Restricted likelihood of a fit under a noise law.
+//
+//   -2 log R(l) = log|S| + log|X' S^-1 X| + least chi^2,    S = stated covariance + l V
+//
+// The least chi^2 is that of the linearised problem: one step of Gauss-Newton.
+#pragma once
+
+#include "trussmap/adjustment/recording_system.hpp"
+
+#include "noise_laws.hpp"
+
+namespace trussmap {
+
+class NoiseLikelihood {
+ public:
+  /// `aside`: whitened columns of further unknowns. Keeps a reference to the fit.
+  NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& aside);
+
+  /// -2 log R under the law with this variance, less that of the stated noise. Afterwards problem
+  /// and system are those under the law.
+  double deviance(const NoiseLaw& law, double variance);
+
+  struct Best {
+    double variance = 0.0;
+    double gain = 0.0;  ///< fall of the deviance
+  };
+  /// The law's likeliest variance, to some 10 %, sought from a first guess.
+  [[nodiscard]] Best best(const NoiseLaw& law, double guess);
+
+  [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
+  [[nodiscard]] const RecordingSystem& system() const { return system_; }
+  /// The further columns, whitened as the problem is.
+  [[nodiscard]] const Eigen::MatrixXd& aside() const { return aside_; }
+
+ private:
+  [[nodiscard]] double minus_two_log();
+
+  const ModelFit& fit_;
+  Eigen::MatrixXd aside_stated_;
+  Eigen::MatrixXd aside_;
+  RecordingProblem problem_;
+  RecordingSystem system_;
+  std::vector<Matrix4> colour_;  ///< inverse of the stated whitener
+  std::vector<bool> left_out_;
+  double stated_ = 0.0;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,287 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/criticism/noise_tests.hpp"
+
+#include "trussmap/criticism/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+
+#include "fit_projection.hpp"
+#include "noise_laws.hpp"
+#include "noise_likelihood.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr Eigen::Index kProbes = 48;
+constexpr Eigen::Index kDraws = 128;
+constexpr double kLeastRedundancy = 1e-6;
+constexpr double kWorthFitting = 0.01;  // p
+constexpr double kLeastDrive = 0.1;     // m
+constexpr double kUnchecked = 1e-6;
+
+double normal_tail(double z) {
+  return boost::math::cdf(boost::math::complement(boost::math::normal(), z));
+}
+
+/// Upper tail of a law with this skewness, in its standard deviations (Pearson's three moments).
+double skewed_tail(double z, double skewness) {
+  if (skewness < 1e-3) return normal_tail(z);
+  const double dof = 8.0 / (skewness * skewness);
+  const double chi2 = dof + std::sqrt(2.0 * dof) * z;
+  return chi2 <= 0.0 ? 1.0 : boost::math::gamma_q(0.5 * dof, 0.5 * chi2);
+}
+
+/// V times columns of whitened rows.
+Eigen::MatrixXd law_times(const std::vector<Matrix4>& V, const RecordingProblem& problem,
+                          const RecordingSystem& system, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows(), columns.cols());
+  for (std::size_t k = 0; k < V.size(); ++k) {
+    if (V[k].isZero(0.0)) continue;
+    const int rows = problem.measurements[k].rows;
+    const int at = system.first_row(k);
+    result.middleRows(at, rows).noalias() =
+        V[k].topLeftCorner(rows, rows) * columns.middleRows(at, rows);
+  }
+  return result;
+}
+
+struct LawScore {
+  double z = 0.0;
+  double skewness = 0.0;
+  double variance = 0.0;  ///< (q - E q)/tr(PVPV)
+  bool seen = false;
+};
+
+LawScore score_of(const NoiseLaw& law, const RecordingProblem& problem,
+                  const RecordingSystem& system, const FitProjection& P,
+                  const std::vector<Eigen::MatrixXd>& own, const Eigen::VectorXd& r,
+                  const Eigen::MatrixXd& projected_probes) {
+  std::vector<Matrix4> V;
+  double whole = 0.0;
+  double expected = 0.0;
+  double q = 0.0;
+  for (std::size_t k = 0; k < law.added.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    V.push_back(P.left_out(k) ? Matrix4(Matrix4::Zero())
+                              : Matrix4(one.whitener * law.added[k] * one.whitener.transpose()));
+    const Eigen::MatrixXd block = V.back().topLeftCorner(one.rows, one.rows);
+    const auto here = r.segment(system.first_row(k), one.rows);
+    whole += block.trace();
+    expected += own[k].cwiseProduct(block).sum();
+    q += here.dot(block * here);
+  }
+  LawScore result;
+  if (expected <= kLeastRedundancy * whole) return result;
+  const Eigen::MatrixXd once = P.times(law_times(V, problem, system, projected_probes));
+  const double count = static_cast<double>(projected_probes.cols());
+  const double second = once.squaredNorm() / count;
+  const double third = once.cwiseProduct(law_times(V, problem, system, once)).sum() / count;
+  result.seen = second > 0.0;
+  if (!result.seen) return result;
+  result.z = (q - expected) / std::sqrt(2.0 * second);
+  result.skewness = 8.0 * third / std::pow(2.0 * second, 1.5);
+  result.variance = (q - expected) / second;
+  return result;
+}
+
+/// Statistics of residuals that no overall factor changes.
+struct NoiseShape {
+  double tails = 0.0;        ///< log of the mean fourth power, of measurements, by its expectation
+  double correlation = 0.0;  ///< of successive drives
+};
+
+class ShapeStatistics {
+ public:
+  ShapeStatistics(const RecordingProblem& problem, const RecordingSystem& system,
+                  const FitProjection& P)
+      : problem_(problem), system_(system) {
+    std::size_t last = problem.measurements.size();
+    for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+      const Measurement& one = problem.measurements[k];
+      add_measurement(k, one, P);
+      if (one.kind != MeasurementKind::piece || P.left_out(k)) continue;
+      double path = 0.0;
+      for (const PieceRow& row : problem.pieces[one.source]) path += std::abs(row.path);
+      if (path < kLeastDrive) continue;
+      const bool follows =
+          last < problem.measurements.size() && problem.measurements[last].session == one.session;
+      if (follows) successive_.push_back({last, k});
+      last = k;
+    }
+  }
+
+  [[nodiscard]] std::size_t pairs() const { return successive_.size(); }
+
+  [[nodiscard]] NoiseShape of(const Eigen::VectorXd& r) const {
+    double squares = 0.0;
+    double fourths = 0.0;
+    double dof = 0.0;
+    double expected = 0.0;
+    for (const Standardised& one : standardised_) {
+      const double t = (one.root * r.segment(one.at, one.root.cols())).squaredNorm();
+      const auto c = static_cast<double>(one.root.rows());
+      squares += t;
+      fourths += t * t;
+      dof += c;
+      expected += c * (c + 2.0);
+    }
+    NoiseShape shape;
+    if (squares > 0.0) {
+      shape.tails = std::log(fourths / expected) - 2.0 * std::log(squares / dof);
+    }
+    double products = 0.0;
+    double own = 0.0;
+    for (const auto& [a, b] : successive_) {
+      const auto first = r.segment<3>(system_.first_row(a));
+      const auto second = r.segment<3>(system_.first_row(b));
+      products += first.dot(second);
+      own += 0.5 * (first.squaredNorm() + second.squaredNorm());
+    }
+    if (own > 0.0) shape.correlation = products / own;
+    return shape;
+  }
+
+ private:
+  struct Standardised {
+    int at = 0;
+    Eigen::MatrixXd root;  ///< whitens what of the measurement is checked
+  };
+
+  void add_measurement(std::size_t k, const Measurement& one, const FitProjection& P) {
+    if (P.left_out(k)) return;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(P.own_block(k));
+    Eigen::Index checked = 0;
+    for (Eigen::Index a = 0; a < one.rows; ++a) checked += axes.eigenvalues()[a] > kUnchecked;
+    if (checked == 0) return;
+    Standardised result{system_.first_row(k), Eigen::MatrixXd(checked, one.rows)};
+    for (Eigen::Index a = one.rows - checked, row = 0; a < one.rows; ++a, ++row) {
+      result.root.row(row) =
+          axes.eigenvectors().col(a).transpose() / std::sqrt(axes.eigenvalues()[a]);
+    }
+    standardised_.push_back(std::move(result));
+  }
+
+  const RecordingProblem& problem_;
+  const RecordingSystem& system_;
+  std::vector<Standardised> standardised_;
+  std::vector<std::pair<std::size_t, std::size_t>> successive_;
+};
+
+NoiseTest shape_test(const char* name, const char* words, double found,
+                     const Eigen::VectorXd& drawn) {
+  NoiseTest test;
+  test.law = name;
+  test.in_words = words;
+  const double mean = drawn.mean();
+  const double sd =
+      std::sqrt((drawn.array() - mean).square().sum() / static_cast<double>(drawn.size() - 1));
+  const double z = sd > 0.0 ? (found - mean) / sd : 0.0;
+  const double skewness = (drawn.array() - mean).cube().mean() / std::max(sd * sd * sd, 1e-300);
+  test.score = z > 0.0 ? z * z : 0.0;
+  test.p_value = skewed_tail(z, skewness);
+  test.size = found - mean;
+  return test;
+}
+
+/// Against residuals drawn under the same fit.
+void test_shapes(const ModelFit& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
+  const FitProjection P(fit, under.problem(), under.system(), under.aside());
+  const ShapeStatistics statistics(under.problem(), under.system(), P);
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd draws(under.system().rows(), kDraws + 1);
+  for (double& value : draws.reshaped()) value = normal(random);
+  draws.col(kDraws) = under.system().residuals();
+  draws = P.times(draws);
+  Eigen::VectorXd tails(kDraws);
+  Eigen::VectorXd correlation(kDraws);
+  for (Eigen::Index k = 0; k < kDraws; ++k) {
+    const NoiseShape shape = statistics.of(draws.col(k));
+    tails[k] = shape.tails;
+    correlation[k] = shape.correlation;
+  }
+  const NoiseShape found = statistics.of(draws.col(kDraws));
+  tests.push_back(
+      shape_test("heavy tails", "a few errors are far larger than the rest", found.tails, tails));
+  if (statistics.pairs() < 3) return;
+  tests.push_back(shape_test("autocorrelation", "each drive errs much as the one before it did",
+                             found.correlation, correlation));
+}
+
+}  // namespace
+
+std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tests,
+                                       const Eigen::MatrixXd& aside) {
+  const RecordingProblem& problem = fit.problem;
+  const RecordingSystem& system = tests.system();
+  const Eigen::MatrixXd apart =
+      aside.cols() > 0 ? orthonormal(aside) : Eigen::MatrixXd(system.rows(), 0);
+  const FitProjection P(fit, problem, system, apart);
+  std::vector<Eigen::MatrixXd> own;
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));
+  std::mt19937_64 random(1);
+  Eigen::MatrixXd probes(system.rows(), kProbes);
+  for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
+  probes = P.times(probes);
+  const Eigen::VectorXd r = P.times(system.residuals());
+
+  NoiseLikelihood likelihood(fit, apart);
+  std::vector<NoiseTest> result;
+  std::vector<NoiseLaw> laws;
+  for (NoiseLaw& law : noise_laws(fit, tests.context())) {
+    const LawScore score = score_of(law, problem, system, P, own, r, probes);
+    if (!score.seen) continue;
+    NoiseTest test;
+    test.law = law.name;
+    test.unit = law.unit;
+    test.p_value = skewed_tail(score.z, score.skewness);
+    double variance = std::max(0.0, score.variance);
+    test.score = score.z > 0.0 ? score.z * score.z : 0.0;
+    if (test.p_value < kWorthFitting) {
+      const NoiseLikelihood::Best best = likelihood.best(law, variance);
+      variance = best.variance;
+      test.score = best.gain;
+    }
+    test.size = std::sqrt(variance);
+    test.in_words = noise_in_words(law, test.size, fit.model);
+    result.push_back(std::move(test));
+    laws.push_back(std::move(law));
+  }
+
+  const auto adjust_p = [&result] {
+    std::vector<double> p_values;
+    for (const NoiseTest& test : result) p_values.push_back(test.p_value);
+    const std::vector<double> adjusted = holm(p_values);
+    for (std::size_t k = 0; k < result.size(); ++k) result[k].p_adjusted = adjusted[k];
+  };
+  const auto claim = [&](std::size_t k) {
+    return result[k].score - (k < laws.size() ? laws[k].margin : 0.0);
+  };
+  if (!result.empty()) {
+    adjust_p();
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < result.size(); ++k) {
+      if (claim(k) > claim(best)) best = k;
+    }
+    const double size = result[best].p_adjusted < 0.05 ? result[best].size : 0.0;
+    static_cast<void>(likelihood.deviance(laws[best], size * size));
+  }
+  test_shapes(fit, likelihood, result);
+  adjust_p();
+  std::vector<std::size_t> order(result.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return claim(a) > claim(b); });
+  std::vector<NoiseTest> sorted;
+  for (const std::size_t k : order) sorted.push_back(std::move(result[k]));
+  return sorted;
+}
+
+}  // namespace trussmap

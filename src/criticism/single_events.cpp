@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "single_events.hpp"
+
+#include "trussmap/criticism/held_out.hpp"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
+constexpr std::size_t kBumps = 5;       // places tried in a drive; on the spot only the 3 numbers
+constexpr double kLeastDrive = 0.1;     // m
+
+class Collector {
+ public:
+  Collector(const ModelFit& fit, const ScoreTest& tests, const FitProjection& projection)
+      : fit_(fit), problem_(fit.problem), tests_(tests), projection_(projection) {}
+
+  std::vector<SingleEvent> run() {
+    add_sessions();
+    add_landmarks();
+    add_surveys();
+    add_sightings();
+    add_legs();
+    return std::move(events_);
+  }
+
+ private:
+  [[nodiscard]] const Measurement& at(std::size_t k) const { return problem_.measurements[k]; }
+
+  [[nodiscard]] std::string of_session(int session) const {
+    return problem_.sessions.size() > 1 ? " of " + problem_.sessions[idx(session)] : std::string();
+  }
+
+  /// The measured values change by the columns of `change`.
+  [[nodiscard]] DummyRows changed(std::size_t k, const Eigen::MatrixXd& change) const {
+    const int rows = at(k).rows;
+    return {k, -at(k).whitener.topLeftCorner(rows, rows) * change};
+  }
+
+  /// A leg's bump, in each of its pieces.
+  void add_legs() {
+    std::map<int, std::size_t> piece_from;
+    for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+      if (at(k).kind == MeasurementKind::piece) piece_from[at(k).from] = k;
+    }
+    for (const LegSpan& leg : leg_spans(fit_.recordings, problem_)) {
+      const Measurement& from = at(leg.from);
+      const Measurement& to = at(leg.to);
+      const bool sighted = from.to >= 0 && to.to >= 0;
+      const std::string between =
+          sighted ? problem_.landmarks[idx(from.to)] + " -> " + problem_.landmarks[idx(to.to)]
+                  : "drive";
+      SingleEvent event{"leg",
+                        fmt::format("{} {} t = {:.1f} s{}", between, sighted ? "at" : "to",
+                                    leg.time.to, of_session(leg.session)),
+                        {},
+                        {}};
+      std::vector<std::string> bumped;  // the wheel, per place
+      for (int node = from.from; node != to.from;) {
+        const auto found = piece_from.find(node);
+        if (found == piece_from.end()) break;
+        const Measurement& piece = at(found->second);
+        node = piece.to;
+        if (projection_.left_out(found->second)) continue;
+        add_bumps(found->second, event.places, bumped);
+      }
+      event.words = [name = event.name, bumped](std::size_t place, const Eigen::VectorXd& size) {
+        if (size.size() > 1) {
+          return fmt::format(
+              "something moved the robot by {:.1f} cm ahead, {:.1f} cm to the left and {:.1f} deg "
+              "that its wheels do not say, in the leg {}",
+              100.0 * size[0], 100.0 * size[1], kDegrees * size[2], name);
+        }
+        return fmt::format("the {} wheel said {:.1f} cm too {} at once, in the leg {}",
+                           bumped[place], 100.0 * std::abs(size[0]),
+                           size[0] < 0.0 ? "much" : "little", name);
+      };
+      if (!event.places.empty()) events_.push_back(std::move(event));
+    }
+  }
+
+  /// Motion beyond the record after some of a piece's rows: of one wheel, or any.
+  void add_bumps(std::size_t k, std::vector<Dummies>& places,
+                 std::vector<std::string>& bumped) const {
+    const Measurement& piece = at(k);
+    const std::vector<PieceRow>& rows = problem_.pieces[piece.source];
+    std::vector<Pose> ends;
+    std::vector<int> readings;
+    Pose end;
+    int count = 0;
+    for (const PieceRow& row : rows) {
+      const double half = 0.5 * row.turn;
+      end = compose(end, {row.path * std::cos(half), row.path * std::sin(half), row.turn});
+      ends.push_back(end);
+      readings.push_back(count);
+      count += std::isnan(row.reading) ? 0 : 1;
+    }
+    const double by_turn = 1.0 / fit_.model.robot.wheelbase;
+    const auto by_motion = [&](std::size_t row) {
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(piece.rows, 3);
+      change.topLeftCorner<2, 2>() = rotation(ends[row].heading);
+      change.block<2, 1>(0, 2) = quarter_turn(end.position() - ends[row].position());
+      change(2, 2) = 1.0;
+      if (piece.rows == 4) change(3, 2) = -static_cast<double>(count - readings[row]) / count;
+      return change;
+    };
+    double path = 0.0;
+    for (const PieceRow& row : rows) path += std::abs(row.path);
+    const bool drives = path > kLeastDrive;
+    const int group = 2 * static_cast<int>(places.size());
+    for (std::size_t part = 0; drives && part < kBumps; ++part) {
+      const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, -by_turn))}, {}, group});
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, by_turn))}, {}, group});
+      bumped.insert(bumped.end(), {"left", "right"});
+    }
+    places.push_back({{changed(k, by_motion(rows.size() / 2))}, {}, group + 1});
+    bumped.emplace_back("");
+  }
+
+  void add_sightings() {
+    for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+      const Measurement& one = at(k);
+      if (projection_.left_out(k) || one.to < 0 || !problem_.is_landmark(one.to)) continue;
+      SingleEvent event{"sighting",
+                        describe(problem_, one),
+                        {{{changed(k, Eigen::MatrixXd::Identity(one.rows, one.rows))}}},
+                        {}};
+      event.words = [kind = one.kind, name = event.name](std::size_t, const Eigen::VectorXd& size) {
+        if (kind != MeasurementKind::view) {
+          return fmt::format("{} is off by {:.1f} cm", name, 100.0 * size.norm());
+        }
+        std::string words = fmt::format("{} is off by {:.1f} cm", name, 100.0 * size[0]);
+        if (size.size() > 1) words += fmt::format(" and {:.1f} deg", kDegrees * size[1]);
+        return words;
+      };
+      events_.push_back(std::move(event));
+    }
+  }
+
+  void add_surveys() {
+    for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+      const Measurement& one = at(k);
+      if (one.kind != MeasurementKind::survey || projection_.left_out(k)) continue;
+      const std::string& name = problem_.landmarks[idx(one.from)];
+      SingleEvent event{"landmark", name, {{{changed(k, Eigen::MatrixXd::Identity(2, 2))}}}, {}};
+      event.words = [name](std::size_t, const Eigen::VectorXd& size) {
+        return fmt::format(
+            "landmark {} is not where the survey has it, but {:.1f} cm along x and {:.1f} cm along "
+            "y from there",
+            name, 100.0 * size[0], 100.0 * size[1]);
+      };
+      events_.push_back(std::move(event));
+    }
+  }
+
+  struct Visit {
+    int session = 0;
+    int pose = -1;
+    std::vector<std::size_t> sightings;
+  };
+
+  /// The landmark's place from this visit on, and back where `until` begins.
+  [[nodiscard]] Dummies step(const std::vector<Visit>& visits, std::size_t from) const {
+    Dummies result;
+    for (std::size_t v = from; v < visits.size(); ++v) {
+      for (const std::size_t k : visits[v].sightings) {
+        result.parts.push_back({k, projection_.rows_of(k).to.topLeftCorner(at(k).rows, 2)});
+      }
+    }
+    return result;
+  }
+
+  void add_landmarks() {
+    std::vector<std::vector<Visit>> visits(problem_.landmarks.size());
+    std::set<int> surveyed;
+    for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+      const Measurement& one = at(k);
+      if (projection_.left_out(k)) continue;
+      if (one.kind == MeasurementKind::survey) surveyed.insert(one.from);
+      if (one.to < 0 || !problem_.is_landmark(one.to)) continue;
+      std::vector<Visit>& of = visits[idx(one.to)];
+      if (of.empty() || of.back().pose != one.from) of.push_back({one.session, one.from, {}});
+      of.back().sightings.push_back(k);
+    }
+    for (std::size_t landmark = 0; landmark < visits.size(); ++landmark) {
+      add_steps(problem_.landmarks[landmark], visits[landmark],
+                surveyed.contains(static_cast<int>(landmark)));
+    }
+  }
+
+  void add_steps(const std::string& name, const std::vector<Visit>& visits, bool surveyed) {
+    for (std::size_t v = 1; v < visits.size(); ++v) {
+      if (visits[v].session == visits[v - 1].session) continue;
+      const std::string before = problem_.sessions[idx(visits[v - 1].session)];
+      const std::string after = problem_.sessions[idx(visits[v].session)];
+      add_step(name, fmt::format("between {} and {}", before, after), {step(visits, v)}, {});
+    }
+    for (std::size_t begin = 0; begin < visits.size();) {
+      std::size_t end = begin;
+      while (end < visits.size() && visits[end].session == visits[begin].session) ++end;
+      // A step that leaves a single visit on one side is that visit's wrong sighting.
+      std::vector<std::size_t> steps;
+      for (std::size_t v = begin + 1; v < end; ++v) {
+        if (v >= (surveyed ? 1U : 2U) && visits.size() - v >= 2) steps.push_back(v);
+      }
+      std::vector<Dummies> places;
+      std::vector<double> times;
+      const std::size_t count = std::min(steps.size(), kMostSteps);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t v = steps[(2 * k + 1) * steps.size() / (2 * count)];
+        places.push_back(step(visits, v));
+        times.push_back(problem_.poses[idx(visits[v].pose - problem_.landmark_count())].t);
+      }
+      if (count > 0) {
+        add_step(name, of_session(visits[begin].session), std::move(places), std::move(times));
+      }
+      begin = end;
+    }
+  }
+
+  void add_step(const std::string& name, const std::string& when, std::vector<Dummies> places,
+                std::vector<double> times) {
+    SingleEvent event{"landmark", name, std::move(places), {}};
+    event.words = [name, when, times = std::move(times)](std::size_t place,
+                                                         const Eigen::VectorXd& size) {
+      const std::string at =
+          times.empty() ? when : fmt::format("before t = {:.1f} s{}", times[place], when);
+      return fmt::format("landmark {} was moved by {:.1f} cm along x and {:.1f} cm along y {}",
+                         name, 100.0 * size[0], 100.0 * size[1], at);
+    };
+    events_.push_back(std::move(event));
+  }
+
+  void add_sessions() {
+    const auto count = static_cast<int>(problem_.sessions.size());
+    for (int session = 0; count > 1 && session < count; ++session) {
+      std::vector<Channel> channels{Channel::travel, Channel::turn};
+      if (fit_.recordings[idx(session)].drive.has_compass()) channels.push_back(Channel::compass);
+      channels.push_back(Channel::delay);
+      EffectBorder border;
+      Eigen::VectorXd plausible(static_cast<Eigen::Index>(channels.size()));
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        border.push_back(effect_column(channels[c], "1", session, tests_.context()));
+        plausible[static_cast<Eigen::Index>(c)] = facts_of(channels[c]).plausible;
+      }
+      const Eigen::MatrixXd M =
+          tests_.system().columns_of(border, fit_.adjustment.state, fit_.adjustment.coefficients);
+      Dummies dummies{{}, plausible};
+      for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+        if (at(k).session != session || projection_.left_out(k)) continue;
+        dummies.parts.push_back({k, M.middleRows(tests_.system().first_row(k), at(k).rows)});
+      }
+      SingleEvent event{"session", problem_.sessions[idx(session)], {std::move(dummies)}, {}};
+      event.words = [name = event.name, channels](std::size_t, const Eigen::VectorXd& size) {
+        std::string words = "session " + name + " is not like the others: there";
+        for (std::size_t c = 0; c < channels.size(); ++c) {
+          const double value = size[static_cast<Eigen::Index>(c)];
+          if (c > 0) words += ",";
+          words += channels[c] == Channel::travel
+                       ? fmt::format(" travel is {:+.2g} %", 100.0 * value)
+                   : channels[c] == Channel::turn ? fmt::format(" turns {:+.2g} %", 100.0 * value)
+                   : channels[c] == Channel::compass
+                       ? fmt::format(" the compass {:+.2g} deg", kDegrees * value)
+                       : fmt::format(" sightings {:+.2g} ms late", 1e3 * value);
+        }
+        return words;
+      };
+      events_.push_back(std::move(event));
+    }
+  }
+
+  const ModelFit& fit_;
+  const RecordingProblem& problem_;
+  const ScoreTest& tests_;
+  const FitProjection& projection_;
+  std::vector<SingleEvent> events_;
+};
+
+}  // namespace
+
+std::vector<SingleEvent> single_events(const ModelFit& fit, const ScoreTest& tests,
+                                       const FitProjection& projection) {
+  return Collector(fit, tests, projection).run();
+}
+
+}  // namespace trussmap
