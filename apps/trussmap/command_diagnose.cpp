@@ -80,6 +80,25 @@ ordered_json json(const Diagnosis& result) {
     unobservable.back()["why"] = one.why;
     unobservable.back()["remedy"] = one.remedy;
   }
+  ordered_json noise = ordered_json::array();
+  for (const NoiseTest& one : result.noise) {
+    noise.push_back({{"law", one.law},
+                     {"score", one.score},
+                     {"dof", one.dof},
+                     {"p_adjusted", one.p_adjusted},
+                     {"size", one.size},
+                     {"unit", one.unit},
+                     {"in_words", one.in_words}});
+  }
+  ordered_json outliers = ordered_json::array();
+  for (const EventTest& one : result.events) {
+    outliers.push_back({{"kind", one.kind},
+                        {"name", one.name},
+                        {"score", one.score},
+                        {"dof", one.dof},
+                        {"p_adjusted", one.p_adjusted},
+                        {"in_words", one.in_words}});
+  }
   ordered_json heldout = json(result.held_out);
   heldout["legs"] = result.held_out_legs;
   return {{"verdict", verdict},
@@ -90,8 +109,8 @@ ordered_json json(const Diagnosis& result) {
           {"heldout", heldout},
           {"tried", result.tried},
           {"candidates", candidates},
-          {"noise", ordered_json::array()},
-          {"outliers", ordered_json::array()},
+          {"noise", noise},
+          {"outliers", outliers},
           {"advice", result.advice},
           {"next_drive", result.next_drive},
           {"unobservable", unobservable},
@@ -129,6 +148,25 @@ void print_verdict(const Diagnosis& result) {
   if (!result.next_drive.empty()) fmt::print("  to tell them apart: {}\n", result.next_drive);
 }
 
+/// Noise laws and single events that are significant.
+void print_others(const Diagnosis& result, std::size_t count) {
+  constexpr double kLevel = 0.05;
+  std::size_t shown = 0;
+  for (const NoiseTest& one : result.noise) {
+    if (one.p_adjusted >= kLevel || shown >= 2) continue;
+    if (shown++ == 0) fmt::print("\nMore noise than the model states\n");
+    fmt::print("  {}: {} (score {:.1f}, p {})\n", one.law, one.in_words, one.score,
+               probability_text(one.p_adjusted));
+  }
+  shown = 0;
+  for (const EventTest& one : result.events) {
+    if (one.p_adjusted >= kLevel || shown >= count) continue;
+    if (shown++ == 0) fmt::print("\nSingle events\n");
+    fmt::print("  {} {}: {} (score {:.1f}, p {})\n", one.kind, one.name, one.in_words, one.score,
+               probability_text(one.p_adjusted));
+  }
+}
+
 void print(const Diagnosis& result, const DiagnoseOptions& options) {
   print_verdict(result);
   TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
@@ -147,6 +185,7 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
   }
   fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
              format_table(table));
+  print_others(result, options.list);
   if (!result.unobservable.empty()) fmt::print("\nNot to be seen in these data\n");
   for (const Unobservable& one : result.unobservable) {
     fmt::print("  {}: {}; {}\n", one.effect.name, one.why, one.remedy);

@@ -87,6 +87,8 @@ class Diagnostician {
     refine_families();
     judge(tested_, result_.chi2, result_.dof);
     find_missing();
+    result_.events = test_events(fit_, tests_, aside_);
+    result_.noise = test_noise_laws(fit_, tests_, aside_);
     report();
     return std::move(result_);
   }
@@ -199,6 +201,8 @@ class Diagnostician {
       const Score whole = left.test({tested_[at].candidate.effect}).front();
       if (missing_.size() == 1) find_look_alikes(whole, at);
       left.take_out(whole.columns);
+      aside_.conservativeResize(whole.projected.rows(), aside_.cols() + whole.projected.cols());
+      aside_.rightCols(whole.projected.cols()) = whole.projected;
       chi2 -= whole.score;
       dof -= whole.dof;
       std::vector<Candidate> again;
@@ -343,6 +347,7 @@ class Diagnostician {
   std::vector<Tested> tested_;
   std::vector<std::size_t> missing_;  ///< of tested_, best first
   std::vector<LookAlike> look_alikes_;
+  Eigen::MatrixXd aside_;  ///< projected columns of what is missing
   Diagnosis result_;
 };
 

@@ -51,6 +51,9 @@ ScoreTest::ScoreTest(const ModelFit& fit)
   }
   builder_ = std::make_unique<ColumnBuilder>(context_, fit.problem, border_, offsets_of(fit),
                                              clean_, weights);
+  for (const Measurement& one : fit.problem.measurements) {
+    group_.insert(group_.end(), idx(one.rows), one.from);
+  }
   residuals_ = system_->residuals();
   residuals_ -=
       clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(residuals_)));
@@ -130,6 +133,14 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
   const Eigen::VectorXd estimate = -factor.solve(g);
   const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(dof, dof));
   result.score = std::max(0.0, -g.dot(estimate));
+  const Eigen::VectorXd left = residuals_ + M * estimate;
+  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(fit_.problem.nodes(), dof);
+  for (Eigen::Index row = 0; row < left.size(); ++row) {
+    pulls.row(group_[static_cast<std::size_t>(row)]) += left[row] * M.row(row);
+  }
+  Eigen::MatrixXd B = pulls.transpose() * pulls;
+  B += 1e-9 * S;
+  result.robust = std::max(0.0, g.dot(B.ldlt().solve(g)));
   // Shapes that are nearly the same count once.
   const Eigen::VectorXd scale = with_prior.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * S *

@@ -247,14 +247,16 @@ class Collector {
       std::vector<Channel> channels{Channel::travel, Channel::turn};
       if (fit_.recordings[idx(session)].drive.has_compass()) channels.push_back(Channel::compass);
       channels.push_back(Channel::delay);
-      EffectBorder border;
+      Eigen::MatrixXd M(tests_.residuals().size(), static_cast<Eigen::Index>(channels.size()));
       Eigen::VectorXd plausible(static_cast<Eigen::Index>(channels.size()));
       for (std::size_t c = 0; c < channels.size(); ++c) {
-        border.push_back(effect_column(channels[c], "1", session, tests_.context()));
-        plausible[static_cast<Eigen::Index>(c)] = facts_of(channels[c]).plausible;
+        const auto column = static_cast<Eigen::Index>(c);
+        Effect effect;
+        effect.name = effect.channel = facts_of(channels[c]).name;
+        effect.shape = {"1"};
+        M.col(column) = tests_.columns(effect);
+        plausible[column] = facts_of(channels[c]).plausible;
       }
-      const Eigen::MatrixXd M =
-          tests_.system().columns_of(border, fit_.adjustment.state, fit_.adjustment.coefficients);
       Dummies dummies{{}, plausible};
       for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
         if (at(k).session != session || projection_.left_out(k)) continue;

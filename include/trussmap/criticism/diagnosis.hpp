@@ -8,7 +8,8 @@
 //        '--> single events, noise      '------ winner taken out <-------'   a second, a third ...
 //
 //   p adjusted   Holm's, over all that was tried, members of families counted one by one; judged
-//                against the dispersion that the candidate itself would leave
+//                against the dispersion that the candidate itself would leave, and by the robust
+//                score where that is less
 //   order        evidence: log Bayes factor with the channel's plausible size, and a little more
 //                belief in the catalogue than in a free form
 //   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
@@ -16,11 +17,14 @@
 //   absent       where even the smallest detectable size would raise the arrival error by less than
 //                5 %
 //
-// Events that contradict the rest are taken out before anything is named.
+// A wrong noise law or a single bad leg makes no effect: a score counts no more than its robust
+// twin (score_test.hpp). Laws of noise and single events are asked of what the findings leave.
 #pragma once
 
 #include "trussmap/criticism/candidates.hpp"
 #include "trussmap/criticism/comparison.hpp"
+#include "trussmap/criticism/event_tests.hpp"
+#include "trussmap/criticism/noise_tests.hpp"
 
 #include <string>
 #include <vector>
@@ -75,6 +79,8 @@ struct Diagnosis {
   std::size_t held_out_legs = 0;
   std::vector<Finding> findings;  ///< best first
   std::vector<Unobservable> unobservable;
+  std::vector<NoiseTest> noise;   ///< best explanation first
+  std::vector<EventTest> events;  ///< likeliest first
   std::vector<std::string> advice;
   std::string next_drive;
   std::size_t tried = 0;  ///< tests

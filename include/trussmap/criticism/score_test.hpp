@@ -40,6 +40,9 @@ struct Score {
   double score = 0.0;
   int dof = 0;  ///< shapes that can be seen at all
   double p_value = 1.0;
+  /// g' B^-1 g with B the sum of (M_i' r_i)(M_i' r_i)' over the pieces and stops i, as the effect
+  /// would leave them: what a wrong noise law, or one bad leg, is not taken for an effect by.
+  double robust = 0.0;
   double occam = 0.0;                       ///< log(det(1 + S/P)) / 2
   std::vector<double> coefficients;         ///< 0 where unseen
   std::vector<double> sd;                   ///< infinite where unseen
@@ -63,6 +66,10 @@ class ScoreTest {
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
+  /// Whitened columns of an effect (resolved), M.
+  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
+    return builder_->columns(effect);
+  }
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
 
@@ -90,6 +97,7 @@ class ScoreTest {
   std::unique_ptr<RecordingSystem> system_;
   std::unique_ptr<RecordingSystem> clean_system_;
   std::unique_ptr<ColumnBuilder> builder_;
+  std::vector<int> group_;   ///< of each row: the node that its measurement begins at
   Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
   Eigen::VectorXd residuals_;
   double dispersion_ = 1.0;
