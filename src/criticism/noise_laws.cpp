@@ -18,9 +18,10 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 // By how much more, in -2 log likelihood, a law must explain than one without: the sort of noise
 // that the model states already is the simplest, and its variants and the rarer laws have to earn
 // their place. Chosen on simulated drives of 56 legs (other seeds than the tests').
-constexpr double kOther = 2.0;
+constexpr double kSeconds = 1.0;
+constexpr double kReadings = 2.0;
 constexpr double kOneWheel = 3.0;
-constexpr double kRare = 4.0;
+constexpr double kRare = 6.0;
 
 Noise silence() {
   Noise none;
@@ -64,13 +65,13 @@ std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& contex
   noise = silence();  // of each wheel: half the travel's variance and 2/B^2 of the turn's
   noise.travel_per_s = std::sqrt(0.5);
   noise.heading_per_s = std::sqrt(2.0) / fit.model.robot.wheelbase;
-  add("per second", "m/sqrt(s)", kOther, noise);
+  add("per second", "m/sqrt(s)", kSeconds, noise);
   noise = silence();
   noise.heading_per_s = 1.0;
-  add("per second, heading", "rad/sqrt(s)", kOther + kRare, noise);
+  add("per second, heading", "rad/sqrt(s)", kRare, noise);
   noise = silence();
   noise.travel_per_s = 1.0;
-  add("per second, travel", "m/sqrt(s)", kOther + kRare, noise);
+  add("per second, travel", "m/sqrt(s)", kRare, noise);
   noise = silence();
   noise.heading_per_rad = 1.0;
   add("per radian turned", "rad/sqrt(rad)", kRare, noise);
@@ -123,7 +124,7 @@ std::vector<NoiseLaw> of_drives(const ModelFit& fit, const ShapeContext& context
 /// The reading's own noise, row by row of each measurement.
 NoiseLaw of_readings(const ModelFit& fit, const char* name, const char* unit,
                      const std::function<double(const Measurement&, int row)>& variance) {
-  NoiseLaw law{name, unit, kOther, {}};
+  NoiseLaw law{name, unit, kReadings, {}};
   for (const Measurement& one : fit.problem.measurements) {
     Matrix4 added = Matrix4::Zero();
     for (int row = 0; row < one.rows; ++row) added(row, row) = variance(one, row);

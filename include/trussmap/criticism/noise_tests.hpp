@@ -29,8 +29,8 @@
 // the fit under the best law, and their score is z^2: fourth powers of what each measurement misses
 // by (few large errors instead of many small); products of successive drives' whitened errors.
 //
-// Order: by score, from which laws of a sort that the model does not state give up 2, variants of
-// one wheel 3, the rarer ones 4 to 6: two laws that explain as much are settled for the plainer.
+// Order: by score, from which seconds give up 1, the readings' own noise 2, a single wheel 3, and
+// radians turned and other variants 6: of laws that explain as much the plainer is first.
 //
 // What cannot be told apart: laws whose amounts are in proportion, such as metres and seconds at
 // one speed without rests, metres and starts on legs of one length, spins and radians turned by
