@@ -36,8 +36,8 @@
 // one speed without rests, metres and starts on legs of one length, spins and radians turned by
 // turns of one size; starts and the standing there, where both are a few millimetres. On 56 legs
 // of 2 to 5 m at 0.25 to 0.9 m/s, a typical one with twice its spread, the right law of four is
-// first in 90 (metres, seconds) to 100 (spins) of 100. Noise below what the model states is no
-// law's excess and goes unseen.
+// first in some 90 (metres, seconds, starts) to 100 (spins) of 100. Noise below what the model
+// states is no law's excess and goes unseen.
 #pragma once
 
 #include "trussmap/criticism/score_test.hpp"
