@@ -255,7 +255,11 @@ class Gatherer {
       // A patch may have no sharp edge, an anomaly may have one.
       Candidate other = one;
       other.pattern = {entry.shape.front() == kDisc ? kBell : kDisc};
-      other.family += " of the other form";
+      const bool disc = other.pattern.front() == kDisc;
+      other.effect.name =
+          fmt::format("{} {}", one.effect.channel, disc ? "within a circle" : "at a place");
+      other.family = other.effect.name;
+      other.form = Form::place;
       other.log_prior = -1.0;
       take_places(other, {0.75, 1.5});
     } else {

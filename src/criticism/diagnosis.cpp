@@ -287,6 +287,19 @@ class Diagnostician {
     return detectable_rise(one, floor) <= kPractical ? Status::absent : Status::cannot_tell;
   }
 
+  /// Not seen, but would be where the model explained the rest.
+  [[nodiscard]] static bool hidden_by_misfit(const Tested& one) {
+    const double plausible =
+        facts_of(*parse_channel(one.candidate.effect.channel)).plausible * kLargestUncertainty;
+    for (std::size_t k = 0; k < one.score.share.size(); ++k) {
+      if (one.score.largest[k] > 0.0 && one.score.share[k] > kLeastShare &&
+          one.score.largest[k] < plausible * std::sqrt(one.score.information[k])) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   void report() {
     std::vector<std::size_t> order(tested_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -303,7 +316,7 @@ class Diagnostician {
     for (const std::size_t k : order) {
       const Tested& one = tested_[k];
       if (one.score.dof == 0) {
-        if (one.candidate.form == Form::catalogue) {
+        if (one.candidate.form == Form::catalogue && !hidden_by_misfit(one)) {
           result_.unobservable.push_back(why_unobservable(one.candidate.effect, fit_, one.score));
         }
         continue;

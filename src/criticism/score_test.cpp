@@ -104,6 +104,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     const double most = largest[static_cast<std::size_t>(k)];
     const double square = projected.col(k).squaredNorm();
     result.share.push_back(square / std::max(columns.col(k).squaredNorm(), 1e-300));
+    result.information.push_back(square);
     // What the data tell must not be less than what was believed before.
     const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
     if (most > 0.0 && result.share.back() > kLeastShare &&

@@ -49,6 +49,7 @@ struct Score {
   std::vector<double> smallest_detectable;  ///< of each shape alone; infinite where unseen
   std::vector<double> largest;              ///< |f| of each shape
   std::vector<double> share;                ///< |M_|^2/|M|^2 of each shape
+  std::vector<double> information;          ///< |M_|^2 of each shape
   Eigen::MatrixXd columns;                  ///< M, rows x shapes
   Eigen::MatrixXd projected;                ///< M_, rows x shapes; zero columns where unseen
   Eigen::MatrixXd nodes;  ///< what one unit of each moves landmarks and poses by, system order
