@@ -136,7 +136,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
             "trussmap: \"polish\" is no command, expected one of add, adjust, build, calibrate, "
-            "compare, convert, fit, noise, reveal, simulate, tour, umbmark\n");
+            "compare, convert, diagnose, discover, fit, noise, reveal, simulate, tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

@@ -48,10 +48,10 @@ Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   pattern.drives.emplace_back(drive.rows());
   pattern.drives[0][row].advance = 0.5;
   pattern.drives[0][row].turn = (left ? -1.0 : 1.0) / result.world.model.robot.wheelbase;
-  const double told = tests
-                          .projected(tests.system().columns_of({pattern}, fit.adjustment.state,
-                                                               fit.adjustment.coefficients))
-                          .norm();
+  const EffectBorder border{pattern};
+  RecordingSystem system(fit.problem, border);
+  system.linearise(fit.adjustment.state, Eigen::VectorXd::Zero(1));
+  const double told = tests.projected(system.border()).norm();
   (left ? drive.left : drive.right)[row] += sign * sds / told;
   const auto name = [&](std::size_t stop) {
     return landmark_name(result.world.mesh, motion.stops[stop].landmark);
