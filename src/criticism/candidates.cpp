@@ -346,6 +346,12 @@ class Gatherer {
 
   void take_forms(Channel channel, const Spread& u, bool covariate) {
     const std::string& n = u.name;
+    // On a leg that is all but straight the sign of the turn rate is noise of the wheels, the same
+    // that a difference between them would explain.
+    if (n == "turn_rate" && channel != Channel::turn && channel != Channel::travel &&
+        channel != Channel::compass) {
+      return;
+    }
     // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
     const double middle = 0.5 * (u.least + u.most);
     const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);

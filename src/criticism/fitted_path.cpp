@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 namespace trussmap {
 namespace {
 
@@ -23,15 +25,22 @@ class Reckoner {
     return motion(piece_rows(drive_, from, to, robot_));
   }
   [[nodiscard]] Pose motion(const std::vector<PieceRow>& rows) const {
-    std::vector<const std::vector<DrivePattern>*> patterns;
-    patterns.reserve(border_.size());
-    for (const EffectPattern& effect : border_) {
-      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[session_]);
-    }
-    return piece_motion(rows, patterns, offsets_).motion.displacement;
+    return piece_motion(rows, patterns(), offsets_).motion.displacement;
+  }
+  [[nodiscard]] std::vector<Matrix4> influences(const std::vector<PieceRow>& rows) const {
+    return row_influences(rows, patterns(), offsets_);
   }
 
  private:
+  [[nodiscard]] std::vector<const std::vector<DrivePattern>*> patterns() const {
+    std::vector<const std::vector<DrivePattern>*> result;
+    result.reserve(border_.size());
+    for (const EffectPattern& effect : border_) {
+      result.push_back(effect.drives.empty() ? nullptr : &effect.drives[session_]);
+    }
+    return result;
+  }
+
   const Drive& drive_;
   const Robot& robot_;
   const EffectBorder& border_;
@@ -39,33 +48,77 @@ class Reckoner {
   std::size_t session_;
 };
 
+/// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
+/// what the whole lacks: Q A' (sum A Q A')^-1 e, with A the row's influence and Q its share of
+/// noise.
+std::vector<Vector2> believed_noise(const std::vector<PieceRow>& rows, const Drive& drive,
+                                    const Robot& robot, const std::vector<Matrix4>& influences,
+                                    const Eigen::Vector3d& lacking) {
+  constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
+  using Influence = Eigen::Matrix<double, 3, 2>;
+  std::vector<Influence> spread(rows.size());
+  Matrix3 total = Matrix3::Zero();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    Influence A;
+    A.col(0) = influences[k].block<3, 1>(0, 0);
+    A.col(1) = influences[k].block<3, 1>(0, 2);
+    const double left = std::abs(rows[k].part * drive.left[rows[k].row]) + kLeastShare;
+    const double right = std::abs(rows[k].part * drive.right[rows[k].row]) + kLeastShare;
+    Matrix2 Q;
+    Q << 0.25 * (left + right), 0.5 * (right - left) / robot.wheelbase,
+        0.5 * (right - left) / robot.wheelbase,
+        (left + right) / (robot.wheelbase * robot.wheelbase);
+    spread[k] = A * Q;
+    total += spread[k] * A.transpose();
+  }
+  const double size = total.trace();
+  total.diagonal().array() += 1e-12 * size;
+  const Eigen::Vector3d pull = total.ldlt().solve(lacking);
+  std::vector<Vector2> noise;
+  noise.reserve(rows.size());
+  for (const Influence& one : spread) noise.emplace_back(one.transpose() * pull);
+  return noise;
+}
+
 /// Fills the ends of the rows that lie between two nodes.
 void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckoner,
                   const PoseNode& from, const Pose& at_from, const PoseNode& to, const Pose& at_to,
                   SessionPath& path) {
-  const std::vector<PieceRow> rows = piece_rows(drive, from.t, to.t, robot);
-  std::vector<Pose> reached;
-  std::vector<Pose> steps;
+  constexpr int kRounds = 3;  // the noise bends the path on which it acts
+  std::vector<PieceRow> rows = piece_rows(drive, from.t, to.t, robot);
+  if (rows.empty()) return;
+  const Pose wanted = relative(at_from, at_to);
+  std::vector<Vector2> missing(rows.size(), Vector2::Zero());
+  for (int round = 0; round < kRounds; ++round) {
+    const Pose reached = reckoner.motion(rows);
+    const Eigen::Vector3d lacking(wanted.x - reached.x, wanted.y - reached.y,
+                                  wrap_angle(wanted.heading - reached.heading));
+    const std::vector<Vector2> noise =
+        believed_noise(rows, drive, robot, reckoner.influences(rows), lacking);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Vector2 own = rows[k].part * noise[k];
+      rows[k].path += own[0];
+      rows[k].turn += own[1];
+      missing[k] += own;
+    }
+  }
   Pose pose = at_from;
+  std::vector<Pose> reached;
   for (const PieceRow& row : rows) {
-    steps.push_back(reckoner.motion(std::vector<PieceRow>{row}));
-    pose = compose(pose, steps.back());
+    pose = compose(pose, reckoner.motion(std::vector<PieceRow>{row}));
     reached.push_back(pose);
   }
-  if (rows.empty()) return;
-  const Vector2 missing = at_to.position() - pose.position();
-  const double missing_turn = wrap_angle(at_to.heading - pose.heading);
-  Pose before = at_from;
+  // What a wheel cannot have done (a slip sideways while standing) is spread evenly.
+  const Vector2 left = at_to.position() - pose.position();
+  const double left_turn = wrap_angle(at_to.heading - pose.heading);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double share = static_cast<double>(k + 1) / static_cast<double>(rows.size());
     Pose& end = path.ends[rows[k].row];
     end = reached[k];
-    end.x += share * missing.x();
-    end.y += share * missing.y();
-    end.heading += share * missing_turn;
-    const Pose step = relative(before, end);
-    path.missing[rows[k].row] += Vector2(step.x - steps[k].x, step.heading - steps[k].heading);
-    before = end;
+    end.x += share * left.x();
+    end.y += share * left.y();
+    end.heading += share * left_turn;
+    path.missing[rows[k].row] += missing[k];
   }
 }
 
@@ -137,6 +190,21 @@ RecordingState standing_exactly(const RecordingProblem& problem, const EffectBor
     if (counts[k] == 0) continue;
     result.poses[k].x = sums[k].x() / counts[k];
     result.poses[k].y = sums[k].y() / counts[k];
+  }
+  return result;
+}
+
+RecordingProblem without_noise(const RecordingProblem& problem,
+                               const std::vector<SessionPath>& paths) {
+  RecordingProblem result = problem;
+  for (const Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::piece) continue;
+    const SessionPath& path = paths[idx(one.session)];
+    if (path.missing.empty()) continue;
+    for (PieceRow& row : result.pieces[one.source]) {
+      row.path += row.part * path.missing[row.row][0];
+      row.turn += row.part * path.missing[row.row][1];
+    }
   }
   return result;
 }

@@ -183,15 +183,17 @@ class Fitter {
     if (free.empty()) return false;
     const RecordingState clean =
         standing_exactly(fit_.problem, fit_.columns.border, offsets_of(fit_), state_);
-    const ShapeContext context(fit_.recordings, fit_.model.robot,
-                               fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem,
-                                            fit_.columns.border, offsets_of(fit_), clean));
+    const std::vector<SessionPath> paths =
+        fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
+                     offsets_of(fit_), clean);
+    const RecordingProblem problem = without_noise(fit_.problem, paths);
+    const ShapeContext context(fit_.recordings, fit_.model.robot, paths);
     EffectBorder border = effect_columns(fit_.model.effects, context).border;
     for (std::size_t k = 0; k < border.size(); ++k) {
       border[k].held = fit_.columns.border[k].held;
       border[k].reference = fit_.columns.border[k].reference;
     }
-    RecordingSystem system(fit_.problem, border);
+    RecordingSystem system(problem, border);
     system.linearise(clean, unknown_values());
     try {
       system.factorise();

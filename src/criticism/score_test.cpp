@@ -37,10 +37,12 @@ ScoreTest::ScoreTest(const ModelFit& fit)
     : fit_(fit),
       clean_(
           standing_exactly(fit.problem, fit.columns.border, offsets_of(fit), fit.adjustment.state)),
-      context_(fit.recordings, fit.model.robot, paths_at(fit, clean_)),
+      paths_(paths_at(fit, clean_)),
+      problem_(without_noise(fit.problem, paths_)),
+      context_(fit.recordings, fit.model.robot, paths_),
       border_(border_at(fit, context_)),
       system_(std::make_unique<RecordingSystem>(fit.problem, fit.columns.border)),
-      clean_system_(std::make_unique<RecordingSystem>(fit.problem, border_)) {
+      clean_system_(std::make_unique<RecordingSystem>(problem_, border_)) {
   std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   for (const int k : fit.adjustment.left_out) weights[idx(k)] = 0.0;
   for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
@@ -49,8 +51,8 @@ ScoreTest::ScoreTest(const ModelFit& fit)
                       fit.adjustment.coefficients);
     system->factorise();
   }
-  builder_ = std::make_unique<ColumnBuilder>(context_, fit.problem, border_, offsets_of(fit),
-                                             clean_, weights);
+  builder_ = std::make_unique<ColumnBuilder>(context_, problem_, border_, offsets_of(fit), clean_,
+                                             weights);
   for (const Measurement& one : fit.problem.measurements) {
     group_.insert(group_.end(), idx(one.rows), one.from);
   }

@@ -88,7 +88,9 @@ TEST_P(HiddenEffect, IsDiscoveredAndNothingElse) {
         << answers.front().channel;
   }
   for (std::size_t k = 1; k < result.steps.size(); ++k) {
-    EXPECT_LT(result.steps[k].held_out.arrival_rms, result.steps[k - 1].held_out.arrival_rms);
+    // A second effect may show in the fit and yet change held-out ends by less than chance.
+    EXPECT_LT(result.steps[k].held_out.arrival_rms,
+              (k == 1 ? 1.0 : 1.05) * result.steps[k - 1].held_out.arrival_rms);
     EXPECT_EQ(result.steps[k].held_out.legs.size(), result.steps[0].held_out.legs.size());
   }
 }

@@ -4,7 +4,8 @@
 // Where the robot was in every row, as an adjustment has it.
 //
 //   node o~~~~~~~~~> * node      rows are reckoned from node to node, with the effects; what is
-//                      ^ missing  missing at the next node is spread evenly over the rows
+//                      ^ missing  missing at the next node is shared out over the rows as white
+//                                 noise of the wheels that adds up to it
 #pragma once
 
 #include "trussmap/adjustment/effect_border.hpp"
@@ -35,6 +36,11 @@ struct SessionPath {
                                               const EffectBorder& border,
                                               const Eigen::VectorXd& offsets,
                                               const RecordingState& state);
+
+/// The problem with each piece's rows less their noise, as these paths have it. What was measured
+/// stays: only what an effect would do to the rows is then free of noise.
+[[nodiscard]] RecordingProblem without_noise(const RecordingProblem& problem,
+                                             const std::vector<SessionPath>& paths);
 
 /// The pose at time t, along the row.
 [[nodiscard]] Pose pose_at(const Drive& drive, const SessionPath& path, double t);

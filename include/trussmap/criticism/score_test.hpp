@@ -93,6 +93,8 @@ class ScoreTest {
 
   const ModelFit& fit_;
   RecordingState clean_;  ///< without noise of its own
+  std::vector<SessionPath> paths_;
+  RecordingProblem problem_;  ///< its rows without noise
   ShapeContext context_;
   EffectBorder border_;
   std::unique_ptr<RecordingSystem> system_;
