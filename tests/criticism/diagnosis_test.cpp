@@ -76,7 +76,9 @@ TEST_P(HiddenEffect, IsNamedFirst) {
   EXPECT_LT(first.held_out.arrival_rms, result.held_out.arrival_rms);
 }
 
-TEST_P(HiddenEffect, IsDiscoveredAndNothingElse) {
+class SlowHiddenEffect : public HiddenEffect {};
+
+TEST_P(SlowHiddenEffect, IsDiscoveredAndNothingElse) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   read();
   const Discovery result = discover(recordings_, model_);
@@ -95,18 +97,19 @@ TEST_P(HiddenEffect, IsDiscoveredAndNothingElse) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Diagnosis, HiddenEffect,
-    ::testing::Values(Hidden{"a", {{{"turn", "1"}}}}, Hidden{"b", {{{"compass", "heading"}}}},
-                      Hidden{"c", {{{"wheels", "payload_kg"}, {"travel", "payload_kg"}}}},
-                      Hidden{"d", {{{"wheels", "x-"}, {"travel", "x-"}}}},
-                      Hidden{"e", {{{"creep", "heading"}}}},
-                      Hidden{"f", {{{"turn", "sign(turn_rate)"}}, {{"compass", "lights"}}}},
-                      Hidden{"g", {{{"turn", "abs(turn_rate)"}}}}, Hidden{"h", {}}, Hidden{"i", {}},
-                      Hidden{"j", {{{"compass", "turn_rate"}}}}),
-    [](const auto& which) { return which.param.folder; });
+const auto kPractice = ::testing::Values(
+    Hidden{"a", {{{"turn", "1"}}}}, Hidden{"b", {{{"compass", "heading"}}}},
+    Hidden{"c", {{{"wheels", "payload_kg"}, {"travel", "payload_kg"}}}},
+    Hidden{"d", {{{"wheels", "x-"}, {"travel", "x-"}}}}, Hidden{"e", {{{"creep", "heading"}}}},
+    Hidden{"f", {{{"turn", "sign(turn_rate)"}}, {{"compass", "lights"}}}},
+    Hidden{"g", {{{"turn", "abs(turn_rate)"}}}}, Hidden{"h", {}}, Hidden{"i", {}},
+    Hidden{"j", {{{"compass", "turn_rate"}}}});
+const auto kFolder = [](const auto& which) { return which.param.folder; };
 
-TEST(Diagnosis, NothingIsNamedWhereNothingIsMissing) {
+INSTANTIATE_TEST_SUITE_P(Diagnosis, HiddenEffect, kPractice, kFolder);
+INSTANTIATE_TEST_SUITE_P(Discovery, SlowHiddenEffect, kPractice, kFolder);
+
+TEST(SlowDiagnosis, NothingIsNamedWhereNothingIsMissing) {
   // Seeds 1 to 24, all equipments in turn. Named at a chance of at most 5 %: more than 4 of 24 has
   // a chance of 0.6 %.
   int named = 0;
