@@ -104,7 +104,8 @@ std::set<int> loose_poses(const std::vector<Recording>& recordings, const ModelF
     const std::size_t session = idx(node.session);
     state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
   }
-  RecordingSystem system(problem, {});
+  const EffectBorder no_effects;
+  RecordingSystem system(problem, no_effects);
   system.linearise(state, Eigen::VectorXd());
   const std::vector<int> loose = find_loose_nodes(system, problem);
   const std::set<int> nodes(loose.begin(), loose.end());

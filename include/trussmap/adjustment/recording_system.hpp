@@ -42,6 +42,8 @@ class RecordingSystem {
  public:
   /// Keeps references to the problem and the border.
   RecordingSystem(const RecordingProblem& problem, const EffectBorder& border);
+  RecordingSystem(const RecordingProblem& problem, EffectBorder&& border) = delete;
+  RecordingSystem(RecordingProblem&& problem, const EffectBorder& border) = delete;
 
   /// `coefficients` are the unknown ones. chi^2 (with priors), and with it r, J, M, A, B, D at
   /// these values. With headings held, a step moves positions (and coefficients) only.
