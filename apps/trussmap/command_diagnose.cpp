@@ -7,12 +7,12 @@
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/report/table.hpp"
 
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "model_recordings.hpp"
 
 namespace trussmap::app {
@@ -26,18 +26,6 @@ struct DiagnoseOptions {
   std::size_t list = 8;
 };
 
-ordered_json numbers(const std::vector<double>& values) {
-  ordered_json list = ordered_json::array();
-  for (const double value : values) {
-    list.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr));
-  }
-  return list;
-}
-
-ordered_json json(const Effect& effect) {
-  return {{"effect", effect.name}, {"channel", effect.channel}, {"shape", effect.shape}};
-}
-
 ordered_json json(const HeldOutFigures& figures) {
   return {{"arrival_rms_m", figures.arrival_rms},
           {"stretch_error", figures.stretch_error},
@@ -46,21 +34,21 @@ ordered_json json(const HeldOutFigures& figures) {
 
 ordered_json json(const Finding& finding) {
   const Effect& effect = finding.candidate.effect;
-  ordered_json one = json(effect);
+  ordered_json one = effect_json(effect);
   one["score"] = finding.score;
   one["dof"] = finding.dof;
   one["p_value"] = finding.p_value;
   one["p_adjusted"] = finding.p_adjusted;
   one["status"] = name_of(finding.status);
-  one["coefficients"] = numbers(effect.coefficients);
-  one["sd"] = numbers(finding.sd);
-  one["smallest_detectable"] = numbers(finding.smallest_detectable);
+  one["coefficients"] = numbers_or_null(effect.coefficients);
+  one["sd"] = numbers_or_null(finding.sd);
+  one["smallest_detectable"] = numbers_or_null(finding.smallest_detectable);
   one["heldout"] = json(finding.held_out);
   one["log_evidence"] = finding.evidence;
   one["tried"] = finding.tried;
   ordered_json rivals = ordered_json::array();
   for (const LookAlike& rival : finding.look_alikes) {
-    rivals.push_back(json(rival.effect));
+    rivals.push_back(effect_json(rival.effect));
     rivals.back()["cosine"] = rival.cosine;
   }
   one["indistinguishable_from"] = rivals;
@@ -76,7 +64,7 @@ ordered_json json(const Diagnosis& result) {
   for (const Finding& finding : result.findings) candidates.push_back(json(finding));
   ordered_json unobservable = ordered_json::array();
   for (const Unobservable& one : result.unobservable) {
-    unobservable.push_back(json(one.effect));
+    unobservable.push_back(effect_json(one.effect));
     unobservable.back()["why"] = one.why;
     unobservable.back()["remedy"] = one.remedy;
   }
@@ -99,14 +87,12 @@ ordered_json json(const Diagnosis& result) {
                         {"p_adjusted", one.p_adjusted},
                         {"in_words", one.in_words}});
   }
-  ordered_json heldout = json(result.held_out);
-  heldout["legs"] = result.held_out_legs;
   return {{"verdict", verdict},
           {"missing", result.missing},
           {"p_value", result.p_value},
           {"chi2", result.chi2},
           {"dof", result.dof},
-          {"heldout", heldout},
+          {"heldout", held_out_json(result.held_out)},
           {"tried", result.tried},
           {"candidates", candidates},
           {"noise", noise},
@@ -140,10 +126,10 @@ void print_verdict(const Diagnosis& result) {
                  rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
     }
   }
-  if (!result.missing.empty() && result.held_out_legs > 0) {
+  if (!result.missing.empty() && !result.held_out.legs.empty()) {
     fmt::print("  without it legs end {} off, with it {} (rms of {} held-out legs, predicted)\n",
                length(result.held_out.arrival_rms),
-               length(result.findings.front().held_out.arrival_rms), result.held_out_legs);
+               length(result.findings.front().held_out.arrival_rms), result.held_out.legs.size());
   }
   if (!result.next_drive.empty()) fmt::print("  to tell them apart: {}\n", result.next_drive);
 }

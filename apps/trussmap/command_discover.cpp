@@ -8,12 +8,12 @@
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/report/table.hpp"
 
-#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "model_recordings.hpp"
 
 namespace trussmap::app {
@@ -34,19 +34,15 @@ ordered_json json(const DiscoveryStep& step) {
                       {"dof", step.dof},
                       {"heldout", held_out_json(step.held_out)}};
   if (step.added) {
-    one["added"] = {{"effect", step.added->name},
-                    {"channel", step.added->channel},
-                    {"shape", step.added->shape},
-                    {"coefficients", step.added->coefficients}};
+    one["added"] = effect_json(*step.added);
+    one["added"]["coefficients"] = step.added->coefficients;
     one["dropped"] = step.dropped;
     one["promised"] = {{"chi2_decrease", step.promised_chi2},
                        {"arrival_rms_m", step.promised.arrival_rms}};
     ordered_json rivals = ordered_json::array();
     for (const LookAlike& rival : step.look_alikes) {
-      rivals.push_back({{"effect", rival.effect.name},
-                        {"channel", rival.effect.channel},
-                        {"shape", rival.effect.shape},
-                        {"cosine", rival.cosine}});
+      rivals.push_back(effect_json(rival.effect));
+      rivals.back()["cosine"] = rival.cosine;
     }
     one["indistinguishable_from"] = rivals;
   }
@@ -57,18 +53,7 @@ ordered_json json(const Discovery& result) {
   ordered_json steps = ordered_json::array();
   for (const DiscoveryStep& step : result.steps) steps.push_back(json(step));
   ordered_json effects = ordered_json::array();
-  for (const EffectEstimate& one : result.fit.effects) {
-    ordered_json sd = ordered_json::array();
-    for (const double value : one.sd) {
-      sd.push_back(std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr));
-    }
-    effects.push_back({{"effect", one.effect.name},
-                       {"channel", one.effect.channel},
-                       {"shape", one.effect.shape},
-                       {"coefficients", one.effect.coefficients},
-                       {"sd", sd},
-                       {"in_words", in_words(one.effect, one.sd)}});
-  }
+  for (const EffectEstimate& one : result.fit.effects) effects.push_back(estimate_json(one));
   return {{"steps", steps},
           {"stopped", result.stopped},
           {"verdict", result.consistent ? "consistent" : "unexplained misfit"},

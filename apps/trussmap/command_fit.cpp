@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 
@@ -61,22 +62,11 @@ FitResult fit_both(const ModelRecordings& input, const FitOptions& options) {
   return result;
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json json(const FitResult& result) {
   ordered_json effects = ordered_json::array();
   for (const EffectEstimate& one : result.after.effects) {
-    ordered_json sd = ordered_json::array();
-    for (const double value : one.sd) sd.push_back(number(value));
-    effects.push_back({{"effect", one.effect.name},
-                       {"channel", one.effect.channel},
-                       {"shape", one.effect.shape},
-                       {"coefficients", one.effect.coefficients},
-                       {"sd", sd},
-                       {"in_words", in_words(one.effect, one.sd)},
-                       {"not_fitted", one.not_fitted}});
+    effects.push_back(estimate_json(one));
+    effects.back()["not_fitted"] = one.not_fitted;
   }
   const RecordingAdjustment& after = result.after.adjustment;
   return {{"chi2", after.chi2},

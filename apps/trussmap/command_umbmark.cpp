@@ -21,6 +21,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
 

@@ -6,7 +6,6 @@
 #include "trussmap/report/table.hpp"
 
 #include <charconv>
-#include <cmath>
 
 #include "commands.hpp"
 #include "option_checks.hpp"
@@ -97,10 +96,6 @@ TapeRobot simulated_robot(const TapeOptions& options, double wheelbase) {
 std::vector<std::string> quantity_cells(const Estimate& estimate) {
   const QuantityText text = quantity_text(estimate.value, estimate.standard_error);
   return {text.value, text.error.empty() ? "" : "\u00b1 " + text.error};
-}
-
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 std::string warnings_text(const std::vector<std::string>& warnings) {

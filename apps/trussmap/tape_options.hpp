@@ -15,7 +15,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "page_runtime.hpp"
 
@@ -52,9 +51,6 @@ void check_source(const CLI::App& command, bool has_files);
 
 /// Cells of a table: value, "±", standard error, unit.
 [[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
-
-/// null where there is none.
-[[nodiscard]] nlohmann::ordered_json number_or_null(double value);
 
 /// "warning: ..." lines.
 [[nodiscard]] std::string warnings_text(const std::vector<std::string>& warnings);

@@ -192,6 +192,10 @@ class Gatherer {
     variables_.push_back(spread);
   }
 
+  [[nodiscard]] bool is_covariate(const std::string& name) const {
+    return std::find(covariates_.begin(), covariates_.end(), name) != covariates_.end();
+  }
+
   [[nodiscard]] bool is_possible(Channel channel) const {
     if (channel == Channel::compass) return has_compass_;
     if (channel == Channel::range || channel == Channel::range_scale ||
@@ -334,8 +338,7 @@ class Gatherer {
       if (channel != Channel::compass) take_places(bell, {1.0});
     }
     for (const Spread& u : variables_) {
-      const bool covariate =
-          std::find(covariates_.begin(), covariates_.end(), u.name) != covariates_.end();
+      const bool covariate = is_covariate(u.name);
       if (wheel && !covariate && u.name != "t" && u.name != "distance" && u.name != "speed") {
         continue;
       }
@@ -400,8 +403,7 @@ class Gatherer {
       add(plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -3.0));
     }
     for (const Spread& u : variables_) {
-      const bool covariate =
-          std::find(covariates_.begin(), covariates_.end(), u.name) != covariates_.end();
+      const bool covariate = is_covariate(u.name);
       if (!covariate && u.name != "t" && u.name != "session" && u.name != "speed" &&
           u.name != "turn_rate") {
         continue;

@@ -49,18 +49,7 @@ void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidat
 void drop_columns(Score& score) {
   score.columns.resize(0, 0);
   score.projected.resize(0, 0);
-  score.nodes.resize(0, 0);
-}
-
-/// What one unit of each coefficient moves the landmarks by, two rows each.
-Eigen::MatrixXd landmark_moves(const ScoreTest& tests, const ModelFit& fit,
-                               const Eigen::MatrixXd& nodes) {
-  const BlockSystem& system = tests.system().normal_equations();
-  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(2 * fit.problem.landmark_count(), nodes.cols());
-  for (int k = 0; k < fit.problem.landmark_count(); ++k) {
-    if (system.size(k) == 2) moves.middleRows(2 * k, 2) = nodes.middleRows(system.offset(k), 2);
-  }
-  return moves;
+  score.landmarks.resize(0, 0);
 }
 
 class Diagnostician {
@@ -79,9 +68,7 @@ class Diagnostician {
     result_.chi2 = fit_.adjustment.chi2;
     result_.dof = fit_.adjustment.dof;
     result_.warnings = fit_.adjustment.warnings;
-    const HeldOut present = legs_->figures();
-    result_.held_out = figures_of(present);
-    result_.held_out_legs = present.legs.size();
+    result_.held_out = legs_->figures();
     test_all();
     judge(tested_, result_.chi2, result_.dof);
     refine_families();
@@ -117,7 +104,7 @@ class Diagnostician {
   void take(Tested& tested, const Candidate& candidate, Score& score) {
     tested.candidate = candidate;
     if (predictable_ && score.dof > 0) {
-      tested.slopes = legs_->slopes(score.columns, landmark_moves(tests_, fit_, score.nodes));
+      tested.slopes = legs_->slopes(score.columns, score.landmarks);
     }
     drop_columns(score);
     tested.score = score;
@@ -186,6 +173,7 @@ class Diagnostician {
 
   /// The best, then the best of what is left when it is taken out, and so on.
   void find_missing() {
+    if (best_of(tested_, options_.level) == nullptr) return;
     ScoreTest left(fit_);
     std::vector<Tested> still = tested_;
     double chi2 = result_.chi2;
@@ -205,14 +193,19 @@ class Diagnostician {
       aside_.rightCols(whole.projected.cols()) = whole.projected;
       chi2 -= whole.score;
       dof -= whole.dof;
-      std::vector<Candidate> again;
-      for (const Tested& one : tested_) again.push_back(one.candidate);
-      visit_scores(left, again, [&](std::size_t k, Score& score) {
+      if (missing_.size() == options_.most_missing) break;
+      visit_scores(left, candidates_tested(), [&](std::size_t k, Score& score) {
         drop_columns(score);
         still[k].score = score;
       });
       judge(still, chi2, dof);
     }
+  }
+
+  [[nodiscard]] std::vector<Candidate> candidates_tested() const {
+    std::vector<Candidate> candidates;
+    for (const Tested& one : tested_) candidates.push_back(one.candidate);
+    return candidates;
   }
 
   /// A free form that happens to hold the winner's shape is no rival to a catalogue effect.
@@ -227,11 +220,14 @@ class Diagnostician {
       trace += winner.coefficients[k] * winner.projected.col(static_cast<Eigen::Index>(k));
     }
     const double length = trace.norm();
+    if (length == 0.0) return;
     std::vector<Candidate> rivals;
-    for (const Tested& one : tested_) rivals.push_back(one.candidate);
+    for (std::size_t k = 0; k < tested_.size(); ++k) {
+      const Candidate& one = tested_[k].candidate;
+      if (k != at && is_rival(one, tested_[at].candidate)) rivals.push_back(one);
+    }
     visit_scores(tests_, rivals, [&](std::size_t k, const Score& score) {
-      if (k == at || score.dof == 0 || length == 0.0) return;
-      if (!is_rival(rivals[k], tested_[at].candidate)) return;
+      if (score.dof == 0) return;
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
       const double cosine = (score.projected * factor.solve(trace)).norm() / length;
       if (cosine >= kLookAlike) look_alikes_.push_back({rivals[k].effect, std::min(1.0, cosine)});
@@ -242,7 +238,7 @@ class Diagnostician {
   }
 
   [[nodiscard]] HeldOutFigures predicted(const Tested& one) const {
-    if (one.slopes.size() == 0) return result_.held_out;
+    if (one.slopes.size() == 0) return figures_of(result_.held_out);
     Eigen::VectorXd a(one.slopes.cols());
     for (Eigen::Index k = 0; k < a.size(); ++k) {
       a[k] = one.score.coefficients[static_cast<std::size_t>(k)];
@@ -273,7 +269,7 @@ class Diagnostician {
     const Tested& one = tested_[k];
     if (std::find(missing_.begin(), missing_.end(), k) != missing_.end()) {
       const bool changes_nothing =
-          predictable_ && result_.held_out_legs > 0 && fit_.adjustment.p_value > 0.05 &&
+          predictable_ && !result_.held_out.legs.empty() && fit_.adjustment.p_value > 0.05 &&
           with_it.arrival_rms > (1.0 - 0.002) * result_.held_out.arrival_rms &&
           detectable_rise(one, floor) < 0.002;
       return changes_nothing ? Status::negligible : Status::missing;

@@ -28,13 +28,14 @@ class Discoverer {
     tell("fitting the model given");
     result_.fit = fit_model(recordings, model, how_);
     found_.resize(given_);
-    record({});
+    record();
   }
 
   Discovery run() {
     while (true) {
       tell(fmt::format("looking for what is missing, step {}", result_.steps.size()));
       result_.last = diagnose(recordings_, result_.fit, options_.diagnosis);
+      result_.steps.back().held_out = result_.last.held_out;
       if (result_.last.verdict != Diagnosis::Verdict::missing) {
         result_.stopped = "nothing more is significant";
         break;
@@ -63,17 +64,17 @@ class Discoverer {
     return fit_model(recordings_, model, how);
   }
 
-  [[nodiscard]] HeldOut held_out(const ModelFit& fit) const {
-    return predict_held_out(recordings_, fit, how_, options_.diagnosis.legs);
+  [[nodiscard]] double arrival_of(const ModelFit& fit) const {
+    return predict_held_out(recordings_, fit, how_, options_.diagnosis.legs).arrival_rms;
   }
 
-  void record(const std::optional<Effect>& added) {
+  /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
+  DiscoveryStep& record() {
     DiscoveryStep step;
-    step.added = added;
     step.chi2 = result_.fit.adjustment.chi2;
     step.dof = result_.fit.adjustment.dof;
-    step.held_out = held_out(result_.fit);
     result_.steps.push_back(std::move(step));
+    return result_.steps.back();
   }
 
   /// A finding, added and fitted.
@@ -113,25 +114,22 @@ class Discoverer {
     }
     const std::size_t best = best_of(trials);
     const double before = result_.steps.back().held_out.arrival_rms;
-    if (trials[best].arrival < 0.0) trials[best].arrival = held_out(trials[best].fit).arrival_rms;
+    if (trials[best].arrival < 0.0) trials[best].arrival = arrival_of(trials[best].fit);
     if (before > 0.0 && trials[best].arrival > kNoWorse * before) {
       result_.stopped = fmt::format("\"{}\" fits these legs, but predicts others worse",
                                     trials[best].candidate.effect.name);
       return false;
     }
-    const double promised_chi2 = winner.score;
-    const HeldOutFigures promised = winner.held_out;
-    const std::vector<LookAlike> look_alikes = winner.look_alikes;
     found_.push_back(trials[best].candidate);
     result_.fit = std::move(trials[best].fit);
     seek_inner_anew();
-    const std::vector<std::string> dropped = drop_what_fell();
-    record(found_.empty() ? std::optional<Effect>() : result_.fit.model.effects.back());
-    DiscoveryStep& step = result_.steps.back();
-    step.dropped = dropped;
-    step.promised_chi2 = promised_chi2;
-    step.promised = promised;
-    step.look_alikes = look_alikes;
+    std::vector<std::string> dropped = drop_what_fell();
+    DiscoveryStep& step = record();
+    step.added = result_.fit.model.effects.back();
+    step.dropped = std::move(dropped);
+    step.promised_chi2 = winner.score;
+    step.promised = winner.held_out;
+    step.look_alikes = winner.look_alikes;
     return true;
   }
 
@@ -148,8 +146,7 @@ class Discoverer {
       if (gain < -kDecisive) continue;
       if (gain < kDecisive) {
         for (const std::size_t one : {best, k}) {
-          if (trials[one].arrival < 0.0)
-            trials[one].arrival = held_out(trials[one].fit).arrival_rms;
+          if (trials[one].arrival < 0.0) trials[one].arrival = arrival_of(trials[one].fit);
         }
         if (!(trials[k].arrival < kBetter * trials[best].arrival)) continue;
       }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/criticism/fitted_path.hpp"
 
-#include "trussmap/adjustment/measurement_rows.hpp"
 #include "trussmap/effects/row_variables.hpp"
 
 #include <algorithm>
@@ -171,42 +170,6 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
     }
   }
   return paths;
-}
-
-RecordingState standing_exactly(const RecordingProblem& problem, const EffectBorder& border,
-                                const Eigen::VectorXd& offsets, const RecordingState& state) {
-  std::vector<Vector2> sums(state.poses.size(), Vector2::Zero());
-  std::vector<int> counts(state.poses.size(), 0);
-  for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::standing) continue;
-    const ViewPattern view = view_of(border, offsets, one);
-    const std::size_t pose = idx(one.from - problem.landmark_count());
-    sums[pose] += state.landmarks[idx(one.to)] -
-                  rotation(state.poses[pose].heading) * Vector2(view.ahead, view.left);
-    ++counts[pose];
-  }
-  RecordingState result = state;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (counts[k] == 0) continue;
-    result.poses[k].x = sums[k].x() / counts[k];
-    result.poses[k].y = sums[k].y() / counts[k];
-  }
-  return result;
-}
-
-RecordingProblem without_noise(const RecordingProblem& problem,
-                               const std::vector<SessionPath>& paths) {
-  RecordingProblem result = problem;
-  for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::piece) continue;
-    const SessionPath& path = paths[idx(one.session)];
-    if (path.missing.empty()) continue;
-    for (PieceRow& row : result.pieces[one.source]) {
-      row.path += row.part * path.missing[row.row][0];
-      row.turn += row.part * path.missing[row.row][1];
-    }
-  }
-  return result;
 }
 
 Pose pose_at(const Drive& drive, const SessionPath& path, double t) {

@@ -5,6 +5,7 @@
 #include "trussmap/adjustment/piece_noise.hpp"
 #include "trussmap/adjustment/recording_descent.hpp"
 #include "trussmap/adjustment/recording_start.hpp"
+#include "trussmap/criticism/noise_free.hpp"
 #include "trussmap/effects/catalogue.hpp"
 
 #include <algorithm>
@@ -181,20 +182,10 @@ class Fitter {
   bool hold_the_unseen() {
     const std::vector<int> free = unknown_coefficients(fit_.columns.border);
     if (free.empty()) return false;
-    const RecordingState clean =
-        standing_exactly(fit_.problem, fit_.columns.border, offsets_of(fit_), state_);
-    const std::vector<SessionPath> paths =
-        fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
-                     offsets_of(fit_), clean);
-    const RecordingProblem problem = without_noise(fit_.problem, paths);
-    const ShapeContext context(fit_.recordings, fit_.model.robot, paths);
-    EffectBorder border = effect_columns(fit_.model.effects, context).border;
-    for (std::size_t k = 0; k < border.size(); ++k) {
-      border[k].held = fit_.columns.border[k].held;
-      border[k].reference = fit_.columns.border[k].reference;
-    }
-    RecordingSystem system(problem, border);
-    system.linearise(clean, unknown_values());
+    const NoiseFree clean(fit_.recordings, fit_.model, fit_.problem, fit_.columns.border,
+                          offsets_of(fit_), state_);
+    RecordingSystem system(clean.problem, clean.border);
+    system.linearise(clean.state, unknown_values());
     try {
       system.factorise();
     } catch (const NotPositiveDefinite& error) {

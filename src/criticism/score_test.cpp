@@ -16,46 +16,24 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kBatch = 64;  // columns at a time
 
-std::vector<SessionPath> paths_at(const ModelFit& fit, const RecordingState& state) {
-  return fitted_paths(fit.recordings, fit.model.robot, fit.problem, fit.columns.border,
-                      offsets_of(fit), state);
-}
-
-/// The fit's border anew, from rows without their noise.
-EffectBorder border_at(const ModelFit& fit, const ShapeContext& context) {
-  EffectBorder border = effect_columns(fit.model.effects, context).border;
-  for (std::size_t k = 0; k < border.size(); ++k) {
-    border[k].held = fit.columns.border[k].held;
-    border[k].reference = fit.columns.border[k].reference;
-  }
-  return border;
-}
-
 }  // namespace
 
 ScoreTest::ScoreTest(const ModelFit& fit)
     : fit_(fit),
-      clean_(
-          standing_exactly(fit.problem, fit.columns.border, offsets_of(fit), fit.adjustment.state)),
-      paths_(paths_at(fit, clean_)),
-      problem_(without_noise(fit.problem, paths_)),
-      context_(fit.recordings, fit.model.robot, paths_),
-      border_(border_at(fit, context_)),
+      clean_(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets_of(fit),
+             fit.adjustment.state),
       system_(std::make_unique<RecordingSystem>(fit.problem, fit.columns.border)),
-      clean_system_(std::make_unique<RecordingSystem>(problem_, border_)) {
+      clean_system_(std::make_unique<RecordingSystem>(clean_.problem, clean_.border)) {
   std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   for (const int k : fit.adjustment.left_out) weights[idx(k)] = 0.0;
   for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
     system->set_weights(weights);
-    system->linearise(system == system_.get() ? fit.adjustment.state : clean_,
+    system->linearise(system == system_.get() ? fit.adjustment.state : clean_.state,
                       fit.adjustment.coefficients);
     system->factorise();
   }
-  builder_ = std::make_unique<ColumnBuilder>(context_, problem_, border_, offsets_of(fit), clean_,
-                                             weights);
-  for (const Measurement& one : fit.problem.measurements) {
-    group_.insert(group_.end(), idx(one.rows), one.from);
-  }
+  builder_ = std::make_unique<ColumnBuilder>(clean_.context, clean_.problem, clean_.border,
+                                             offsets_of(fit), clean_.state, weights);
   residuals_ = system_->residuals();
   residuals_ -=
       clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(residuals_)));
@@ -136,14 +114,6 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
   const Eigen::VectorXd estimate = -factor.solve(g);
   const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(dof, dof));
   result.score = std::max(0.0, -g.dot(estimate));
-  const Eigen::VectorXd left = residuals_ + M * estimate;
-  Eigen::MatrixXd pulls = Eigen::MatrixXd::Zero(fit_.problem.nodes(), dof);
-  for (Eigen::Index row = 0; row < left.size(); ++row) {
-    pulls.row(group_[static_cast<std::size_t>(row)]) += left[row] * M.row(row);
-  }
-  Eigen::MatrixXd B = pulls.transpose() * pulls;
-  B += 1e-9 * S;
-  result.robust = std::max(0.0, g.dot(B.ldlt().solve(g)));
   // Shapes that are nearly the same count once.
   const Eigen::VectorXd scale = with_prior.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * S *
@@ -159,6 +129,16 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     result.smallest_detectable[place] = std::sqrt(kDetectableScore / S(k, k));
   }
   return result;
+}
+
+Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
+  const BlockSystem& normal = clean_system_->normal_equations();
+  const int count = fit_.problem.landmark_count();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count, nodes.cols());
+  for (int k = 0; k < count; ++k) {
+    if (normal.size(k) == 2) rows.middleRows(2 * k, 2) = nodes.middleRows(normal.offset(k), 2);
+  }
+  return rows;
 }
 
 std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const {
@@ -189,7 +169,7 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const 
       const Eigen::Index shapes = own.cols();
       scores.push_back(score_of(candidates[k], builder_->largest(candidates[k]), std::move(own),
                                 left.middleCols(at, shapes)));
-      scores.back().nodes = -nodes.middleCols(at, shapes);
+      scores.back().landmarks = -landmark_rows(nodes.middleCols(at, shapes));
       at += shapes;
     }
     first = next;

@@ -170,14 +170,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     effect.name = effect.channel = channel;
     effect.shape = {"1"};
     const Score score = tests.test({effect}).front();
-    const BlockSystem& system = tests.system().normal_equations();
-    Eigen::MatrixXd landmarks = Eigen::MatrixXd::Zero(2 * fit.problem.landmark_count(), 1);
-    for (int k = 0; k < fit.problem.landmark_count(); ++k) {
-      if (system.size(k) == 2) {
-        landmarks.middleRows(2 * k, 2) = score.nodes.middleRows(system.offset(k), 2);
-      }
-    }
-    const HeldOut told = legs.moved(kSize * legs.slopes(score.columns, landmarks));
+    const HeldOut told = legs.moved(kSize * legs.slopes(score.columns, score.landmarks));
     Recording changed = one.recording;
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {
       double& left = changed.drive.left[row];

@@ -8,8 +8,7 @@
 //        '--> single events, noise      '------ winner taken out <-------'   a second, a third ...
 //
 //   p adjusted   Holm's, over all that was tried, members of families counted one by one; judged
-//                against the dispersion that the candidate itself would leave, and by the robust
-//                score where that is less
+//                against the dispersion that the candidate itself would leave
 //   order        evidence: log Bayes factor with the channel's plausible size, and a little more
 //                belief in the catalogue than in a free form
 //   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
@@ -75,8 +74,7 @@ struct Diagnosis {
   double p_value = 1.0;  ///< its, adjusted; else of chi^2
   double chi2 = 0.0;
   int dof = 0;
-  HeldOutFigures held_out;  ///< of the present model
-  std::size_t held_out_legs = 0;
+  HeldOut held_out;               ///< of the present model
   std::vector<Finding> findings;  ///< best first
   std::vector<Unobservable> unobservable;
   std::vector<NoiseTest> noise;   ///< best explanation first

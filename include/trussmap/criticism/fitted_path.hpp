@@ -29,19 +29,6 @@ struct SessionPath {
     const std::vector<Recording>& recordings, const Robot& robot, const RecordingProblem& problem,
     const EffectBorder& border, const Eigen::VectorXd& offsets, const RecordingState& state);
 
-/// The state with every pose exactly where the landmarks are that it stands on (the mean of them).
-/// What a robot stands on it cannot miss by a share of the map's size: only here do directions that
-/// nothing measures (the map's scale) cost nothing at all.
-[[nodiscard]] RecordingState standing_exactly(const RecordingProblem& problem,
-                                              const EffectBorder& border,
-                                              const Eigen::VectorXd& offsets,
-                                              const RecordingState& state);
-
-/// The problem with each piece's rows less their noise, as these paths have it. What was measured
-/// stays: only what an effect would do to the rows is then free of noise.
-[[nodiscard]] RecordingProblem without_noise(const RecordingProblem& problem,
-                                             const std::vector<SessionPath>& paths);
-
 /// The pose at time t, along the row.
 [[nodiscard]] Pose pose_at(const Drive& drive, const SessionPath& path, double t);
 

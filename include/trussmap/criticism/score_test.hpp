@@ -17,9 +17,8 @@
 // phi = max(1, chi^2/dof): under a large misfit a smaller map has smaller residuals, and without
 // phi the pure scale would take credit for that (design of score tests: Rao 1948).
 //
-// J and M are taken at a state without noise of its own: poses on their landmarks exactly, rows
-// less their noise (fitted_path.hpp). What cannot be seen at all then has no projection at all, and
-// noise that a smaller map would shrink is no evidence.
+// J and M are taken at a state without noise of its own (noise_free.hpp): what cannot be seen at
+// all then has no projection at all.
 //
 // The virtual work of the locked-in forces on the effect's strain pattern, in the truss's terms.
 // One factorisation serves all candidates.
@@ -28,6 +27,7 @@
 #include "trussmap/adjustment/recording_system.hpp"
 #include "trussmap/criticism/column_builder.hpp"
 #include "trussmap/criticism/model_fit.hpp"
+#include "trussmap/criticism/noise_free.hpp"
 
 #include <memory>
 #include <vector>
@@ -40,9 +40,6 @@ struct Score {
   double score = 0.0;
   int dof = 0;  ///< shapes that can be seen at all
   double p_value = 1.0;
-  /// g' B^-1 g with B the sum of (M_i' r_i)(M_i' r_i)' over the pieces and stops i, as the effect
-  /// would leave them: what a wrong noise law, or one bad leg, is not taken for an effect by.
-  double robust = 0.0;
   double occam = 0.0;                       ///< log(det(1 + S/P)) / 2
   std::vector<double> coefficients;         ///< 0 where unseen
   std::vector<double> sd;                   ///< infinite where unseen
@@ -52,7 +49,7 @@ struct Score {
   std::vector<double> information;          ///< |M_|^2 of each shape
   Eigen::MatrixXd columns;                  ///< M, rows x shapes
   Eigen::MatrixXd projected;                ///< M_, rows x shapes; zero columns where unseen
-  Eigen::MatrixXd nodes;  ///< what one unit of each moves landmarks and poses by, system order
+  Eigen::MatrixXd landmarks;  ///< what one unit of each moves the landmarks by, two rows each, m
 };
 
 class ScoreTest {
@@ -85,22 +82,20 @@ class ScoreTest {
   [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
-  [[nodiscard]] const ShapeContext& context() const { return context_; }
+  [[nodiscard]] const ShapeContext& context() const { return clean_.context; }
 
  private:
   [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
                                Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
 
+  /// Rows of the landmarks, zero where held, among those of all nodes.
+  [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
+
   const ModelFit& fit_;
-  RecordingState clean_;  ///< without noise of its own
-  std::vector<SessionPath> paths_;
-  RecordingProblem problem_;  ///< its rows without noise
-  ShapeContext context_;
-  EffectBorder border_;
+  NoiseFree clean_;
   std::unique_ptr<RecordingSystem> system_;
   std::unique_ptr<RecordingSystem> clean_system_;
   std::unique_ptr<ColumnBuilder> builder_;
-  std::vector<int> group_;   ///< of each row: the node that its measurement begins at
   Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
   Eigen::VectorXd residuals_;
   double dispersion_ = 1.0;
