@@ -111,7 +111,7 @@ MeasurementRows truth_rows(const Pose& pose, const Vector4& value, const ViewPat
 ViewPattern view_of(const EffectBorder& border, const Eigen::VectorXd& offsets,
                     const Measurement& one) {
   ViewPattern sum;
-  if (one.session < 0) return sum;
+  if (one.session < 0 || one.kind == MeasurementKind::piece) return sum;
   for (std::size_t k = 0; k < border.size(); ++k) {
     const auto& views = one.kind == MeasurementKind::truth ? border[k].truths : border[k].sightings;
     if (views.empty() || views[idx(one.session)].empty()) continue;
