@@ -9,7 +9,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastSd = 1e-5;  // m and rad
+constexpr double kLeastPieceSd = 1e-5;  // m and rad
 
 /// Direction of an arc's chord times chord/path, (sin a/a, (1 - cos a)/a), and its derivative.
 struct UnitArc {
@@ -193,11 +193,11 @@ Matrix4 piece_covariance(const Drive& drive, const std::vector<PieceRow>& rows, 
     P.row(3) += P.row(2);
     P.col(3) += P.col(2);
   }
-  P.diagonal().head<3>().array() += kLeastSd * kLeastSd;
+  P.diagonal().head<3>().array() += kLeastPieceSd * kLeastPieceSd;
   if (readings > 0) {
     P.row(3) /= -readings;
     P.col(3) /= -readings;
-    P(3, 3) += noise.compass * noise.compass / readings + kLeastSd * kLeastSd;
+    P(3, 3) += noise.compass * noise.compass / readings + kLeastPieceSd * kLeastPieceSd;
   } else {
     P.row(3).setZero();
     P.col(3).setZero();

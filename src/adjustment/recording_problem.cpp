@@ -16,14 +16,14 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastSd = 1e-6;   // m or rad: what is called exact is this exact
+constexpr double kExactSd = 1e-6;   // m or rad: what is called exact is this exact
 constexpr double kNearRange = 3.0;  // sds
 
 Matrix4 whitener_of_sds(std::initializer_list<double> sds) {
   Matrix4 result = Matrix4::Zero();
   Eigen::Index k = 0;
   for (const double sd : sds) {
-    result(k, k) = 1.0 / std::max(sd, kLeastSd);
+    result(k, k) = 1.0 / std::max(sd, kExactSd);
     ++k;
   }
   return result;

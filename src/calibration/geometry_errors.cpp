@@ -12,7 +12,7 @@ namespace trussmap {
 namespace {
 
 constexpr const char* kRatio = "wheel diameter ratio";
-constexpr const char* kWheelbase = "wheelbase";
+constexpr const char* kWheelbaseEffect = "wheelbase";
 
 /// sin(x)/x and its derivative.
 struct Sinc {
@@ -71,7 +71,7 @@ GeometryErrors geometry_errors(const Model& model) {
             "more, expected one near 0");
       }
       errors.diameter_ratio = (1.0 + g / 2.0) / (1.0 - g / 2.0);
-    } else if (effect.name == kWheelbase) {
+    } else if (effect.name == kWheelbaseEffect) {
       const double g = coefficient(effect, "turn");
       if (g <= -1.0) {
         throw std::invalid_argument(
@@ -87,7 +87,7 @@ GeometryErrors geometry_errors(const Model& model) {
 void set_geometry_errors(Model& model, const GeometryErrors& errors) {
   const double e_d = errors.diameter_ratio;
   set_effect(model, kRatio, "difference", 2.0 * (e_d - 1.0) / (e_d + 1.0));
-  set_effect(model, kWheelbase, "turn", 1.0 / errors.wheelbase_ratio - 1.0);
+  set_effect(model, kWheelbaseEffect, "turn", 1.0 / errors.wheelbase_ratio - 1.0);
 }
 
 PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWheelbase = 0.258;  // m, iRobot Create, the maker's figure
-constexpr double kFrame = 0.005;      // s
-constexpr int kLastRobot = 5;         // subjects up to here are robots
+constexpr double kCreateWheelbase = 0.258;  // m, iRobot Create, the maker's figure
+constexpr double kFrame = 0.005;            // s
+constexpr int kLastRobot = 5;               // subjects up to here are robots
 
 using Row = std::vector<double>;
 
@@ -63,8 +63,8 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
     if (t > before) {
       const double dt = t - before;
       drive.t.push_back(t);
-      drive.left.push_back((v - 0.5 * kWheelbase * w) * dt);
-      drive.right.push_back((v + 0.5 * kWheelbase * w) * dt);
+      drive.left.push_back((v - 0.5 * kCreateWheelbase * w) * dt);
+      drive.right.push_back((v + 0.5 * kCreateWheelbase * w) * dt);
       before = t;
     } else {
       ++result.merged_times;
@@ -157,7 +157,7 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
 /// seconds, and because the frames come 0.25 s late, which while turning is a bearing error.
 Model create_model() {
   Model model;
-  model.robot.wheelbase = kWheelbase;
+  model.robot.wheelbase = kCreateWheelbase;
   model.noise.left = model.noise.right = 0.02;
   model.noise.heading_per_rad = 0.1;
   model.noise.travel_per_s = 0.02;

@@ -19,10 +19,6 @@ constexpr std::size_t kRoutes = 30;
 constexpr std::size_t kTrends = 12;
 constexpr double kClear = 0.05;
 
-double misfit_of(const Comparison& one) {
-  return one.chi2 / std::max(1, one.dof);
-}
-
 std::string against_words(const Trend& trend) {
   return trend.against == "all" ? "everything alike" : trend.against;
 }
@@ -124,7 +120,7 @@ std::string comparison_verdict(const Comparison& result) {
   std::string text = fmt::format(
       "The model does not explain these measurements: errors are {:.1f} times what its "
       "noise allows",
-      std::sqrt(misfit_of(result)));
+      std::sqrt(result.misfit()));
   if (!held.empty()) text += ", and legs that it has not seen end " + held + " off";
   text += ".";
   if (!result.trends.empty() && result.trends.front().p_adjusted < kClear) {
@@ -144,7 +140,7 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   page.subject = subject;
   page.tone = result.consistent ? Tone::good : Tone::bad;
   page.verdict = comparison_verdict(result);
-  page.facts = {{fmt::format("{:.2f}", misfit_of(result)),
+  page.facts = {{fmt::format("{:.2f}", result.misfit()),
                  "chi\u00b2 per degree of freedom (1 is right)", page.tone},
                 {result.p_value < 1e-12 ? "next to 0" : probability_text(result.p_value),
                  "chance of errors as large, if the model is right"},
@@ -164,7 +160,7 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   }
   page.sections.push_back({"The map as a truss",
                            {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
-                                                 result.routes, misfit_of(result)),
+                                                 result.routes, result.misfit()),
                                      worst_chart("worst-legs", result.worst, kWorst)}}});
   page.sections.push_back(trend_section(result, trends));
   page.sections.push_back({"Is the noise right?", {}});

@@ -19,10 +19,6 @@ namespace {
 constexpr const char* kBefore = "without effects";
 constexpr const char* kAfter = "with them";
 
-double misfit_of(const Comparison& one) {
-  return one.chi2 / std::max(1, one.dof);
-}
-
 std::string millimetres(const Comparison& one) {
   return fmt::format("{:.0f} mm", 1000.0 * one.held_out.arrival_rms);
 }
@@ -154,8 +150,8 @@ Page fit_page(const FittedModel& without, const FittedModel& with,
   page.tone = after.consistent ? Tone::good : Tone::bad;
   page.verdict = verdict(before, after, effects);
   page.facts = {
-      {fmt::format("{:.2f}", misfit_of(before)), "chi\u00b2 per degree of freedom without effects"},
-      {fmt::format("{:.2f}", misfit_of(after)), "the same with them (1 is right)", page.tone}};
+      {fmt::format("{:.2f}", before.misfit()), "chi\u00b2 per degree of freedom without effects"},
+      {fmt::format("{:.2f}", after.misfit()), "the same with them (1 is right)", page.tone}};
   if (!after.held_out.legs.empty()) {
     page.facts.push_back({millimetres(before), "held-out legs end so far off without effects"});
     page.facts.push_back({millimetres(after), "the same with them", page.tone});
@@ -180,11 +176,11 @@ Page fit_page(const FittedModel& without, const FittedModel& with,
       ChartRow{source_chart("noise", {{kBefore, before.sources}, {kAfter, after.sources}})});
   gain.blocks.emplace_back(model_table(before, after));
   page.sections.push_back(std::move(gain));
-  page.sections.push_back({"The map, before and after",
-                           {ChartRow{truss_chart("map-before", "Without effects", without.map,
-                                                 before.routes, misfit_of(before)),
-                                     truss_chart("map-after", "With them", with.map, after.routes,
-                                                 misfit_of(after))}}});
+  page.sections.push_back(
+      {"The map, before and after",
+       {ChartRow{truss_chart("map-before", "Without effects", without.map, before.routes,
+                             before.misfit()),
+                 truss_chart("map-after", "With them", with.map, after.routes, after.misfit())}}});
   page.sections.push_back({"Legs, with the effects",
                            {ChartRow{legs_chart("stretch", after.worst, LegError::stretch),
                                      legs_chart("orientation", after.worst, LegError::orientation)},

@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kWidth = 800.0;  // pixels
 constexpr double kMargin = 40.0;
-constexpr double kHeader = 76.0;        // title and legend
-constexpr std::size_t kMostNames = 80;  // beyond that names only clutter
+constexpr double kHeader = 76.0;             // title and legend
+constexpr std::size_t kMostNamesDrawn = 80;  // beyond that names only clutter
 
 /// Metres to pixels, y upwards.
-class View {
+class Frame {
  public:
   void include(const Vector2& point) {
     low_ = low_.cwiseMin(point);
@@ -48,7 +48,7 @@ class View {
   double height_ = 0.0;
 };
 
-std::string line(const View& view, const Vector2& a, const Vector2& b, const char* kind,
+std::string line(const Frame& view, const Vector2& a, const Vector2& b, const char* kind,
                  double width) {
   return fmt::format(
       "<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
@@ -56,7 +56,7 @@ std::string line(const View& view, const Vector2& a, const Vector2& b, const cha
       kind, view.x(a), view.y(a), view.x(b), view.y(b), width);
 }
 
-std::string cross(const View& view, const Vector2& at) {
+std::string cross(const Frame& view, const Vector2& at) {
   constexpr double r = 4.5;
   const double x = view.x(at);
   const double y = view.y(at);
@@ -72,7 +72,7 @@ double round_length(double length) {
   return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
 }
 
-std::string header(const MapPicture& picture, const View& view) {
+std::string header(const MapPicture& picture, const Frame& view) {
   std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n", kMargin,
                                 xml_escaped(picture.title));
   double x = kMargin;
@@ -102,7 +102,7 @@ std::string header(const MapPicture& picture, const View& view) {
   return svg;
 }
 
-constexpr const char* kStyle =
+constexpr const char* kMapStyle =
     "<style>text{font:13px system-ui,sans-serif;fill:#222}.title{font-size:17px;font-weight:600}"
     ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.after{stroke:#111}"
     ".joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:1.6;fill:none}"
@@ -114,7 +114,7 @@ std::string draw_map(const MapPicture& picture) {
   const Alignment& lay = picture.map_onto_truth;
   const auto after = [&](int k) { return lay.apply(picture.map.landmark(k).position); };
   const auto before = [&](int k) { return picture.before.find(picture.map.landmark(k).name); };
-  View view;
+  Frame view;
   for (int k = 0; k < picture.map.landmarks(); ++k) {
     view.include(after(k));
     if (before(k) != picture.before.end()) view.include(lay.apply(before(k)->second));
@@ -141,7 +141,7 @@ std::string draw_map(const MapPicture& picture) {
   }
   for (const auto& [name, position] : picture.truth) body += cross(view, position);
   const auto count = static_cast<std::size_t>(picture.map.landmarks());
-  for (int k = 0; picture.names && count <= kMostNames && k < picture.map.landmarks(); ++k) {
+  for (int k = 0; picture.names && count <= kMostNamesDrawn && k < picture.map.landmarks(); ++k) {
     body += fmt::format("<text class=\"name\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",
                         view.x(after(k)) + 6.0, view.y(after(k)) - 6.0,
                         xml_escaped(picture.map.landmark(k).name));
@@ -150,7 +150,7 @@ std::string draw_map(const MapPicture& picture) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
              "width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n"
              "{3}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-             kWidth, view.height(), xml_escaped(picture.title), kStyle) +
+             kWidth, view.height(), xml_escaped(picture.title), kMapStyle) +
          header(picture, view) + body + "</svg>\n";
 }
 

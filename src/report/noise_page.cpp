@@ -14,7 +14,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kThousand = 1000.0;
-constexpr std::size_t kMostRuns = 3000;
+constexpr std::size_t kMostErrors = 3000;
 
 std::string constant_text(const WheelConstant& wheel) {
   if (!(wheel.k > 0.0)) {
@@ -57,7 +57,7 @@ Chart plane_chart(const NoiseCalibration& found, int across, int up) {
   chart.height = 340.0;
   ChartLayer runs{LayerKind::dots, "end errors", {{kLabels[across]}, {kLabels[up]}, {"run"}}, "7"};
   runs.size = found.errors.size() > 300 ? 2.0 : 3.5;
-  for (const std::size_t k : thinned(found.errors.size(), kMostRuns)) {
+  for (const std::size_t k : thinned(found.errors.size(), kMostErrors)) {
     runs.columns[0].numbers.push_back(kThousand * found.errors[k][across]);
     runs.columns[1].numbers.push_back(kThousand * found.errors[k][up]);
     runs.columns[2].numbers.push_back(static_cast<double>(k + 1));

@@ -27,7 +27,7 @@ constexpr double kRightGap = 14.0;
 constexpr double kCharacter = 6.7;  // mean width of one at 13 px
 
 Range fitted(const std::vector<Mark>& marks, int axis) {
-  constexpr double kMargin = 0.07;
+  constexpr double kRangeMargin = 0.07;
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const Mark& mark : marks) {
     for (const Vector2& point : mark.at) {
@@ -40,7 +40,7 @@ Range fitted(const std::vector<Mark>& marks, int axis) {
   if (!(size > 1e-12 * std::max(std::abs(range.low), std::abs(range.high)))) {
     size = range.high == 0.0 ? 1.0 : std::abs(range.high);
   }
-  return {range.low - kMargin * size, range.high + kMargin * size};
+  return {range.low - kRangeMargin * size, range.high + kRangeMargin * size};
 }
 
 void widen(Range& range, double factor) {
@@ -192,7 +192,7 @@ void check(const Figure& figure) {
   }
 }
 
-constexpr const char* kStyle =
+constexpr const char* kPlotStyle =
     "<style>text{font:13px system-ui,'Segoe UI','DejaVu Sans',sans-serif;fill:#222}"
     ".title{font-size:17px;font-weight:600}.subtitle{fill:#555}.panel{font-weight:600}"
     ".tick{font-size:11.5px;fill:#555}.grid{stroke:#ececec;fill:none}.zero{stroke:#b5b5b5;fill:"
@@ -252,7 +252,7 @@ std::string draw_figure(const Figure& figure) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
              "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n{3}"
              "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-             px(width), px(height), xml_escaped(figure.title), kStyle) +
+             px(width), px(height), xml_escaped(figure.title), kPlotStyle) +
          svg + "</svg>\n";
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostBars = 250;       // drawn one by one
 constexpr std::size_t kMostLandmarks = 200;  // drawn
-constexpr std::size_t kMostNames = 60;
+constexpr std::size_t kMostMarksNamed = 60;
 /// chi^2/dof at which the strongest bar has the strongest colour: noise alone looks calm.
 constexpr double kLoud = 9.0;
 
@@ -108,7 +108,7 @@ void add_landmarks(Chart& chart, const FittedMap& map) {
       LayerKind::dots, "as surveyed", {{"x [m]"}, {"y [m]"}, {"surveyed landmark"}}, "3"};
   ChartLayer names{LayerKind::labels, "", {{"x [m]"}, {"y [m]"}, {"landmark"}}, "muted"};
   std::vector<PlacedEllipse> ellipses;
-  const bool few = map.landmarks.size() <= kMostNames;
+  const bool few = map.landmarks.size() <= kMostMarksNamed;
   for (const FittedLandmark& one : drawn_landmarks(map)) {
     const auto add = [&one](ChartLayer& layer, const Vector2& at) {
       layer.columns[0].numbers.push_back(at.x());

@@ -82,6 +82,7 @@ struct Comparison {
   double p_value = 1.0;
   std::size_t legs = 0;
   std::size_t landmarks = 0;
+  [[nodiscard]] double misfit() const { return chi2 / (dof > 1 ? dof : 1); }  ///< 1 is right
   HeldOut held_out;
   std::vector<LegMisfit> worst;  ///< all legs, worst first
   std::vector<RouteMisfit> routes;
