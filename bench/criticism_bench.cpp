@@ -8,6 +8,10 @@
 //                  first? And does the error fall as far as with the true model?
 //   two            two effects at 3 times, columns' cosine below 0.7: are both found?
 //   odd            shapes outside the catalogue at 3 times: right channel and variable?
+//   events         one row of 5 sds; one landmark moved by 5 sds between two sessions: first among
+//                  the events? And an effect named for it?
+//   noise          a law of noise that the model does not state, a leg's spread doubled, 56 legs:
+//                  first of the four? And an effect named for it?
 #include "trussmap/criticism/discovery.hpp"
 
 #include <algorithm>
@@ -21,6 +25,7 @@
 #include <fmt/format.h>
 
 #include "bench_worlds.hpp"
+#include "criticism/known_events.hpp"
 
 namespace trussmap::bench {
 namespace {
@@ -300,6 +305,67 @@ void odd(const Options& options) {
              shown, percent(right, shown));
 }
 
+struct Asked {
+  int first = 0;
+  int named = 0;
+};
+
+void report_asked(const std::string& what, const Asked& asked, int whole) {
+  fmt::print("{}: first in {} of {} ({:.1f} %), an effect named for it in {} ({:.1f} %)\n", what,
+             asked.first, whole, percent(asked.first, whole), asked.named,
+             percent(asked.named, whole));
+}
+
+void count_named(const Diagnosis& result, const Options& options, std::uint64_t seed,
+                 Asked& asked) {
+  if (result.verdict != Diagnosis::Verdict::missing) return;
+  ++asked.named;
+  if (options.verbose) fmt::print("  seed {}: {}\n", seed, result.missing);
+}
+
+void events(const Options& options) {
+  const int whole = 10 * options.recordings;
+  Asked bump;
+  Asked moved;
+  for (int k = 0; k < whole; ++k) {
+    const std::uint64_t seed = options.first + static_cast<std::uint64_t>(k);
+    const testing::Bump one = testing::bumped({}, 5.0, seed);
+    const Diagnosis of_bump = diagnose(one.world.recordings, one.world.model);
+    const EventTest& leg = of_bump.events.front();
+    bump.first += leg.kind == "leg" && leg.name == one.name ? 1 : 0;
+    count_named(of_bump, options, seed, bump);
+    std::string landmark;
+    const testing::NoisyDrive world = testing::with_moved_landmark(5.0, seed, landmark);
+    const Diagnosis of_move = diagnose(world.recordings, world.model);
+    const EventTest& place = of_move.events.front();
+    moved.first += place.kind == "landmark" && place.name == landmark ? 1 : 0;
+    count_named(of_move, options, seed, moved);
+  }
+  report_asked("a leg's row wrong by 5 sds", bump, whole);
+  report_asked("a landmark moved by 5 sds", moved, whole);
+}
+
+void noise(const Options& options) {
+  const int whole = 5 * options.recordings;
+  const std::vector<std::string> laws = {"per metre", "per second", "per start", "per spin"};
+  for (const std::string& law : laws) {
+    Asked asked;
+    for (int k = 0; k < whole; ++k) {
+      const std::uint64_t seed = options.first + static_cast<std::uint64_t>(k);
+      testing::NoisyDrive world = testing::simulate_world({}, seed);
+      testing::add_noise(world, law, 2.0, seed);
+      const Diagnosis result = diagnose(world.recordings, world.model);
+      const auto best =
+          std::find_if(result.noise.begin(), result.noise.end(), [&](const NoiseTest& one) {
+            return std::find(laws.begin(), laws.end(), one.law) != laws.end();
+          });
+      asked.first += best != result.noise.end() && best->law == law ? 1 : 0;
+      count_named(result, options, seed, asked);
+    }
+    report_asked(fmt::format("noise {}", law), asked, whole);
+  }
+}
+
 }  // namespace
 }  // namespace trussmap::bench
 
@@ -308,7 +374,7 @@ int main(int argc, char** argv) {
   CLI::App app("How well diagnose and discover do on simulated recordings");
   Options options;
   app.add_option("parts", options.parts, "What to measure (default: all)")
-      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd"}));
+      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd", "events", "noise"}));
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--recordings", options.recordings, "Recordings per effect and size")
       ->capture_default_str();
@@ -325,5 +391,7 @@ int main(int argc, char** argv) {
   if (wants("identify")) identify(options);
   if (wants("two")) two(options);
   if (wants("odd")) odd(options);
+  if (wants("events")) events(options);
+  if (wants("noise")) noise(options);
   return 0;
 }

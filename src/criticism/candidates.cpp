@@ -32,7 +32,8 @@ struct Spread {
 };
 
 constexpr std::size_t kThinned = 2000;
-constexpr int kRounds = 14;  // of refining inner values
+constexpr int kRounds = 14;                 // of refining inner values
+constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
 
 Spread spread_of(const std::string& name, const ShapeContext& context) {
   Spread spread{name, 1e300, -1e300, 0.0, {}, 0};
@@ -189,6 +190,12 @@ class Gatherer {
   void take_variable(const std::string& name) {
     const Spread spread = spread_of(name, context_);
     if (spread.sorted.empty() || !(spread.most > spread.least)) return;
+    // Of a robot that never accelerates the acceleration is noise of the wheels, the very noise
+    // that an effect of it would explain.
+    if (name == "acceleration" &&
+        spread.quantile(0.99) - spread.quantile(0.01) < kLeastAcceleration) {
+      return;
+    }
     variables_.push_back(spread);
   }
 

@@ -11,6 +11,8 @@
 
 #include <Eigen/QR>
 
+#include "local_dispersion.hpp"
+
 namespace trussmap {
 namespace {
 
@@ -21,6 +23,10 @@ constexpr double kSecondShare = 0.002;
 constexpr std::size_t kMostLookAlikes = 12;
 constexpr std::size_t kFamiliesRefined = 3;
 constexpr std::size_t kChunk = 48;  // candidates
+constexpr double kWorthALook = 0.01;
+constexpr double kMostPlausible = 3.0;
+constexpr double kLawLevel = 0.01;
+constexpr std::size_t kMostEvents = 8;
 
 /// A candidate's test, without its columns.
 struct Tested {
@@ -28,6 +34,7 @@ struct Tested {
   Score score;
   Eigen::MatrixXd slopes;  ///< of the held-out legs
   int tried = 1;
+  double dispersion = 1.0;  ///< of the rows that speak for it
   double evidence = 0.0;
   double p_value = 1.0;
   double p_adjusted = 1.0;
@@ -56,7 +63,7 @@ class Diagnostician {
  public:
   Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
                 const DiagnosisOptions& options)
-      : fit_(fit), options_(options), tests_(fit) {
+      : fit_(fit), options_(options), tests_(fit), dispersion_(fit, tests_) {
     ModelFitOptions how;
     how.problem = options.problem;
     how.gate = options.gate;
@@ -103,6 +110,7 @@ class Diagnostician {
 
   void take(Tested& tested, const Candidate& candidate, Score& score) {
     tested.candidate = candidate;
+    tested.dispersion = dispersion_of(score, dispersion_);
     if (predictable_ && score.dof > 0) {
       tested.slopes = legs_->slopes(score.columns, score.landmarks);
     }
@@ -110,14 +118,21 @@ class Diagnostician {
     tested.score = score;
   }
 
-  /// p-values against the dispersion that each would leave; evidence against the least there is.
+  [[nodiscard]] static double dispersion_of(const Score& score, const LocalDispersion& local) {
+    return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
+  }
+
+  /// p-values against the dispersion that each would leave, as a whole and where it acts; evidence
+  /// against the least there is.
   void judge(std::vector<Tested>& tested, double chi2, int dof) const {
     double least = std::max(1.0, chi2 / std::max(1, dof));
     for (Tested& one : tested) {
+      one.p_value = 1.0;
+      if (one.score.dof == 0) continue;
       const double left =
           std::max(1.0, (chi2 - one.score.score) / std::max(1, dof - one.score.dof));
-      one.p_value = one.score.dof > 0 ? chi2_p_value(one.score.score / left, one.score.dof) : 1.0;
-      if (one.score.dof > 0) least = std::min(least, left);
+      one.p_value = chi2_p_value(one.score.score / std::max(left, one.dispersion), one.score.dof);
+      least = std::min(least, left);
     }
     std::vector<std::size_t> order(tested.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -131,7 +146,7 @@ class Diagnostician {
       most = std::max(most, std::min(1.0, remaining * one.p_value));
       one.p_adjusted = most;
       remaining -= one.tried;
-      one.evidence = 0.5 * one.score.score / least - one.score.occam -
+      one.evidence = 0.5 * one.score.score / std::max(least, one.dispersion) - one.score.occam -
                      std::log(static_cast<double>(one.tried)) + one.candidate.log_prior;
       if (one.score.dof == 0) one.evidence = -1e300;
     }
@@ -162,50 +177,140 @@ class Diagnostician {
     take(tested, better, score);
   }
 
+  /// What would have to be far larger than anything known is none, but for a plain factor: a
+  /// wheelbase may be given quite wrong.
+  [[nodiscard]] static bool implausible(const Tested& one) {
+    if (one.candidate.effect.shape == std::vector<std::string>{"1"}) return false;
+    const double plausible = facts_of(*parse_channel(one.candidate.effect.channel)).plausible;
+    for (std::size_t k = 0; k < one.score.coefficients.size(); ++k) {
+      if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kMostPlausible * plausible) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   [[nodiscard]] static const Tested* best_of(const std::vector<Tested>& tested, double level) {
     const Tested* best = nullptr;
     for (const Tested& one : tested) {
-      if (one.score.dof == 0 || one.p_adjusted >= level) continue;
+      if (one.score.dof == 0 || one.p_adjusted >= level || implausible(one)) continue;
       if (best == nullptr || one.evidence > best->evidence) best = &one;
     }
     return best;
   }
 
+  /// Asks anew of those (by place in `still`) for which `wanted` holds.
+  template <typename Wanted>
+  static void ask_again(const ModelFit& fit, const ScoreTest& left, std::vector<Tested>& still,
+                        const Wanted& wanted) {
+    std::vector<std::size_t> places;
+    std::vector<Candidate> candidates;
+    for (std::size_t k = 0; k < still.size(); ++k) {
+      if (!wanted(still[k])) continue;
+      places.push_back(k);
+      candidates.push_back(still[k].candidate);
+    }
+    const LocalDispersion local(fit, left);
+    visit_scores(left, candidates, [&](std::size_t k, Score& score) {
+      Tested& one = still[places[k]];
+      one.dispersion = dispersion_of(score, local);
+      drop_columns(score);
+      one.score = score;
+    });
+  }
+
+  /// The law of noise that explains more than any effect does, if there is one.
+  [[nodiscard]] const NoiseTest* leading_law(const std::vector<NoiseTest>& laws) const {
+    double most = 0.0;
+    for (const Tested& one : tested_) {
+      if (one.p_adjusted < options_.level) most = std::max(most, one.score.score);
+    }
+    for (const NoiseTest& law : laws) {
+      if (law.unit.empty() || law.p_adjusted >= kLawLevel) continue;  // a shape, or chance
+      return law.score > most ? &law : nullptr;
+    }
+    return nullptr;
+  }
+
+  /// Laws of noise and single events that have a better claim than any effect come before them.
+  /// `still`: the effects, asked of what is left. A whole session that is out of line is not among
+  /// the events: what goes with a session's load is an effect.
+  void let_others_claim(ScoreTest& left, const ModelFit& ground, std::vector<Tested>& still) {
+    const auto significant = [this](const Tested& one) {
+      return one.score.dof > 0 && one.p_adjusted < options_.level;
+    };
+    int dof = result_.dof;
+    if (&ground != &fit_) {
+      ask_again(ground, left, still, [](const Tested&) { return true; });
+      judge(still, left.residuals().squaredNorm(), dof);
+    }
+    Eigen::MatrixXd aside(left.residuals().size(), 0);
+    for (std::size_t k = 0; k < kMostEvents; ++k) {
+      const Tested* best = best_of(still, options_.level);
+      if (best == nullptr) return;
+      double p = 1.0;
+      for (const Tested& one : still) {
+        if (one.score.dof > 0 && !implausible(one)) p = std::min(p, one.p_adjusted);
+      }
+      const std::vector<EventTest> events = test_events(ground, left, aside);
+      const auto event = std::find_if(events.begin(), events.end(), [](const EventTest& one) {
+        return one.kind != "session" && one.projected.cols() > 0;
+      });
+      if (event == events.end() || event->p_adjusted >= p) return;
+      left.take_out(event->projected);
+      append(aside, event->projected);
+      dof -= event->dof;
+      std::vector<double> p_before;
+      for (const Tested& one : still) p_before.push_back(one.p_adjusted);
+      ask_again(ground, left, still, significant);
+      judge(still, left.residuals().squaredNorm(), dof);
+      // Those not asked again cannot have become better.
+      for (std::size_t j = 0; j < still.size(); ++j) {
+        still[j].p_adjusted = std::max(still[j].p_adjusted, p_before[j]);
+      }
+    }
+  }
+
+  static void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+    columns.conservativeResize(more.rows(), columns.cols() + more.cols());
+    columns.rightCols(more.cols()) = more;
+  }
+
   /// The best, then the best of what is left when it is taken out, and so on.
   void find_missing() {
     if (best_of(tested_, options_.level) == nullptr) return;
-    ScoreTest left(fit_);
+    const std::vector<NoiseTest> laws = test_noise_laws(fit_, tests_);
+    const NoiseTest* law = leading_law(laws);
+    const std::optional<ModelFit> noisier =
+        law != nullptr ? std::optional(with_noise(fit_, tests_, *law)) : std::nullopt;
+    const ModelFit& ground = noisier ? *noisier : fit_;
+    ScoreTest left(ground);
     std::vector<Tested> still = tested_;
-    double chi2 = result_.chi2;
+    let_others_claim(left, ground, still);
+    for (std::size_t k = 0; k < still.size(); ++k) {
+      tested_[k].p_value = still[k].p_value;
+      tested_[k].p_adjusted = still[k].p_adjusted;
+    }
     int dof = result_.dof;
+    const double at_first = left.residuals().squaredNorm();
     while (missing_.size() < options_.most_missing) {
       // What a first effect leaves for being so large is no second one.
       const double level = missing_.empty() ? options_.level : kSecondLevel * options_.level;
       const Tested* best = best_of(still, level);
       if (best == nullptr) break;
-      if (!missing_.empty() && best->score.score < kSecondShare * (result_.chi2 - chi2)) break;
+      const double chi2 = left.residuals().squaredNorm();
+      if (!missing_.empty() && best->score.score < kSecondShare * (at_first - chi2)) break;
       const auto at = static_cast<std::size_t>(best - still.data());
       missing_.push_back(at);
-      const Score whole = left.test({tested_[at].candidate.effect}).front();
+      const Score whole = tests_.test({tested_[at].candidate.effect}).front();
       if (missing_.size() == 1) find_look_alikes(whole, at);
-      left.take_out(whole.columns);
-      aside_.conservativeResize(whole.projected.rows(), aside_.cols() + whole.projected.cols());
-      aside_.rightCols(whole.projected.cols()) = whole.projected;
-      chi2 -= whole.score;
+      left.take_out(left.columns(tested_[at].candidate.effect));
+      append(aside_, whole.projected);
       dof -= whole.dof;
       if (missing_.size() == options_.most_missing) break;
-      visit_scores(left, candidates_tested(), [&](std::size_t k, Score& score) {
-        drop_columns(score);
-        still[k].score = score;
-      });
-      judge(still, chi2, dof);
+      ask_again(ground, left, still, [](const Tested&) { return true; });
+      judge(still, left.residuals().squaredNorm(), dof);
     }
-  }
-
-  [[nodiscard]] std::vector<Candidate> candidates_tested() const {
-    std::vector<Candidate> candidates;
-    for (const Tested& one : tested_) candidates.push_back(one.candidate);
-    return candidates;
   }
 
   /// A free form that happens to hold the winner's shape is no rival to a catalogue effect.
@@ -351,6 +456,7 @@ class Diagnostician {
   const ModelFit& fit_;
   const DiagnosisOptions& options_;
   ScoreTest tests_;
+  LocalDispersion dispersion_;
   std::unique_ptr<HeldOutLegs> legs_;
   bool predictable_ = false;
   std::vector<Tested> tested_;

@@ -45,6 +45,7 @@ class Discoverer {
             fmt::format("{} effects are as many as are looked for", options_.most_effects);
         break;
       }
+      result_.stopped.clear();
       if (!add_best()) break;
     }
     judge();
@@ -81,15 +82,23 @@ class Discoverer {
   struct Trial {
     Candidate candidate;
     ModelFit fit;
-    double arrival = 0.0;
+    double arrival = 0.0;  ///< of the held-out legs, m
   };
 
   [[nodiscard]] static bool was_fitted(const ModelFit& fit) {
     return fit.effects.empty() || fit.effects.back().not_fitted.empty();
   }
 
+  /// The first finding and, where it cannot be had, the next that is missing.
   bool add_best() {
-    const Finding& winner = result_.last.findings.front();
+    for (const Finding& one : result_.last.findings) {
+      if (&one != &result_.last.findings.front() && one.status != Status::missing) continue;
+      if (add(one)) return true;
+    }
+    return false;
+  }
+
+  bool add(const Finding& winner) {
     std::vector<Trial> trials;
     std::vector<const Finding*> chosen{&winner};
     for (const Finding& one : result_.last.findings) {
@@ -104,20 +113,24 @@ class Discoverer {
       tell(fmt::format("fitting \"{}\"", one->candidate.effect.name));
       std::vector<Effect> effects = result_.fit.model.effects;
       effects.push_back(one->candidate.effect);
-      ModelFit fit = fitted(effects);
-      if (was_fitted(fit)) trials.push_back({one->candidate, std::move(fit), -1.0});
+      try {
+        ModelFit fit = fitted(effects);
+        const double arrival = arrival_of(fit);
+        if (was_fitted(fit)) trials.push_back({one->candidate, std::move(fit), arrival});
+      } catch (const SolveError&) {
+        continue;  // nor can it be fitted
+      }
     }
     if (trials.empty()) {
-      result_.stopped = fmt::format("\"{}\" cannot be fitted beside what the model has",
-                                    winner.candidate.effect.name);
+      stop(fmt::format("\"{}\" cannot be fitted beside what the model has",
+                       winner.candidate.effect.name));
       return false;
     }
     const std::size_t best = best_of(trials);
     const double before = result_.steps.back().held_out.arrival_rms;
-    if (trials[best].arrival < 0.0) trials[best].arrival = arrival_of(trials[best].fit);
     if (before > 0.0 && trials[best].arrival > kNoWorse * before) {
-      result_.stopped = fmt::format("\"{}\" fits these legs, but predicts others worse",
-                                    trials[best].candidate.effect.name);
+      stop(fmt::format("\"{}\" fits these legs, but predicts others worse",
+                       trials[best].candidate.effect.name));
       return false;
     }
     found_.push_back(trials[best].candidate);
@@ -133,8 +146,12 @@ class Discoverer {
     return true;
   }
 
+  void stop(const std::string& why) {
+    if (result_.stopped.empty()) result_.stopped = why;
+  }
+
   /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
-  [[nodiscard]] std::size_t best_of(std::vector<Trial>& trials) const {
+  [[nodiscard]] static std::size_t best_of(const std::vector<Trial>& trials) {
     const auto cost = [](const Trial& one) {
       return one.fit.adjustment.chi2 - 2.0 * one.candidate.log_prior +
              4.0 * static_cast<double>(one.candidate.effect.shape.size() +
@@ -144,12 +161,7 @@ class Discoverer {
     for (std::size_t k = 1; k < trials.size(); ++k) {
       const double gain = cost(trials[best]) - cost(trials[k]);
       if (gain < -kDecisive) continue;
-      if (gain < kDecisive) {
-        for (const std::size_t one : {best, k}) {
-          if (trials[one].arrival < 0.0) trials[one].arrival = arrival_of(trials[one].fit);
-        }
-        if (!(trials[k].arrival < kBetter * trials[best].arrival)) continue;
-      }
+      if (gain < kDecisive && !(trials[k].arrival < kBetter * trials[best].arrival)) continue;
       best = k;
     }
     return best;

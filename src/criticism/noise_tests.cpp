@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/normal.hpp>
@@ -282,6 +283,18 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
   std::vector<NoiseTest> sorted;
   for (const std::size_t k : order) sorted.push_back(std::move(result[k]));
   return sorted;
+}
+
+ModelFit with_noise(const ModelFit& fit, const ScoreTest& tests, const NoiseTest& law) {
+  for (const NoiseLaw& one : noise_laws(fit, tests.context())) {
+    if (one.name != law.law) continue;
+    NoiseLikelihood likelihood(fit, {});
+    static_cast<void>(likelihood.deviance(one, law.size * law.size));
+    ModelFit result = fit;
+    result.problem = likelihood.problem();
+    return result;
+  }
+  throw std::invalid_argument("'" + law.law + "' is no law of noise of this recording");
 }
 
 }  // namespace trussmap

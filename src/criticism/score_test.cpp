@@ -40,7 +40,7 @@ ScoreTest::ScoreTest(const ModelFit& fit)
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   take_out(clean_system_->border());
   if (fit.adjustment.dof > 0) {
-    dispersion_ = std::max(1.0, fit.adjustment.chi2 / fit.adjustment.dof);
+    dispersion_ = std::max(1.0, residuals_.squaredNorm() / fit.adjustment.dof);
   }
 }
 

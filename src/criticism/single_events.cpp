@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
 constexpr std::size_t kBumps = 5;       // places tried in a drive; on the spot only the 3 numbers
-constexpr double kLeastDrive = 0.1;     // m
+constexpr double kLeastPath = 0.1;      // m
 
 class Collector {
  public:
@@ -115,7 +115,7 @@ class Collector {
     };
     double path = 0.0;
     for (const PieceRow& row : rows) path += std::abs(row.path);
-    const bool drives = path > kLeastDrive;
+    const bool drives = path > kLeastPath;
     const int group = 2 * static_cast<int>(places.size());
     for (std::size_t part = 0; drives && part < kBumps; ++part) {
       const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));

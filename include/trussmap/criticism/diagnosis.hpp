@@ -8,7 +8,9 @@
 //        '--> single events, noise      '------ winner taken out <-------'   a second, a third ...
 //
 //   p adjusted   Holm's, over all that was tried, members of families counted one by one; judged
-//                against the dispersion that the candidate itself would leave
+//                against the dispersion that the candidate itself would leave, or against that of
+//                the very rows that speak for it where it is clearly larger: a wrong noise law or
+//                a single bad leg makes no effect (local_dispersion.hpp)
 //   order        evidence: log Bayes factor with the channel's plausible size, and a little more
 //                belief in the catalogue than in a free form
 //   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
@@ -16,8 +18,7 @@
 //   absent       where even the smallest detectable size would raise the arrival error by less than
 //                5 %
 //
-// A wrong noise law or a single bad leg makes no effect: a score counts no more than its robust
-// twin (score_test.hpp). Laws of noise and single events are asked of what the findings leave.
+// Laws of noise and single events are asked of what the findings leave.
 #pragma once
 
 #include "trussmap/criticism/candidates.hpp"

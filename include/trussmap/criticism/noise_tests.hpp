@@ -64,4 +64,9 @@ struct NoiseTest {
 [[nodiscard]] std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tests,
                                                      const Eigen::MatrixXd& aside = {});
 
+/// The same fit, its measurements as noisy as one of these laws has them besides. Throws
+/// std::invalid_argument on a shape of noise.
+[[nodiscard]] ModelFit with_noise(const ModelFit& fit, const ScoreTest& tests,
+                                  const NoiseTest& law);
+
 }  // namespace trussmap

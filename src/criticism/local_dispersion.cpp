@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "local_dispersion.hpp"
+
+#include <cmath>
+
+#include <boost/math/special_functions/gamma.hpp>
+
+#include "fit_projection.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr double kChance = 0.001;
+
+}  // namespace
+
+LocalDispersion::LocalDispersion(const ModelFit& fit, const ScoreTest& tests) : tests_(tests) {
+  const FitProjection P(fit, fit.problem, tests.system(), tests.present());
+  own_.reserve(fit.problem.measurements.size());
+  for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
+    own_.push_back(P.left_out(k) ? Eigen::MatrixXd::Zero(fit.problem.measurements[k].rows,
+                                                         fit.problem.measurements[k].rows)
+                                 : P.own_block(k));
+  }
+}
+
+double LocalDispersion::operator()(const Score& score) const {
+  const Eigen::VectorXd u =
+      score.projected *
+      Eigen::Map<const Eigen::VectorXd>(score.coefficients.data(),
+                                        static_cast<Eigen::Index>(score.coefficients.size()));
+  const double all = u.squaredNorm();
+  if (!(all > 0.0)) return 1.0;
+  double x2 = 0.0;
+  double v1 = 0.0;
+  double v2 = 0.0;
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    const auto here = u.segment(tests_.system().first_row(k), own_[k].rows());
+    const double own = here.squaredNorm();
+    const double v = here.dot(own_[k] * here) - own * own / all;
+    if (!(v > 0.0)) continue;
+    const double x =
+        here.dot(tests_.residuals().segment(tests_.system().first_row(k), own_[k].rows())) + own;
+    x2 += x * x;
+    v1 += v;
+    v2 += v * v;
+  }
+  if (!(v1 > 0.0)) return 1.0;
+  const double lambda = x2 / v1;
+  const double n = v1 * v1 / v2;
+  if (lambda <= 1.0) return 1.0;
+  return boost::math::gamma_q(0.5 * n, 0.5 * n * lambda) < kChance ? lambda : 1.0;
+}
+
+}  // namespace trussmap
