@@ -83,6 +83,15 @@ World draw_world(std::uint64_t seed, Survey survey) {
   return world;
 }
 
+World with_legs(World world, int legs) {
+  for (int tours = 1; static_cast<int>(world.walk.size()) <= legs; tours *= 2) {
+    std::mt19937_64 random(world.seed * 31 + 5);
+    world.walk = make_tours(world.mesh, WalkKind::euler, tours, random).walk;
+  }
+  world.walk.resize(static_cast<std::size_t>(legs) + 1);
+  return world;
+}
+
 Recording record_in(const World& world, const std::vector<Effect>& effects) {
   SimulatedEffects acting;
   acting.effects = effects;

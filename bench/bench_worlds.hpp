@@ -31,6 +31,9 @@ enum class Survey { yes, no, either };
 /// 60 to 300 legs, several noise levels; with or without survey, compass and range sensor.
 [[nodiscard]] World draw_world(std::uint64_t seed, Survey survey = Survey::either);
 
+/// The same world driven for so many legs.
+[[nodiscard]] World with_legs(World world, int legs);
+
 /// The world's recording with these effects (channel, shape and coefficients given).
 [[nodiscard]] Recording record_in(const World& world, const std::vector<Effect>& effects);
 

@@ -12,12 +12,15 @@
 //                  the events? And an effect named for it?
 //   noise          a law of noise that the model does not state, a leg's spread doubled, 56 legs:
 //                  first of the four? And an effect named for it?
+//   cost           time of a diagnosis and of 200 of its candidates against one fit of the same
+//                  recording, 180 to 10 000 legs
 #include "trussmap/criticism/discovery.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <random>
 
 #include <CLI/CLI.hpp>
@@ -366,6 +369,44 @@ void noise(const Options& options) {
   }
 }
 
+template <typename Work>
+double seconds(const Work& work) {
+  const auto begun = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+void cost() {
+  const World world = draw_world(1, Survey::yes);
+  for (const int legs : {180, 600, 2000, 10000}) {
+    const World here = with_legs(world, legs);
+    const std::vector<Recording> recordings{record_in(here, {})};
+    std::optional<ModelFit> fit;
+    const double fitting = seconds([&] { fit = fit_model(recordings, here.model); });
+    std::optional<ScoreTest> tests;
+    const double preparing = seconds([&] { tests.emplace(*fit); });
+    const std::vector<Candidate> candidates = candidates_for(*fit, tests->context());
+    std::vector<Effect> effects;
+    for (std::size_t k = 0; k < 200 && k < candidates.size(); ++k) {
+      effects.push_back(candidates[k * candidates.size() / 200].effect);
+    }
+    double scores = 0.0;
+    const double testing = seconds([&] {
+      for (std::size_t k = 0; k < effects.size(); k += 25) {
+        const auto from = effects.begin() + static_cast<std::ptrdiff_t>(k);
+        for (const Score& one : tests->test({from, from + 25})) scores += one.score;
+      }
+    });
+    const double whole = seconds([&] { scores += diagnose(recordings, *fit, {}).chi2; });
+    fmt::print(
+        "cost of {} legs, {} rows: fit {:.2f} s; 200 candidates {:.2f} s, {:.2f} of the fit (of "
+        "which {:.2f} s once); all of a diagnosis ({} tests) {:.2f} s, {:.2f} ms a leg{}\n",
+        legs, recordings.front().drive.rows(), fitting, preparing + testing,
+        (preparing + testing) / fitting, preparing, candidates.size(), whole, 1e3 * whole / legs,
+        scores < 0.0 ? "!" : "");
+  }
+}
+
 }  // namespace
 }  // namespace trussmap::bench
 
@@ -374,7 +415,7 @@ int main(int argc, char** argv) {
   CLI::App app("How well diagnose and discover do on simulated recordings");
   Options options;
   app.add_option("parts", options.parts, "What to measure (default: all)")
-      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd", "events", "noise"}));
+      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd", "events", "noise", "cost"}));
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--recordings", options.recordings, "Recordings per effect and size")
       ->capture_default_str();
@@ -393,5 +434,6 @@ int main(int argc, char** argv) {
   if (wants("odd")) odd(options);
   if (wants("events")) events(options);
   if (wants("noise")) noise(options);
+  if (wants("cost")) cost();
   return 0;
 }

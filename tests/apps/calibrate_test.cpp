@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adjustment/drawn_drive.hpp"
+#include "json_file.hpp"
 #include "scratch_folder.hpp"
 #include "shared_data.hpp"
 
@@ -25,13 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::Ran;
+using testing::read_json;
 using testing::run_trussmap;
 using testing::ScratchFolder;
-
-json read_json(const fs::path& path) {
-  std::ifstream stream(path);
-  return json::parse(stream);
-}
 
 /// A drive of a robot with E_d 1.004, E_b 0.97, E_s 1.02 and its nominal model, as files.
 std::string write_drive(const ScratchFolder& scratch, const std::string& name) {

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "json_file.hpp"
 #include "scratch_folder.hpp"
 
 namespace trussmap {
@@ -22,13 +23,9 @@ namespace {
 
 using nlohmann::json;
 using testing::Ran;
+using testing::read_json;
 using testing::run_trussmap;
 using testing::ScratchFolder;
-
-json read_json(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  return json::parse(stream);
-}
 
 const std::vector<std::string> kUmbmarkKeys = {
     "alpha_rad", "beta_rad",    "E_d",          "E_b",   "c_left",

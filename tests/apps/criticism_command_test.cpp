@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "json_file.hpp"
 #include "scratch_folder.hpp"
 #include "shared_data.hpp"
 
@@ -18,22 +19,18 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::Ran;
+using testing::read_json;
 using testing::run_trussmap;
 using testing::ScratchFolder;
 
-const std::string kRiddle = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
-const std::string kNominal = kRiddle + "/model.toml";
-
-json read_json(const fs::path& path) {
-  std::ifstream stream(path);
-  return json::parse(stream);
-}
+const std::string kRiddleFolder = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
+const std::string kNominal = kRiddleFolder + "/model.toml";
 
 TEST(CriticismCommands, TheReadmesWalkThroughEndsWithAConsistentModel) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
-  Ran ran =
-      run_trussmap("compare " + kRiddle + " --model " + kNominal + " --json " + at + "c.json");
+  Ran ran = run_trussmap("compare " + kRiddleFolder + " --model " + kNominal + " --json " + at +
+                         "c.json");
   ASSERT_EQ(ran.status, 0) << ran.output;
   EXPECT_EQ(ran.output.rfind("misfit", 0), 0U) << ran.output;
   const json before = read_json(at + "c.json");
@@ -43,7 +40,7 @@ TEST(CriticismCommands, TheReadmesWalkThroughEndsWithAConsistentModel) {
 
   ran = run_trussmap("add " + kNominal + " \"hard iron\" --out " + at + "m2.toml");
   ASSERT_EQ(ran.status, 0) << ran.output;
-  ran = run_trussmap("fit " + kRiddle + " --model " + at + "m2.toml --out " + at +
+  ran = run_trussmap("fit " + kRiddleFolder + " --model " + at + "m2.toml --out " + at +
                      "m3.toml --json " + at + "f.json");
   ASSERT_EQ(ran.status, 0) << ran.output;
   const json fitted = read_json(at + "f.json");
@@ -58,7 +55,8 @@ TEST(CriticismCommands, TheReadmesWalkThroughEndsWithAConsistentModel) {
       fitted["without_effects"]["chi2"].get<double>() - fitted["chi2"].get<double>();
   EXPECT_NEAR(fitted["predicted_decrease"].get<double>() / fallen, 1.0, 0.02);
 
-  ran = run_trussmap("compare " + kRiddle + " --model " + at + "m3.toml --json " + at + "d.json");
+  ran = run_trussmap("compare " + kRiddleFolder + " --model " + at + "m3.toml --json " + at +
+                     "d.json");
   ASSERT_EQ(ran.status, 0) << ran.output;
   const json after = read_json(at + "d.json");
   EXPECT_EQ(after["verdict"], "consistent");
@@ -69,8 +67,8 @@ TEST(CriticismCommands, TheReadmesWalkThroughEndsWithAConsistentModel) {
 TEST(CriticismCommands, CompareHasTheKeysOfItsFormat) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
-  const Ran ran =
-      run_trussmap("compare " + kRiddle + " --model " + kNominal + " --json " + at + "c.json");
+  const Ran ran = run_trussmap("compare " + kRiddleFolder + " --model " + kNominal + " --json " +
+                               at + "c.json");
   ASSERT_EQ(ran.status, 0) << ran.output;
   const json found = read_json(at + "c.json");
   for (const char* key : {"chi2", "dof", "p_value", "legs", "landmarks"}) {
@@ -98,7 +96,7 @@ TEST(CriticismCommands, ALoneLandmarksOffsetIsNotFittedAndSaysWhy) {
   const std::string at = scratch.path().string() + "/";
   ASSERT_EQ(run_trussmap("add " + kNominal + " \"compass offset\" --out " + at + "m.toml").status,
             0);
-  const Ran ran = run_trussmap("fit " + kRiddle + " --model " + at +
+  const Ran ran = run_trussmap("fit " + kRiddleFolder + " --model " + at +
                                "m.toml --without survey --json " + at + "f.json");
   ASSERT_EQ(ran.status, 0) << ran.output;
   EXPECT_NE(ran.output.find("not fitted"), std::string::npos) << ran.output;
@@ -134,7 +132,7 @@ TEST(CriticismCommands, WrongEffectsAreNamedWithTheModelsLineAndWriteNothing) {
     const fs::path model = scratch.write("m.toml", robot + one.effect);
     for (const char* command : {"fit", "compare"}) {
       const bool fit = std::string(command) == "fit";
-      const Ran ran = run_trussmap(std::string(command) + " " + kRiddle + " --model " +
+      const Ran ran = run_trussmap(std::string(command) + " " + kRiddleFolder + " --model " +
                                    model.string() + " --json " + (scratch.path() / "j").string() +
                                    (fit ? " --out " + (scratch.path() / "o").string() : ""));
       EXPECT_EQ(ran.status, 2) << one.name;
@@ -174,8 +172,8 @@ TEST(CriticismCommands, AFormulaOfOnesOwnIsAsGoodAsTheCatalogues) {
           .status,
       0);
   for (const char* name : {"a", "b"}) {
-    const Ran ran = run_trussmap("fit " + kRiddle + " --model " + at + name + ".toml --json " + at +
-                                 name + ".json");
+    const Ran ran = run_trussmap("fit " + kRiddleFolder + " --model " + at + name +
+                                 ".toml --json " + at + name + ".json");
     ASSERT_EQ(ran.status, 0) << ran.output;
   }
   const json a = read_json(at + "a.json");

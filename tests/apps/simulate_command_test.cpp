@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "json_file.hpp"
 #include "scratch_folder.hpp"
 
 namespace trussmap {
@@ -16,13 +17,9 @@ namespace {
 
 using nlohmann::json;
 using testing::Ran;
+using testing::read_json;
 using testing::run_trussmap;
 using testing::ScratchFolder;
-
-json read_json(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  return json::parse(stream);
-}
 
 /// How far build's map is from the survey under a model, m.
 double map_error(const ScratchFolder& scratch, const std::string& folder,

@@ -21,16 +21,11 @@ namespace {
 using testing::Disturbance;
 using testing::disturbed_cases;
 using testing::DisturbedCase;
+using testing::effect_named;
 using testing::invert;
 using testing::inverted_model;
 using testing::InvertedOptions;
 using testing::InvertedRecording;
-
-Effect named(const std::string& name) {
-  Effect effect;
-  effect.name = name;
-  return effect;
-}
 
 double largest_error(const ModelFit& fit, const InvertedRecording& simulated) {
   double most = 0.0;
@@ -47,7 +42,7 @@ TEST_P(NoiseFree, TheEffectIsFoundExactly) {
   const DisturbedCase& one = GetParam();
   const InvertedRecording simulated = invert(one.disturbance, one.options, 11);
   const ModelFit without = fit_model({simulated.recording}, inverted_model());
-  const ModelFit fit = fit_model({simulated.recording}, inverted_model({named(one.effect)}));
+  const ModelFit fit = fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
   EXPECT_TRUE(fit.settled);
   ASSERT_TRUE(fit.effects[0].not_fitted.empty()) << fit.effects[0].not_fitted[0];
   EXPECT_GT(without.adjustment.chi2, 10.0);  // it is there, or its removal would show nothing
@@ -78,7 +73,8 @@ TEST(ModelFit, WithoutSurveyAndCompassATwistIsStillFoundExactly) {
     InvertedOptions options = one.options;
     options.survey = options.compass = false;
     const InvertedRecording simulated = invert(one.disturbance, options, 12);
-    const ModelFit fit = fit_model({simulated.recording}, inverted_model({named(one.effect)}));
+    const ModelFit fit =
+        fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
     EXPECT_LT(fit.adjustment.chi2, 1e-8) << one.effect;
     const double a = one.coefficients[0];
     EXPECT_NEAR(fit.effects[0].effect.coefficients[0], a, 1e-6 * std::abs(a)) << one.effect;
@@ -100,8 +96,8 @@ TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
       options.noisy = noisy;
       const InvertedRecording simulated = invert(one.disturbance, options, 13);
       // Beside one that they do show.
-      const ModelFit fit =
-          fit_model({simulated.recording}, inverted_model({named(name), named("wheelbase")}));
+      const ModelFit fit = fit_model(
+          {simulated.recording}, inverted_model({effect_named(name), effect_named("wheelbase")}));
       ASSERT_EQ(fit.effects[0].not_fitted.size(), 1U) << name << noisy;
       EXPECT_EQ(fit.effects[0].not_fitted[0].find(name), 0U) << fit.effects[0].not_fitted[0];
       EXPECT_NE(fit.effects[0].not_fitted[0].find("not fitted, "), std::string::npos);
@@ -123,8 +119,8 @@ TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
     const InvertedRecording simulated = invert(one.disturbance, options, 13);
     for (const std::vector<std::string>& names :
          {std::vector<std::string>{"wheel scale", "wheelbase"}, {"wheelbase", "wheel scale"}}) {
-      const ModelFit fit =
-          fit_model({simulated.recording}, inverted_model({named(names[0]), named(names[1])}));
+      const ModelFit fit = fit_model(
+          {simulated.recording}, inverted_model({effect_named(names[0]), effect_named(names[1])}));
       EXPECT_NEAR(fit.effects[0].effect.coefficients[0], one.coefficients[0], 1e-7) << names[0];
       EXPECT_TRUE(fit.effects[0].not_fitted.empty()) << names[0];
       EXPECT_EQ(fit.effects[1].not_fitted.size(), 1U) << names[1];
@@ -137,7 +133,7 @@ TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
 TEST(ModelFit, WithoutFittingCoefficientsStayAndExplainTheData) {
   const DisturbedCase one = disturbed_cases()[0];
   const InvertedRecording simulated = invert(one.disturbance, one.options, 14);
-  Model model = inverted_model({named(one.effect)});
+  Model model = inverted_model({effect_named(one.effect)});
   model.effects[0].coefficients = one.coefficients;
   ModelFitOptions options;
   options.fit_effects = false;
@@ -157,7 +153,7 @@ TEST(ModelFit, PerSessionEachRecordingHasItsOwnCoefficient) {
     recordings.push_back(
         invert(disturbance, {}, 20 + static_cast<std::uint64_t>(recordings.size())).recording);
   }
-  Effect effect = named("compass offset");
+  Effect effect = effect_named("compass offset");
   effect.per_session = true;
   const ModelFit fit = fit_model(recordings, inverted_model({effect}));
   ASSERT_EQ(fit.effects[0].effect.coefficients.size(), 3U);
@@ -184,7 +180,8 @@ TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
       {"load on both wheels (payload_kg)", "wheels", {"2 * payload_kg / 2"}},
       {"lever arm", "lever", {"1 + 0*speed"}}};
   for (const Twin& twin : twins) {
-    const ModelFit built_in = fit_model({simulated.recording}, inverted_model({named(twin.name)}));
+    const ModelFit built_in =
+        fit_model({simulated.recording}, inverted_model({effect_named(twin.name)}));
     Effect own;
     own.name = "of my own";
     own.channel = twin.channel;
@@ -206,9 +203,11 @@ TEST(ModelFit, TheOrderOfEffectsDoesNotMatter) {
   options.noisy = true;
   const InvertedRecording simulated = invert({}, options, 31);
   const ModelFit one =
-      fit_model({simulated.recording}, inverted_model({named("wheelbase"), named("wheel scale")}));
+      fit_model({simulated.recording},
+                inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
   const ModelFit other =
-      fit_model({simulated.recording}, inverted_model({named("wheel scale"), named("wheelbase")}));
+      fit_model({simulated.recording},
+                inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
   EXPECT_NEAR(one.effects[0].effect.coefficients[0], other.effects[1].effect.coefficients[0],
               1e-5 * one.effects[0].sd[0]);
   EXPECT_NEAR(one.adjustment.chi2, other.adjustment.chi2, 1e-6);
@@ -246,7 +245,7 @@ TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
   }
-  Effect effect = named("wheelbase");
+  Effect effect = effect_named("wheelbase");
   effect.per_session = true;
   effect.coefficients = {0.0, 0.0, 0.0};
   EXPECT_THROW(static_cast<void>(fit_model({simulated.recording}, inverted_model({effect}))),
@@ -320,7 +319,8 @@ TEST(SlowModelFit, IntervalsCoverAndChi2IsWhatChanceMakesIt) {
     options.noisy = true;
     const InvertedRecording simulated =
         invert(one.disturbance, options, 1 + static_cast<std::uint64_t>(run));
-    const ModelFit fit = fit_model({simulated.recording}, inverted_model({named(one.effect)}));
+    const ModelFit fit =
+        fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
     ASSERT_TRUE(fit.effects[0].not_fitted.empty()) << one.effect;
     const double error = fit.effects[0].effect.coefficients[0] - one.coefficients[0];
     if (std::abs(error) < 1.959964 * fit.effects[0].sd[0]) ++covered;
@@ -346,7 +346,8 @@ TEST(SlowModelFit, TheScaleOfEffectFreeDrivesIsUnbiased) {
     InvertedOptions options;
     options.noisy = true;
     const InvertedRecording simulated = invert({}, options, 5000 + seed);
-    const ModelFit fit = fit_model({simulated.recording}, inverted_model({named("wheel scale")}));
+    const ModelFit fit =
+        fit_model({simulated.recording}, inverted_model({effect_named("wheel scale")}));
     sum += fit.effects[0].effect.coefficients[0] / fit.effects[0].sd[0];
   }
   RecordProperty("mean_in_sds", std::to_string(sum / kRuns));
