@@ -246,8 +246,7 @@ class Diagnostician {
     }
     Eigen::MatrixXd aside(left.residuals().size(), 0);
     for (std::size_t k = 0; k < kMostEvents; ++k) {
-      const Tested* best = best_of(still, options_.level);
-      if (best == nullptr) return;
+      if (best_of(still, options_.level) == nullptr) return;
       double p = 1.0;
       for (const Tested& one : still) {
         if (one.score.dof > 0 && !implausible(one)) p = std::min(p, one.p_adjusted);
@@ -417,7 +416,8 @@ class Diagnostician {
     for (const std::size_t k : order) {
       const Tested& one = tested_[k];
       if (one.score.dof == 0) {
-        if (one.candidate.form == Form::catalogue && !hidden_by_misfit(one)) {
+        if (one.candidate.form == Form::catalogue && !hidden_by_misfit(one) &&
+            !tests_.is_present(one.candidate.effect)) {
           result_.unobservable.push_back(why_unobservable(one.candidate.effect, fit_, one.score));
         }
         continue;

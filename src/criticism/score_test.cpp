@@ -51,6 +51,15 @@ Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
   return left;
 }
 
+bool ScoreTest::is_present(const Effect& effect) const {
+  const RecordingSystem& system = *clean_system_;
+  const Eigen::MatrixXd M = columns(effect);
+  const Eigen::MatrixXd free_of_map =
+      M - system.times(system.solve_nodes(system.transposed_times(M)));
+  return free_of_map.squaredNorm() > kLeastShare * M.squaredNorm() &&
+         projected(M).squaredNorm() <= kLeastShare * free_of_map.squaredNorm();
+}
+
 void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return;
   Eigen::MatrixXd left = projected(columns);

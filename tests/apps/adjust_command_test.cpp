@@ -59,19 +59,19 @@ TEST_F(AdjustCommand, WritesTheAdjustedGraphAndItsFigures) {
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_EQ(outcome.output.rfind("adjusted: converged to a minimum\n", 0), 0U) << outcome.output;
 
-  const auto json = nlohmann::json::parse(std::ifstream(path("out.json")));
-  EXPECT_EQ(json["poses"], 80);
-  EXPECT_EQ(json["landmarks"], count_points(world.graph));
-  EXPECT_EQ(json["warnings"].size(), 0U);
-  EXPECT_EQ(json["dof"], 2 * static_cast<int>(world.graph.point_edges.size()) -
-                             2 * count_points(world.graph));  // odometry only feeds the poses
-  EXPECT_GT(json["iterations"], 0);
-  EXPECT_LT(json["gradient_norm"], 1e-3);
+  const auto result = nlohmann::json::parse(std::ifstream(path("out.json")));
+  EXPECT_EQ(result["poses"], 80);
+  EXPECT_EQ(result["landmarks"], count_points(world.graph));
+  EXPECT_EQ(result["warnings"].size(), 0U);
+  EXPECT_EQ(result["dof"], 2 * static_cast<int>(world.graph.point_edges.size()) -
+                               2 * count_points(world.graph));  // odometry only feeds the poses
+  EXPECT_GT(result["iterations"], 0);
+  EXPECT_LT(result["gradient_norm"], 1e-3);
 
   const PoseGraph out = read_g2o(path("out.g2o"));
   std::vector<Pose> estimates;
   for (const GraphVertex& vertex : out.vertices) estimates.push_back(*vertex.estimate);
-  const double chi2 = json["chi2"];
+  const double chi2 = result["chi2"];
   EXPECT_NEAR(chi_squared(out, estimates), chi2, 1e-9 * chi2);
 }
 

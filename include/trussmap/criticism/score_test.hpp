@@ -71,6 +71,9 @@ class ScoreTest {
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
 
+  /// Whether the effect would be seen but for what is present: the model has it, or its like.
+  [[nodiscard]] bool is_present(const Effect& effect) const;
+
   /// Takes further whitened columns as present from now on: what they explain is no longer there
   /// to be explained.
   void take_out(const Eigen::MatrixXd& columns);
