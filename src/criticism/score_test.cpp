@@ -16,6 +16,16 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kBatch = 64;  // columns at a time
 
+/// Less what landmarks and poses can take up.
+Eigen::MatrixXd free_of_map(const RecordingSystem& system, const Eigen::MatrixXd& M) {
+  return M - system.times(system.solve_nodes(system.transposed_times(M)));
+}
+
+Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
+  if (present.cols() > 0) M -= present * (present.transpose() * M);
+  return M;
+}
+
 }  // namespace
 
 ScoreTest::ScoreTest(const ModelFit& fit)
@@ -34,9 +44,7 @@ ScoreTest::ScoreTest(const ModelFit& fit)
   }
   builder_ = std::make_unique<ColumnBuilder>(clean_.context, clean_.problem, clean_.border,
                                              offsets_of(fit), clean_.state, weights);
-  residuals_ = system_->residuals();
-  residuals_ -=
-      clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(residuals_)));
+  residuals_ = free_of_map(*clean_system_, system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   take_out(clean_system_->border());
   if (fit.adjustment.dof > 0) {
@@ -45,19 +53,14 @@ ScoreTest::ScoreTest(const ModelFit& fit)
 }
 
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
-  const RecordingSystem& system = *clean_system_;
-  Eigen::MatrixXd left = M - system.times(system.solve_nodes(system.transposed_times(M)));
-  if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
-  return left;
+  return free_of(present_, free_of_map(*clean_system_, M));
 }
 
 bool ScoreTest::is_present(const Effect& effect) const {
-  const RecordingSystem& system = *clean_system_;
   const Eigen::MatrixXd M = columns(effect);
-  const Eigen::MatrixXd free_of_map =
-      M - system.times(system.solve_nodes(system.transposed_times(M)));
-  return free_of_map.squaredNorm() > kLeastShare * M.squaredNorm() &&
-         projected(M).squaredNorm() <= kLeastShare * free_of_map.squaredNorm();
+  const Eigen::MatrixXd left = free_of_map(*clean_system_, M);
+  return left.squaredNorm() > kLeastShare * M.squaredNorm() &&
+         free_of(present_, left).squaredNorm() <= kLeastShare * left.squaredNorm();
 }
 
 void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
@@ -170,8 +173,7 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const 
       at += part.cols();
     }
     const Eigen::MatrixXd nodes = system.solve_nodes(system.transposed_times(M));
-    Eigen::MatrixXd left = M - system.times(nodes);
-    if (present_.cols() > 0) left -= present_ * (present_.transpose() * left);
+    const Eigen::MatrixXd left = free_of(present_, M - system.times(nodes));
     at = 0;
     for (std::size_t k = first; k < next; ++k) {
       Eigen::MatrixXd& own = parts[k - first];

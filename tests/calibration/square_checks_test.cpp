@@ -16,19 +16,19 @@ namespace {
 using testing::simulated_clusters;
 using testing::simulated_runs;
 
-const SquareSetup kCheckedSquare{4.0, 0.34};
+const SquareSetup kSquare{4.0, 0.34};
 
-std::string doubts(const SquareRuns& runs, const SquareSetup& setup = kCheckedSquare) {
+std::string doubts(const SquareRuns& runs, const SquareSetup& setup = kSquare) {
   std::string all;
   for (const std::string& doubt : square_doubts(square_clusters(runs), setup)) all += doubt + "\n";
   return all;
 }
 
 SquareRuns some_runs(double e_d, double e_b, std::uint64_t seed) {
-  TapeRobot robot = misbuilt_robot(kCheckedSquare.wheelbase, e_d, e_b);
+  TapeRobot robot = misbuilt_robot(kSquare.wheelbase, e_d, e_b);
   robot.tape_sd = 0.01;
   std::mt19937_64 random(seed);
-  return simulated_runs(robot, kCheckedSquare.side, 5, random);
+  return simulated_runs(robot, kSquare.side, 5, random);
 }
 
 TEST(SquareDoubts, NoneAboutProperRuns) {
@@ -77,19 +77,19 @@ TEST(OneWayTuning, OneDirectionHidesWhatTheOtherShows) {
   // Borenstein & Feng, Fig. 4: the two errors cancel one way and add up the other.
   const GeometryErrors errors{1.00084, 0.98874};
   for (const Direction driven : {Direction::cw, Direction::ccw}) {
-    const OneWayTuning tuned = tune_one_way(errors, kCheckedSquare, driven);
+    const OneWayTuning tuned = tune_one_way(errors, kSquare, driven);
     EXPECT_LT(tuned.error_same_way, 0.1 * tuned.error_before);
     // What is left the other way is all of twice the type B error: 4 sqrt(2) L |beta|.
-    const double beta = 0.00084 * kCheckedSquare.side / kCheckedSquare.wheelbase;
-    EXPECT_NEAR(tuned.error_other_way, 4.0 * std::sqrt(2.0) * kCheckedSquare.side * beta, 0.02);
+    const double beta = 0.00084 * kSquare.side / kSquare.wheelbase;
+    EXPECT_NEAR(tuned.error_other_way, 4.0 * std::sqrt(2.0) * kSquare.side * beta, 0.02);
     EXPECT_GT(tuned.error_other_way, 20.0 * tuned.error_same_way);
   }
   // The tuned robot, simulated, does what is said of it.
-  const OneWayTuning tuned = tune_one_way(errors, kCheckedSquare, Direction::ccw);
-  const TapeRobot robot = reprogrammed(
-      misbuilt_robot(kCheckedSquare.wheelbase, errors.diameter_ratio, errors.wheelbase_ratio), 1.0,
-      1.0, kCheckedSquare.wheelbase * tuned.wheelbase_ratio);
-  const SquareClusters ends = simulated_clusters(robot, kCheckedSquare.side);
+  const OneWayTuning tuned = tune_one_way(errors, kSquare, Direction::ccw);
+  const TapeRobot robot =
+      reprogrammed(misbuilt_robot(kSquare.wheelbase, errors.diameter_ratio, errors.wheelbase_ratio),
+                   1.0, 1.0, kSquare.wheelbase * tuned.wheelbase_ratio);
+  const SquareClusters ends = simulated_clusters(robot, kSquare.side);
   EXPECT_NEAR(ends.ccw.mean.norm(), tuned.error_same_way, 1e-6);
   EXPECT_NEAR(ends.cw.mean.norm(), tuned.error_other_way, 1e-6);
 }

@@ -20,7 +20,7 @@ using testing::Case;
 using testing::centres;
 using testing::simulated_clusters;
 
-constexpr double kOneMillimetre = 1e-3;
+constexpr double kMillimetre = 1e-3;
 
 /// Relative 1e-12, and as much absolutely for numbers near 0.
 void expect_analysis(double value, double expected) {
@@ -30,13 +30,12 @@ void expect_analysis(double value, double expected) {
 class UmbmarkSimulated : public ::testing::TestWithParam<Case> {
  protected:
   [[nodiscard]] double number(const char* key) const { return GetParam().content[key]; }
-  [[nodiscard]] double metres(const char* key) const { return kOneMillimetre * number(key); }
+  [[nodiscard]] double metres(const char* key) const { return kMillimetre * number(key); }
   [[nodiscard]] SquareSetup setup() const { return {metres("side_mm"), metres("b_nominal_mm")}; }
   [[nodiscard]] SquareClusters measured() const {
     const auto end = [&](const char* key) {
       const auto& e = GetParam().content[key];
-      return Eigen::Vector2d(kOneMillimetre * e[0].get<double>(),
-                             kOneMillimetre * e[1].get<double>());
+      return Eigen::Vector2d(kMillimetre * e[0].get<double>(), kMillimetre * e[1].get<double>());
     };
     return centres(end("err_cw"), end("err_ccw"));
   }
@@ -54,7 +53,7 @@ TEST_P(UmbmarkSimulated, RobotEndsWhereTheReferenceHasIt) {
     const Pose end = drive_once(robot, square_path(metres("side_mm"), direction), unused);
     const auto& expected = GetParam().content[key];
     const Eigen::Vector3d found(end.x, end.y, end.heading);
-    const Eigen::Vector3d units(kOneMillimetre, kOneMillimetre, 1.0);
+    const Eigen::Vector3d units(kMillimetre, kMillimetre, 1.0);
     for (int k = 0; k < 3; ++k) {
       const double e = units[k] * expected[static_cast<std::size_t>(k)].get<double>();
       EXPECT_NEAR(found[k], e, std::max(1e-9 * std::abs(e), 1e-12)) << key << " " << k;
@@ -112,10 +111,10 @@ INSTANTIATE_TEST_SUITE_P(Reference, UmbmarkMeasured,
 
 TEST_P(UmbmarkMeasured, PublishedCentresGiveTheReferencesFigures) {
   const nlohmann::json& c = GetParam().content;
-  const SquareSetup setup{kOneMillimetre * c["side_mm"].get<double>(),
-                          kOneMillimetre * c["B_assumed_mm"].get<double>()};
-  const SquareClusters clusters = centres(kOneMillimetre * testing::vector2(c["cg_cw"]),
-                                          kOneMillimetre * testing::vector2(c["cg_ccw"]));
+  const SquareSetup setup{kMillimetre * c["side_mm"].get<double>(),
+                          kMillimetre * c["B_assumed_mm"].get<double>()};
+  const SquareClusters clusters = centres(kMillimetre * testing::vector2(c["cg_cw"]),
+                                          kMillimetre * testing::vector2(c["cg_ccw"]));
   const SquareSolution found = umbmark(clusters, setup);
   expect_analysis(found.alpha.value, c["alpha"]);
   expect_analysis(found.beta.value, c["beta"]);
@@ -123,7 +122,7 @@ TEST_P(UmbmarkMeasured, PublishedCentresGiveTheReferencesFigures) {
   expect_analysis(found.wheelbase_ratio.value, c["Eb"]);
   expect_analysis(found.left_factor.value, c["cL"]);
   expect_analysis(found.right_factor.value, c["cR"]);
-  expect_analysis(clusters.largest_offset.value, kOneMillimetre * c["Emax_mm"].get<double>());
+  expect_analysis(clusters.largest_offset.value, kMillimetre * c["Emax_mm"].get<double>());
 }
 
 TEST(Umbmark, TwoRoundsLeaveLessThanAHundredth) {

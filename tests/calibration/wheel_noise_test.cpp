@@ -23,7 +23,7 @@ namespace {
 constexpr double kLeft = 0.0004;  // Chong & Kleeman (1997), section 5.2
 constexpr double kRight = 0.00058;
 constexpr double kWheelbase = 0.5;  // assumed by the reference; the paper has none
-constexpr int kNoiseRuns = 60;
+constexpr int kRuns = 60;
 
 NoiseExperiment out_and_back() {
   NoiseExperiment experiment;
@@ -105,7 +105,7 @@ TEST(WheelNoise, PerfectScatterGivesBackTheConstantsAndTheCramerRaoBounds) {
     }
   }
   const NoiseEstimate found = estimate_wheel_noise(errors, out_and_back());
-  EXPECT_EQ(found.runs, kNoiseRuns);
+  EXPECT_EQ(found.runs, kRuns);
   EXPECT_NEAR(found.left.k, kLeft, 1e-11);
   EXPECT_NEAR(found.right.k, kRight, 1e-11);
   EXPECT_NEAR(found.left.standard_error, c["crlb_n60_std_kL"].get<double>(), 1e-8);
@@ -137,7 +137,7 @@ TEST(WheelNoise, SixtyRunsGiveUnbiasedConstantsAndTrueStandardErrors) {
   const TapeRobot robot = noisy_robot(kLeft, kRight);
   for (int trial = 0; trial < 1000; ++trial) {
     const NoiseEstimate found =
-        estimate_wheel_noise(rolled(robot, experiment.path, kNoiseRuns, random), experiment);
+        estimate_wheel_noise(rolled(robot, experiment.path, kRuns, random), experiment);
     squared.add(found.squared.array());
     stated.add(found.squared_covariance.diagonal().array().sqrt());
     k.add({found.left.k, found.right.k});
@@ -170,7 +170,7 @@ TEST(WheelNoise, ExactMomentsServeNoisyWheelsToo) {
     Moments stated;
     for (int trial = 0; trial < 300; ++trial) {
       const NoiseEstimate found =
-          estimate_wheel_noise(rolled(robot, experiment.path, kNoiseRuns, random), experiment);
+          estimate_wheel_noise(rolled(robot, experiment.path, kRuns, random), experiment);
       squared.add(found.squared.array());
       stated.add(found.squared_covariance.diagonal().array().sqrt());
     }
@@ -192,7 +192,7 @@ TEST(WheelNoise, TheEstimatorItselfIsUnbiasedWithSensorNoiseAndASubtractedMean) 
   Moments squared;
   Moments stated;
   for (int trial = 0; trial < 1000; ++trial) {
-    EndErrors errors = drawn(covariance, kNoiseRuns, random);
+    EndErrors errors = drawn(covariance, kRuns, random);
     for (Eigen::Vector3d& e : errors) e += Eigen::Vector3d(0.1, -0.2, 0.05);
     const NoiseEstimate found = estimate_wheel_noise(errors, experiment);
     squared.add(found.squared.array());
@@ -227,7 +227,7 @@ TEST(WheelNoise, AWheelHiddenBySensorNoiseGetsAnUpperLimit) {
   int limited = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const NoiseEstimate found = estimate_wheel_noise(
-        drawn(kRight * kRight * shape.right + sensor, kNoiseRuns, random), experiment);
+        drawn(kRight * kRight * shape.right + sensor, kRuns, random), experiment);
     if (found.left.k > 0.0) continue;
     ++at_zero;
     EXPECT_TRUE(std::isnan(found.left.standard_error));
@@ -261,14 +261,14 @@ TEST(NoiseChecks, EllipsesHold95PercentAndTestsAreFair) {
   int shape_rejected = 0;
   int distance_rejected = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
-    const EndErrors errors = drawn(covariance, kNoiseRuns, random);
+    const EndErrors errors = drawn(covariance, kRuns, random);
     const NoiseFit fit = check_noise(errors, experiment, estimate_wheel_noise(errors, experiment));
     for (int k = 0; k < 4; ++k) inside[k] += fit.ellipses[static_cast<std::size_t>(k)].inside;
     shape_rejected += fit.shape_p_value < 0.05 ? 1 : 0;
     distance_rejected += fit.distance_p_value < 0.05 ? 1 : 0;
   }
   // 24000 runs: 0.14 % standard error; constants fitted to the same runs hold a little more.
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(inside[k] / (kTrials * kNoiseRuns), 0.95, 0.006) << k;
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(inside[k] / (kTrials * kRuns), 0.95, 0.006) << k;
   // 20 of 400 expected, +- 4.4.
   EXPECT_NEAR(shape_rejected, 20, 14);
   EXPECT_LE(distance_rejected, 34);
@@ -283,7 +283,7 @@ TEST(NoiseChecks, APathThatNoiseBendsIsNamed) {
   robot.right_noise = 0.005;
   for (const double reach : {10.0, 1.0}) {
     experiment.path = {{reach, 0.0}, {-reach, 0.0}};
-    const EndErrors errors = rolled(robot, experiment.path, kNoiseRuns, random);
+    const EndErrors errors = rolled(robot, experiment.path, kRuns, random);
     const NoiseEstimate found = estimate_wheel_noise(errors, experiment);
     const NoiseFit fit = check_noise(errors, experiment, found);
     EXPECT_EQ(fit.bends, reach > 5.0);
@@ -305,7 +305,7 @@ TEST(NoiseChecks, DoubtsNameTheirCause) {
     }
     return all;
   };
-  const EndErrors good = rolled(noisy_robot(kLeft, kRight), experiment.path, kNoiseRuns, random);
+  const EndErrors good = rolled(noisy_robot(kLeft, kRight), experiment.path, kRuns, random);
   EXPECT_EQ(doubts(good), "");
   EndErrors shifted = good;
   for (Eigen::Vector3d& e : shifted) e[0] += 0.01;

@@ -16,16 +16,16 @@ namespace {
 
 constexpr SensorNoise kQuiet = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
-struct RobotField {
+struct Field {
   Mesh mesh;
   std::vector<int> walk;
   DrivingStyle style;
   WheeledRobot robot;
 };
 
-RobotField robot_field(int tours) {
+Field field(int tours) {
   std::mt19937_64 random(41);
-  RobotField f;
+  Field f;
   const std::vector<double> x = random_lines(6, 3.0, 7.0, random);
   const std::vector<double> y = random_lines(6, 3.0, 7.0, random);
   f.mesh = jittered(mesh_of_lines(x, y), 0.3, random);
@@ -35,7 +35,7 @@ RobotField robot_field(int tours) {
   return f;
 }
 
-SimulatedDrive simulate(const RobotField& f, std::uint64_t seed) {
+SimulatedDrive simulate(const Field& f, std::uint64_t seed) {
   return simulate_drive(f.mesh, f.walk, f.style, f.robot, seed);
 }
 
@@ -54,7 +54,7 @@ Pose roll(Pose pose, double left, double right, double wheelbase) {
 }
 
 TEST(WheeledRobot, WithoutNoiseItsWheelsLeadToEveryLandmark) {
-  RobotField f = robot_field(2);
+  Field f = field(2);
   f.robot.noise = kQuiet;
   f.style.standing = 0.0;
   const Recording recording = simulate(f, 1).recording;
@@ -78,7 +78,7 @@ TEST(WheeledRobot, WithoutNoiseItsWheelsLeadToEveryLandmark) {
 }
 
 TEST(WheeledRobot, SightingsLieWithinTheDrive) {
-  const Recording recording = simulate(robot_field(1), 2).recording;
+  const Recording recording = simulate(field(1), 2).recording;
   EXPECT_EQ(recording.sightings.front().t, recording.drive.start());
   EXPECT_EQ(recording.sightings.back().t, recording.drive.t.back());
   EXPECT_TRUE(std::is_sorted(recording.sightings.begin(), recording.sightings.end(),
@@ -94,7 +94,7 @@ TEST(WheeledRobot, SightingsLieWithinTheDrive) {
 TEST(WheeledRobot, WheelNoiseGrowsWithTheTravel) {
   // (d - d0)^2 / (k^2 |d0|) is chi-square with one degree of freedom: mean 1, variance 2. Both
   // halves, of the longer and of the shorter travels, must show it: 4 sqrt(2/n).
-  RobotField f = robot_field(1);
+  Field f = field(1);
   f.robot.noise.left = 0.002;
   f.robot.noise.right = 0.006;
   const Drive noisy = simulate(f, 3).recording.drive;
@@ -123,7 +123,7 @@ TEST(WheeledRobot, WheelNoiseGrowsWithTheTravel) {
 }
 
 TEST(WheeledRobot, CompassNoiseIsAsStated) {
-  RobotField f = robot_field(1);
+  Field f = field(1);
   f.robot.noise.compass = 0.05;
   const SimulatedDrive simulated = simulate(f, 4);
   double sum = 0.0;
@@ -140,7 +140,7 @@ TEST(WheeledRobot, CompassNoiseIsAsStated) {
 }
 
 TEST(WheeledRobot, RangeSensorSeesSomeOfWhatIsInReach) {
-  RobotField f = robot_field(3);
+  Field f = field(3);
   f.robot.range_sensor = true;
   f.robot.noise.range = 0.04;
   const SimulatedDrive simulated = simulate(f, 5);
@@ -199,13 +199,13 @@ bool equal_drives(const Drive& a, const Drive& b) {
 }
 
 TEST(WheeledRobot, RecordingIsDrawnFromItsSeed) {
-  const RobotField f = robot_field(1);
+  const Field f = field(1);
   EXPECT_TRUE(equal_drives(simulate(f, 7).recording.drive, simulate(f, 7).recording.drive));
   EXPECT_FALSE(equal_drives(simulate(f, 7).recording.drive, simulate(f, 8).recording.drive));
 }
 
 TEST(WheeledRobot, LeavingASensorOutChangesNothingElse) {
-  RobotField f = robot_field(1);
+  Field f = field(1);
   f.robot.range_sensor = true;
   const Recording with = simulate(f, 9).recording;
   f.robot.range_sensor = false;
@@ -219,13 +219,13 @@ TEST(WheeledRobot, LeavingASensorOutChangesNothingElse) {
 }
 
 TEST(WheeledRobot, RefusesSensorsThatMakeNoSense) {
-  const RobotField f = robot_field(1);
+  const Field f = field(1);
   for (const auto spoil : std::vector<void (*)(WheeledRobot&)>{
            [](WheeledRobot& r) { r.wheelbase = 0.0; }, [](WheeledRobot& r) { r.noise.left = -0.1; },
            [](WheeledRobot& r) { r.noise.compass = std::nan(""); },
            [](WheeledRobot& r) { r.noise.survey = -1.0; }, [](WheeledRobot& r) { r.reach = 0.0; },
            [](WheeledRobot& r) { r.recognition = 2.0; }}) {
-    RobotField bad = f;
+    Field bad = f;
     spoil(bad.robot);
     EXPECT_THROW((void)simulate(bad, 1), std::invalid_argument);
   }
