@@ -276,7 +276,8 @@ void setup_diagnose(CLI::App& app) {
       "Tries the whole catalogue, and every channel against every variable and covariate. "
       "Missing:\n"
       "named by these data. Absent: would have been seen at any size that matters. Cannot tell:\n"
-      "these data could not show it, or another effect looks the same.");
+      "these data could not show it, or another effect looks the same. The page (--html) has what\n"
+      "is missing, its rivals, the next drive, and the best change to each part of the robot.");
   command->callback([options] { run_diagnose(*options); });
 }
 

@@ -162,7 +162,8 @@ void setup_discover(CLI::App& app) {
   command->footer(
       "The ladder has one line per model, always over the same held-out legs. \"Promised\" is "
       "what\n"
-      "the diagnosis foretold before the fit.");
+      "the diagnosis foretold before the fit. The page (--html) shows it with each effect's "
+      "curve.");
   command->callback([options] { run_discover(*options); });
 }
 

@@ -181,7 +181,7 @@ std::optional<double> number_after(const std::string& shape, const std::string& 
 }
 
 std::string at_place(const Vector2& place) {
-  return fmt::format(" at x {} m, y {} m", two_digits(place.x()), two_digits(place.y()));
+  return fmt::format(" at x {:.1f} m, y {:.1f} m", place.x(), place.y());
 }
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -240,6 +240,11 @@ std::optional<Vector2> place_of(const Effect& effect) {
   const std::optional<double> x = number_after(shape, "(x-");
   const std::optional<double> y = number_after(shape, "(y-");
   return x && y ? std::optional(Vector2(*x, *y)) : std::nullopt;
+}
+
+std::string short_name(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  return entry == nullptr ? name_in_words(effect) : std::string(entry->name);
 }
 
 std::string name_in_words(const Effect& effect) {

@@ -256,6 +256,28 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
   return curve;
 }
 
+namespace {
+
+/// An effect's curve at the level at which its bins show it: where the data do not tell what all
+/// bins have in common, the estimates leave that out, and so does the curve.
+std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
+                              const std::string& variable, const std::vector<Vector2>& told) {
+  if (curve.empty() || told.empty()) return curve;
+  std::vector<double> off;
+  for (const Vector2& bin : told) {
+    const std::vector<Vector2> here = effect_curve(effect, variable, bin.x(), bin.x());
+    if (here.empty()) return curve;
+    off.push_back(bin.y() - here.front().y());
+  }
+  // The median: a bin across a step has a mean of both sides.
+  std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2),
+                   off.end());
+  for (Vector2& point : curve) point.y() += off[off.size() / 2];
+  return curve;
+}
+
+}  // namespace
+
 Response response_along(const std::string& variable, const Effect& effect, const ModelFit& fit,
                         const ScoreTest& tests, const std::vector<Effect>& rivals) {
   const ChannelFacts& facts = facts_of(parse_channel(effect.channel).value());
@@ -275,15 +297,20 @@ Response response_along(const std::string& variable, const Effect& effect, const
   probe.shape = std::move(bins.shapes);
   const std::vector<Score> scores = tests.test({probe});
   result.bins = std::move(bins.bins);
-  estimate(result, scores.front(), facts.plausible, fit, tests, traces_of(rivals, tests));
+  std::vector<Effect> traced = rivals;
+  traced.push_back(effect);
+  estimate(result, scores.front(), facts.plausible, fit, tests, traces_of(traced, tests));
+  const std::vector<Vector2> told = std::move(result.rivals.back());
+  result.rivals.pop_back();
   if (result.bins.empty()) return result;
   const bool round = variable == "heading";
   const double low = round ? 0.0 : result.bins.front().at;
   const double high = round ? kTurn : result.bins.back().at;
-  result.curve = effect_curve(effect, variable, low, high);
+  result.curve = levelled(effect_curve(effect, variable, low, high), effect, variable, told);
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     if (rivals[k].channel != effect.channel || variable == kPlace) continue;
-    std::vector<Vector2> own = effect_curve(rivals[k], variable, low, high);
+    std::vector<Vector2> own = levelled(effect_curve(rivals[k], variable, low, high), rivals[k],
+                                        variable, result.rivals[k]);
     if (!own.empty()) result.rivals[k] = std::move(own);
   }
   return result;

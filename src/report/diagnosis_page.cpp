@@ -22,7 +22,7 @@ constexpr std::size_t kChangesDrawn = 6;
 
 std::string with_name(const DiagnosisPictures& pictures) {
   return pictures.effects.size() == 1
-             ? "with " + name_in_words(pictures.effects.front().estimate.effect)
+             ? "with " + short_name(pictures.effects.front().estimate.effect)
              : "with what is missing";
 }
 
@@ -77,7 +77,7 @@ std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictur
   std::vector<PageFact> facts;
   for (const FittedEffect& one : pictures.effects) {
     const SizeText size = size_text_of(one);
-    facts.push_back({size.size, name_in_words(one.estimate.effect) + " at its most" +
+    facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
                                     (size.error.empty() ? "" : "; standard error " + size.error)});
   }
   if (!pictures.effects.empty()) {
@@ -94,7 +94,7 @@ std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictur
     if (pictures.with) {
       const Comparison& with = pictures.with->comparison;
       facts.push_back({distance_text(less, off), "the same with what is missing",
-                       with.consistent ? Tone::good : Tone::neutral});
+                       is_explained(with) ? Tone::good : Tone::neutral});
     }
   }
   if (pictures.effects.empty()) {
@@ -103,6 +103,14 @@ std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictur
     facts.push_back({std::to_string(diagnosis.tried), "changes to the model tried"});
   }
   return facts;
+}
+
+/// Advice, "what is lacking: why it matters; what to drive", with the drive first.
+std::string advised_drive(const std::string& advice) {
+  const std::size_t drive = advice.rfind("; ");
+  if (drive == std::string::npos) return "Next drive, to see more: " + advice + ".";
+  return fmt::format("Next drive, to see more: {} ({}).", advice.substr(drive + 2),
+                     advice.substr(0, drive));
 }
 
 std::vector<std::string> notes_on(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
@@ -125,7 +133,7 @@ std::vector<std::string> notes_on(const Diagnosis& diagnosis, const DiagnosisPic
   } else {
     notes.push_back(seen_from_note(pictures.tables));
     if (!diagnosis.advice.empty()) {
-      notes.push_back("Next drive, to see more: " + typeset(diagnosis.advice.front()) + ".");
+      notes.push_back(advised_drive(diagnosis.advice.front()));
     }
   }
   const std::vector<std::string> others = others_notes(diagnosis);

@@ -312,10 +312,10 @@ std::string chance_text(double p) {
   return p < 1e-12 ? "next to 0" : probability_text(p);
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names, const std::string& last) {
   std::string text;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+    text += (k == 0 ? std::string() : k + 1 == names.size() ? " " + last + " " : ", ") + names[k];
   }
   return text;
 }
@@ -343,14 +343,14 @@ SizeText size_text_of(const FittedEffect& effect) {
 std::string cause_note(const Effect& effect) {
   const CatalogueEntry* entry = find_entry(effect.name);
   if (entry == nullptr) return "";
-  return fmt::format("Where {} comes from: {}. What helps for good: {}.", name_in_words(effect),
+  return fmt::format("Where {} comes from: {}. What helps for good: {}.", short_name(effect),
                      entry->cause, entry->remedy);
 }
 
 std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals) {
   if (rivals.empty()) {
     return fmt::format("Nothing else in the catalogue looks like {} in these recordings.",
-                       name_in_words(effect));
+                       short_name(effect));
   }
   std::vector<std::string> names;
   for (const LookAlike& rival : rivals) {
@@ -359,7 +359,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }
   return fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
-                     name_in_words(effect), listed(names));
+                     short_name(effect), listed(names, "or"));
 }
 
 std::vector<std::string> others_notes(const Diagnosis& diagnosis) {

@@ -14,7 +14,8 @@ namespace trussmap {
 inline constexpr double kStandsOut = 0.05;  ///< adjusted p-value of noise and events
 
 /// "hard iron", "hard iron and turn scrub", "a, b and c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names);
+[[nodiscard]] std::string listed(const std::vector<std::string>& names,
+                                 const std::string& last = "and");
 
 /// An adjusted p-value for people: "0.004", "next to 0".
 [[nodiscard]] std::string chance_text(double p);

@@ -83,20 +83,20 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryPictures& p
   const std::string gain =
       gain_sentence(pictures.given.comparison, now, effects.size() == 1 ? "it" : "them");
   if (!gain.empty()) return text + ". " + gain;
-  return text + (now.consistent ? ". The model now explains the measurements."
-                                : ". Something is still unexplained.");
+  return text + (is_explained(now) ? ". The model now explains the measurements."
+                                   : ". Something is still unexplained.");
 }
 
 std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryPictures& pictures) {
   std::vector<PageFact> facts;
   for (const FittedEffect& one : pictures.effects) {
     const SizeText size = size_text_of(one);
-    facts.push_back({size.size, name_in_words(one.estimate.effect) + " at its most" +
+    facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
                                     (size.error.empty() ? "" : "; standard error " + size.error)});
   }
   const Comparison& given = pictures.given.comparison;
   const Comparison& found = pictures.found.comparison;
-  const Tone tone = found.consistent ? Tone::good : Tone::bad;
+  const Tone tone = is_explained(found) ? Tone::good : Tone::bad;
   if (!found.held_out.legs.empty()) {
     const double off = given.held_out.arrival_rms;
     const double now = found.held_out.arrival_rms;

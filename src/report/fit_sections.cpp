@@ -106,7 +106,7 @@ PageTable model_table(const NamedModel& before, const NamedModel& after) {
                           one.held_out.legs.empty()
                               ? "-"
                               : fmt::format("{:.1f}", 1000.0 * one.held_out.arrival_rms)});
-    table.tones.push_back(one.consistent ? Tone::good : Tone::bad);
+    table.tones.push_back(is_explained(one) ? Tone::good : Tone::bad);
   }
   return table;
 }
@@ -141,6 +141,10 @@ std::string effect_in_words(const FittedEffect& effect) {
          typeset(size_in_words(one, effect.range.least, effect.range.most));
 }
 
+bool is_explained(const Comparison& comparison) {
+  return comparison.p_value >= 0.01;
+}
+
 std::string gain_sentence(const Comparison& before, const Comparison& after,
                           const std::string& it) {
   if (before.held_out.legs.empty() || after.held_out.legs.empty()) return "";
@@ -148,8 +152,8 @@ std::string gain_sentence(const Comparison& before, const Comparison& after,
   const double with = after.held_out.arrival_rms;
   return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
                      distance_text(with, off),
-                     after.consistent ? ", as good as this robot's noise allows"
-                                      : ", and something is still unexplained");
+                     is_explained(after) ? ", as good as this robot's noise allows"
+                                         : ", and something is still unexplained");
 }
 
 PageSection effect_section(const std::string& title, const std::vector<FittedEffect>& effects) {
@@ -165,7 +169,14 @@ PageSection effect_section(const std::string& title, const std::vector<FittedEff
     }
     std::vector<NamedCurve> rivals;
     for (std::size_t rival = 0; rival < drawn.rivals.size(); ++rival) {
-      rivals.push_back({name_in_words(one.rivals[rival]), drawn.rivals[rival]});
+      const Effect& other = one.rivals[rival];
+      const bool same = rival > 0 && other.channel == one.rivals[rival - 1].channel &&
+                        other.shape == one.rivals[rival - 1].shape;
+      if (same) {
+        rivals.back().name += " or " + name_in_words(other);
+      } else {
+        rivals.push_back({name_in_words(other), drawn.rivals[rival]});
+      }
     }
     signatures.push_back(response_chart(
         fmt::format("effect-{}", k + 1), name_in_words(one.estimate.effect),

@@ -28,6 +28,9 @@ struct NamedModel {
 /// "hard iron: the compass reads up to 2.9° too much or too little".
 [[nodiscard]] std::string effect_in_words(const FittedEffect& effect);
 
+/// No misfit to speak of, as diagnose and discover count it.
+[[nodiscard]] bool is_explained(const Comparison& comparison);
+
 /// "Without it legs end 21 cm off; with it 1.6 cm, as good as this robot's noise allows." Empty
 /// without held-out legs. `it`: "it", "them".
 [[nodiscard]] std::string gain_sentence(const Comparison& before, const Comparison& after,

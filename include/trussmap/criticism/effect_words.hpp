@@ -21,6 +21,8 @@ namespace trussmap {
 /// "slippery patch (x=12.345, y=9.8, r=3.1)", "turning error with turn rate" for "turn with
 /// turn_rate". A user's own name stays.
 [[nodiscard]] std::string name_in_words(const Effect& effect);
+/// The same without what is open in the catalogue: "slippery patch".
+[[nodiscard]] std::string short_name(const Effect& effect);
 
 /// The most that an effect does in some recordings, from its least to its largest g there: "the
 /// compass reads up to 2.9 deg too much or too little".
