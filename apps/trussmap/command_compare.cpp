@@ -207,10 +207,7 @@ void print(const Comparison& result, const CompareOptions& options) {
 
 void run_compare(const CompareOptions& options) {
   const ModelRecordings input = read_model_recordings(options.input);
-  ComparisonOptions how;
-  how.problem = problem_options(options.input);
-  how.legs = options.input.legs;
-  how.gate = gate_of(options.input);
+  const ComparisonOptions how = comparison_options(options.input);
   const ModelFit fit = fit_to_compare(input.recordings, input.model, how);
   const ScoreTest tests(fit);
   const Comparison result = compare(input.recordings, input.model, how, fit, tests);

@@ -5,6 +5,7 @@
 #include "trussmap/criticism/diagnosis.hpp"
 #include "trussmap/criticism/effect_words.hpp"
 #include "trussmap/io/atomic_file.hpp"
+#include "trussmap/report/diagnosis_page.hpp"
 #include "trussmap/report/table.hpp"
 
 #include <memory>
@@ -14,6 +15,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -24,6 +26,7 @@ struct DiagnoseOptions {
   ModelRecordingsOptions input;
   double level = 0.05;
   std::size_t list = 8;
+  PageOptions page;
 };
 
 ordered_json json(const HeldOutFigures& figures) {
@@ -181,6 +184,57 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
   for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
 }
 
+/// The model with what is missing put in and fitted; with the first alone where not all can be.
+std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
+                                 const ModelRecordings& input, const ModelFit& fit,
+                                 const DiagnosisOptions& how) {
+  ModelFitOptions more;
+  more.problem = how.problem;
+  more.gate = how.gate;
+  more.near = &fit;
+  for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
+    Model model = fit.model;
+    for (std::size_t k = 0; k < count; ++k) {
+      model.effects.push_back(missing[k]->candidate.effect);
+    }
+    try {
+      return fit_model(input.recordings, model, more);
+    } catch (const SolveError&) {
+      continue;
+    }
+  }
+  return std::nullopt;
+}
+
+Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis& result,
+             const DiagnosisOptions& how, const DiagnoseOptions& options) {
+  const ComparisonOptions compared = comparison_options(options.input);
+  const ScoreTest tests(fit);
+  DiagnosisPictures pictures;
+  pictures.given = {compare(input.recordings, fit.model, compared, fit, tests), fitted_map(fit)};
+  pictures.trends = trend_pictures(pictures.given.comparison, fit, tests);
+  pictures.tables = diagnosis_tables(result, tests.context());
+  const std::vector<const Finding*> missing = found_by(result);
+  const std::optional<ModelFit> with = fit_with(missing, input, fit, how);
+  std::vector<EffectEstimate> estimates;
+  std::vector<std::vector<LookAlike>> rivals;
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    const std::size_t place = fit.effects.size() + k;
+    estimates.push_back(with && place < with->effects.size()
+                            ? with->effects[place]
+                            : EffectEstimate{missing[k]->candidate.effect, missing[k]->sd, {}});
+    rivals.push_back(missing[k]->look_alikes);
+  }
+  pictures.effects = fitted_effects(fit, estimates, rivals);
+  if (with) {
+    const ScoreTest after(*with);
+    pictures.with = {compare(input.recordings, with->model, compared, *with, after),
+                     fitted_map(*with)};
+  }
+  return diagnosis_page(result, pictures,
+                        subject_of(options.input.recordings, options.input.model));
+}
+
 void run_diagnose(const DiagnoseOptions& options) {
   const ModelRecordings input = read_model_recordings(options.input);
   DiagnosisOptions how;
@@ -188,8 +242,20 @@ void run_diagnose(const DiagnoseOptions& options) {
   how.legs = options.input.legs;
   how.gate = gate_of(options.input);
   how.level = options.level;
-  const Diagnosis result = diagnose(input.recordings, input.model, how);
-  if (!options.input.json.empty()) write_file(options.input.json, json(result).dump(2) + "\n");
+  ModelFitOptions given;
+  given.problem = how.problem;
+  given.gate = how.gate;
+  const ModelFit fit = fit_model(input.recordings, input.model, given);
+  Diagnosis result = diagnose(input.recordings, fit, how);
+  result.advice = advice_on(input.recordings, input.model, how.problem);
+  Files files;
+  if (!options.input.json.empty()) {
+    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+  }
+  if (options.page.wanted()) {
+    add_page(files, page_of(input, fit, result, how, options), options.page);
+  }
+  write_files(files);
   print(result, options);
 }
 
@@ -204,11 +270,14 @@ void setup_diagnose(CLI::App& app) {
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
   command->add_option("--list", options->list, "Candidates to list")->capture_default_str();
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->footer(
       "Tries the whole catalogue, and every channel against every variable and covariate. "
       "Missing:\n"
       "named by these data. Absent: would have been seen at any size that matters. Cannot tell:\n"
-      "these data could not show it, or another effect looks the same.");
+      "these data could not show it, or another effect looks the same. The page (--html) has what\n"
+      "is missing, its rivals, the next drive, and the best change to each part of the robot.");
   command->callback([options] { run_diagnose(*options); });
 }
 

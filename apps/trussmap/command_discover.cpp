@@ -6,6 +6,7 @@
 #include "trussmap/criticism/effect_words.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/model_toml.hpp"
+#include "trussmap/report/discovery_page.hpp"
 #include "trussmap/report/table.hpp"
 
 #include <memory>
@@ -15,6 +16,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "page_runtime.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -26,6 +28,7 @@ struct DiscoverOptions {
   std::string out;
   double level = 0.05;
   std::size_t most = 6;
+  PageOptions page;
 };
 
 ordered_json json(const DiscoveryStep& step) {
@@ -98,6 +101,28 @@ void print(const Discovery& result) {
   }
 }
 
+Page page_of(const ModelRecordings& input, const Discovery& result, const DiagnosisOptions& how,
+             const DiscoverOptions& options) {
+  const ComparisonOptions compared = comparison_options(options.input);
+  ModelFitOptions given;
+  given.problem = how.problem;
+  given.gate = how.gate;
+  const ModelFit before = fit_model(input.recordings, input.model, given);
+  const ScoreTest tests(before);
+  const ScoreTest after(result.fit);
+  const AddedEffects added = added_effects(result);
+  DiscoveryPictures pictures;
+  pictures.given = {compare(input.recordings, before.model, compared, before, tests),
+                    fitted_map(before)};
+  pictures.found = {compare(input.recordings, result.fit.model, compared, result.fit, after),
+                    fitted_map(result.fit)};
+  pictures.effects = fitted_effects(before, added.estimates, added.rivals);
+  pictures.trends = trend_pictures(pictures.found.comparison, result.fit, after);
+  pictures.tables = diagnosis_tables(result.last, after.context(), pictures.effects);
+  return discovery_page(result, pictures,
+                        subject_of(options.input.recordings, options.input.model));
+}
+
 void run_discover(const DiscoverOptions& options) {
   const ModelRecordings input = read_model_recordings(options.input);
   DiscoveryOptions how;
@@ -106,11 +131,15 @@ void run_discover(const DiscoverOptions& options) {
   how.diagnosis.gate = gate_of(options.input);
   how.diagnosis.level = options.level;
   how.most_effects = options.most;
-  const Discovery result = discover(input.recordings, input.model, how);
-  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  Discovery result = discover(input.recordings, input.model, how);
+  result.last.advice = advice_on(input.recordings, result.fit.model, how.diagnosis.problem);
+  Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.fit.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+  }
+  if (options.page.wanted()) {
+    add_page(files, page_of(input, result, how.diagnosis, options), options.page);
   }
   write_files(files);
   print(result);
@@ -128,10 +157,13 @@ void setup_discover(CLI::App& app) {
       ->check(CLI::Range(1e-6, 0.5))
       ->capture_default_str();
   command->add_option("--most", options->most, "Effects to add at most")->capture_default_str();
+  add_html_option(*command, options->page);
+  add_plots_option(*command, options->page);
   command->footer(
       "The ladder has one line per model, always over the same held-out legs. \"Promised\" is "
       "what\n"
-      "the diagnosis foretold before the fit.");
+      "the diagnosis foretold before the fit. The page (--html) shows it with each effect's "
+      "curve.");
   command->callback([options] { run_discover(*options); });
 }
 

@@ -117,30 +117,18 @@ void print(const FitResult& result) {
 /// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
 FittedModel shown_model(const ModelRecordings& input, const ModelFit& fit, const ScoreTest& tests,
                         const FitOptions& options) {
-  ComparisonOptions how;
-  how.problem = problem_options(options.input);
-  how.legs = options.input.legs;
-  how.gate = gate_of(options.input);
-  return {compare(input.recordings, fit.model, how, fit, tests), fitted_map(fit)};
+  return {compare(input.recordings, fit.model, comparison_options(options.input), fit, tests),
+          fitted_map(fit)};
 }
 
 Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {
   const ScoreTest before(result.before);
   const ScoreTest after(result.after);
-  std::vector<FittedEffect> effects;
-  for (const EffectEstimate& one : result.after.effects) {
-    FittedEffect effect{one, {}};
-    const std::string variable = natural_variable(one.effect);
-    if (!variable.empty()) {
-      effect.response = response_along(variable, one.effect, result.before, before);
-    }
-    effects.push_back(std::move(effect));
-  }
   FittedModel without = shown_model(input, result.before, before, options);
   without.comparison.held_out = result.held_out_before;
   FittedModel with = shown_model(input, result.after, after, options);
   with.comparison.held_out = result.held_out_after;
-  return fit_page(without, with, effects,
+  return fit_page(without, with, fitted_effects(result.before, result.after.effects),
                   subject_of(options.input.recordings, options.input.model));
 }
 

@@ -92,6 +92,14 @@ ProblemOptions problem_options(const ModelRecordingsOptions& options) {
   return result;
 }
 
+ComparisonOptions comparison_options(const ModelRecordingsOptions& options) {
+  ComparisonOptions how;
+  how.problem = problem_options(options);
+  how.legs = options.legs;
+  how.gate = gate_of(options);
+  return how;
+}
+
 std::optional<double> gate_of(const ModelRecordingsOptions& options) {
   if (!(options.gate > 0.0)) return std::nullopt;
   return options.gate * options.gate;

@@ -4,7 +4,7 @@
 // What compare, fit and their like have in common: a model, recordings, and what of them to use.
 #pragma once
 
-#include "trussmap/criticism/held_out.hpp"
+#include "trussmap/criticism/comparison.hpp"
 
 #include <string>
 #include <vector>
@@ -35,6 +35,8 @@ struct ModelRecordings {
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
 
 [[nodiscard]] ProblemOptions problem_options(const ModelRecordingsOptions& options);
+/// The same for compare(), with legs and gate.
+[[nodiscard]] ComparisonOptions comparison_options(const ModelRecordingsOptions& options);
 /// --gate as squared standard deviations.
 [[nodiscard]] std::optional<double> gate_of(const ModelRecordingsOptions& options);
 

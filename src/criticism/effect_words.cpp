@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/criticism/effect_words.hpp"
 
+#include "trussmap/effects/catalogue.hpp"
 #include "trussmap/effects/channel.hpp"
+#include "trussmap/effects/shape.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -107,7 +112,196 @@ bool is_wave(const Effect& effect) {
          effect.shape[0].substr(4) == effect.shape[1].substr(4);
 }
 
+/// What a channel's error is called in a name.
+const char* noun_of(Channel channel) {
+  switch (channel) {
+    case Channel::travel:
+      return "travel error";
+    case Channel::left:
+      return "left wheel's error";
+    case Channel::right:
+      return "right wheel's error";
+    case Channel::wheels:
+      return "error of both wheels";
+    case Channel::difference:
+      return "difference of the wheels";
+    case Channel::turn:
+      return "turning error";
+    case Channel::drift:
+      return "heading drift";
+    case Channel::advance:
+      return "travel error per event";
+    case Channel::rotate:
+      return "turning error per event";
+    case Channel::creep:
+      return "sideways slip";
+    case Channel::lever:
+      return "sensor's place ahead";
+    case Channel::lever_left:
+      return "sensor's place to the left";
+    case Channel::compass:
+      return "compass error";
+    case Channel::range:
+      return "range error";
+    case Channel::range_scale:
+      return "error of the range's scale";
+    case Channel::bearing:
+      return "bearing error";
+    case Channel::delay:
+      return "delay of sightings";
+  }
+  return "";
+}
+
+/// "turn rate" for the word turn_rate, and so on.
+std::string variables_in_words(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t space = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, space - at);
+    result += word == "turn_rate"  ? "turn rate"
+              : word == "t"        ? "time"
+              : word == "distance" ? "distance driven"
+                                   : word;
+    if (space < text.size()) result += ' ';
+    at = space + 1;
+  }
+  return result;
+}
+
+/// The number after `before` in a shape: "(x-12.1)", "(x-(-3))".
+std::optional<double> number_after(const std::string& shape, const std::string& before) {
+  std::size_t at = shape.find(before);
+  if (at == std::string::npos) return std::nullopt;
+  at += before.size();
+  if (at < shape.size() && shape[at] == '(') ++at;
+  double value = 0.0;
+  const auto read = std::from_chars(shape.data() + at, shape.data() + shape.size(), value);
+  return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+std::string at_place(const Vector2& place) {
+  return fmt::format(" at x {:.1f} m, y {:.1f} m", place.x(), place.y());
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// "too much or too little", "to the left or right", "larger or smaller than nominal": what both
+/// begin and end with is said once.
+std::string either_way(const std::string& one, const std::string& other) {
+  const std::vector<std::string> a = words_of(one);
+  const std::vector<std::string> b = words_of(other);
+  const std::size_t most = std::min(a.size(), b.size());
+  std::size_t begin = 0;
+  while (begin < most && a[begin] == b[begin]) ++begin;
+  if (begin < 2) begin = 0;
+  std::size_t end = 0;
+  while (end + begin < most && a[a.size() - 1 - end] == b[b.size() - 1 - end]) ++end;
+  const auto joined = [](const std::vector<std::string>& words, std::size_t from, std::size_t to) {
+    return fmt::format("{}", fmt::join(words.begin() + static_cast<std::ptrdiff_t>(from),
+                                       words.begin() + static_cast<std::ptrdiff_t>(to), " "));
+  };
+  return joined(a, 0, a.size() - end) + " or " + joined(b, begin, b.size());
+}
+
+/// What an event is, by the shape that counts it.
+std::string event_of(const std::string& shape) {
+  if (shape == "starts") return "each start";
+  if (shape == "spins") return "each turn on the spot";
+  if (shape == "reverses_left") return "each change of direction of the left wheel";
+  if (shape == "reverses_right") return "each change of direction of the right wheel";
+  return "each event";
+}
+
+bool is_plain_factor(const Effect& effect) {
+  return effect.shape == std::vector<std::string>{"1"} && !effect.per_session;
+}
+
 }  // namespace
+
+std::string two_digits(double value) {
+  return std::abs(value) < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::optional<Vector2> place_of(const Effect& effect) {
+  if (effect.shape.size() != 1 || effect.per_session) return std::nullopt;
+  const std::string& shape = effect.shape.front();
+  const std::vector<std::string> names = variables_of(shape);
+  if (names.size() != 2 || !std::all_of(names.begin(), names.end(), [](const std::string& name) {
+        return name == "x" || name == "y";
+      })) {
+    return std::nullopt;
+  }
+  const std::optional<double> x = number_after(shape, "(x-");
+  const std::optional<double> y = number_after(shape, "(y-");
+  return x && y ? std::optional(Vector2(*x, *y)) : std::nullopt;
+}
+
+std::string short_name(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  return entry == nullptr ? name_in_words(effect) : std::string(entry->name);
+}
+
+std::string name_in_words(const Effect& effect) {
+  const std::string& name = effect.name;
+  if (const CatalogueEntry* entry = find_entry(name)) {
+    const std::size_t open = name.rfind(" (");
+    const std::string rest =
+        open == std::string::npos ? "" : name.substr(open + 2, name.size() - open - 3);
+    if (entry->of_covariate() && !rest.empty()) {
+      return fmt::format("{} with {}", entry->name, variables_in_words(rest));
+    }
+    if (const std::optional<double> v0 = number_after(rest, "v0=")) {
+      return fmt::format("{} above {} m/s", entry->name, two_digits(*v0));
+    }
+    const std::optional<double> x = number_after(rest, "x=");
+    const std::optional<double> y = number_after(rest, "y=");
+    const std::optional<double> r = number_after(rest, "r=");
+    if (x && y && r) {
+      return fmt::format("{}{}, radius {} m", entry->name, at_place({*x, *y}), two_digits(*r));
+    }
+    return name;
+  }
+  const std::optional<Channel> channel = parse_channel(effect.channel);
+  if (!channel || !name.starts_with(effect.channel + " ")) return name;
+  const std::string rest = name.substr(effect.channel.size());
+  const std::optional<Vector2> place = place_of(effect);
+  if ((rest == " at a place" || rest == " within a circle") && place) {
+    return noun_of(*channel) + at_place(*place);
+  }
+  if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
+  return noun_of(*channel) + variables_in_words(rest);
+}
+
+std::string size_in_words(const Effect& effect, double least, double most) {
+  const std::optional<Channel> channel = parse_channel(effect.channel);
+  if (!channel) return "";
+  const double extreme = std::abs(least) > std::abs(most) ? least : most;
+  const double other = extreme == least ? most : least;
+  const bool both = extreme * other < 0.0 && std::abs(other) > 0.3 * std::abs(extreme);
+  if (is_plain_factor(effect) && *channel == Channel::turn) {
+    const double larger = 1.0 / (1.0 + extreme) - 1.0;
+    return fmt::format("the wheelbase is {} % {} than nominal",
+                       two_digits(100.0 * std::abs(larger)), larger < 0.0 ? "smaller" : "larger");
+  }
+  const Scale scale = scale_of(*channel);
+  const Phrase phrase = phrase_of(*channel);
+  std::string subject = phrase.subject;
+  const bool event = *channel == Channel::advance || *channel == Channel::rotate;
+  if (event && effect.shape.size() == 1) {
+    subject.replace(0, std::string("each event").size(), event_of(effect.shape.front()));
+  }
+  return fmt::format("{} {}{}{} {}", subject, is_plain_factor(effect) || event ? "" : "up to ",
+                     two_digits(scale.factor * std::abs(extreme)), scale.unit,
+                     both            ? either_way(phrase.more, phrase.less)
+                     : extreme < 0.0 ? phrase.less
+                                     : phrase.more);
+}
 
 std::string in_words(const Effect& effect, const std::vector<double>& sd) {
   const std::optional<Channel> channel = parse_channel(effect.channel);

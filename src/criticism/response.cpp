@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/criticism/response.hpp"
 
+#include "trussmap/criticism/effect_words.hpp"
 #include "trussmap/effects/catalogue.hpp"
 #include "trussmap/effects/shape.hpp"
 
@@ -28,19 +29,30 @@ double in_one_turn(double heading) {
   return rest < 0.0 ? rest + kTurn : rest;
 }
 
-/// The variable in all rows in which a wheel turns, in order.
-std::vector<double> values_of(const std::string& variable, const ModelFit& fit,
+/// The variable as a formula.
+std::string formula_of(const std::string& variable, const Effect& effect) {
+  if (variable != kPlace) return variable;
+  const std::optional<Vector2> place = place_of(effect);
+  if (!place) return {};
+  return fmt::format("sqrt((x-({:.9g}))^2+(y-({:.9g}))^2)", place->x(), place->y());
+}
+
+/// A formula in all rows in which a wheel turns, in order.
+std::vector<double> values_of(const std::string& formula, const ModelFit& fit,
                               const ScoreTest& tests) {
+  for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
+    const RowVariables& rows = tests.context().variables(s, ShapeContext::Instant::middle);
+    for (const std::string& name : variables_of(formula)) {
+      if (!rows.contains(name)) return {};
+    }
+  }
+  const auto all = tests.context().values(formula, ShapeContext::Instant::middle);
   std::vector<double> values;
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
     const Drive& drive = fit.recordings[s].drive;
-    const RowVariables& rows = tests.context().variables(s, ShapeContext::Instant::middle);
-    const auto found = rows.find(variable);
-    if (found == rows.end()) return {};
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       if (drive.left[row] == 0.0 && drive.right[row] == 0.0) continue;
-      values.push_back(variable == "heading" ? in_one_turn(found->second[row])
-                                             : found->second[row]);
+      values.push_back(formula == "heading" ? in_one_turn(all[s][row]) : all[s][row]);
     }
   }
   std::sort(values.begin(), values.end());
@@ -117,8 +129,10 @@ Bins bins_of(const std::string& variable, const std::vector<double>& values) {
 }
 
 /// Least squares by the modes that the data show; bins that no measurement sees are dropped.
-void estimate(std::vector<ResponseBin>& bins, const Score& score, double plausible,
-              const ModelFit& fit, const ScoreTest& tests) {
+/// `traces`: what rivals leave in the measurements, estimated alike.
+void estimate(Response& response, const Score& score, double plausible, const ModelFit& fit,
+              const ScoreTest& tests, const Eigen::MatrixXd& traces) {
+  std::vector<ResponseBin>& bins = response.bins;
   const Eigen::MatrixXd& M = score.projected;
   const Eigen::MatrixXd S = M.transpose() * M;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(S);
@@ -132,8 +146,11 @@ void estimate(std::vector<ResponseBin>& bins, const Score& score, double plausib
     inverse[mode] = 1.0 / modes.eigenvalues()[mode];
     explained += g[mode] * g[mode] * inverse[mode];
   }
-  const double left = fit.adjustment.chi2 - explained;
+  const double left = tests.residuals().squaredNorm() - explained;
   const double dof = static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
+  const Eigen::MatrixXd told = modes.eigenvectors() * inverse.asDiagonal() *
+                               modes.eigenvectors().transpose() * (M.transpose() * traces);
+  response.rivals.resize(static_cast<std::size_t>(traces.cols()));
   const double dispersion = dof > 0.0 ? std::max(1.0, left / dof) : tests.dispersion();
   std::vector<ResponseBin> seen;
   for (Eigen::Index k = 0; k < S.rows(); ++k) {
@@ -142,12 +159,58 @@ void estimate(std::vector<ResponseBin>& bins, const Score& score, double plausib
     ResponseBin bin = bins[static_cast<std::size_t>(k)];
     bin.estimate = -part.dot(inverse.cwiseProduct(g));
     bin.sd = std::sqrt(dispersion * part.dot(inverse.cwiseProduct(part)));
-    if (bin.sd > 0.0) seen.push_back(bin);
+    if (!(bin.sd > 0.0)) continue;
+    seen.push_back(bin);
+    for (Eigen::Index rival = 0; rival < traces.cols(); ++rival) {
+      response.rivals[static_cast<std::size_t>(rival)].emplace_back(bin.at, told(k, rival));
+    }
   }
   bins = std::move(seen);
 }
 
+/// What effects with coefficients add to the measurements, poses and landmarks refitted.
+Eigen::MatrixXd traces_of(const std::vector<Effect>& effects, const ScoreTest& tests) {
+  Eigen::MatrixXd traces =
+      Eigen::MatrixXd::Zero(tests.residuals().size(), static_cast<Eigen::Index>(effects.size()));
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const Eigen::MatrixXd columns = tests.projected(tests.columns(effects[k]));
+    const Eigen::Index count =
+        std::min(columns.cols(), static_cast<Eigen::Index>(effects[k].coefficients.size()));
+    for (Eigen::Index column = 0; column < count; ++column) {
+      traces.col(static_cast<Eigen::Index>(k)) +=
+          effects[k].coefficients[static_cast<std::size_t>(column)] * columns.col(column);
+    }
+  }
+  return traces;
+}
+
 }  // namespace
+
+EffectRange range_of(const Effect& effect, const ShapeContext& context) {
+  const std::size_t sessions = context.recordings().size();
+  const std::vector<double> coefficients = coefficients_of(effect, sessions);
+  EffectRange range;
+  bool first = true;
+  std::vector<std::vector<std::vector<double>>> shapes;
+  for (const std::string& shape : effect.shape) {
+    shapes.push_back(context.values(shape, ShapeContext::Instant::middle));
+  }
+  for (std::size_t s = 0; s < sessions; ++s) {
+    const Drive& drive = context.recordings()[s].drive;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      if (drive.left[row] == 0.0 && drive.right[row] == 0.0) continue;
+      double g = 0.0;
+      for (std::size_t k = 0; k < shapes.size(); ++k) {
+        const std::size_t place = effect.per_session ? s * shapes.size() + k : k;
+        g += coefficients.at(place) * shapes[k][s][row];
+      }
+      range.least = first ? g : std::min(range.least, g);
+      range.most = first ? g : std::max(range.most, g);
+      first = false;
+    }
+  }
+  return range;
+}
 
 std::string natural_variable(const Effect& effect) {
   std::set<std::string> names;
@@ -169,12 +232,18 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
   for (int k = 0; k < kCurvePoints; ++k) at.push_back(low + (high - low) * k / (kCurvePoints - 1));
   std::vector<Vector2> curve;
   for (const double value : at) curve.emplace_back(value, 0.0);
+  const std::optional<Vector2> place = variable == kPlace ? place_of(effect) : std::nullopt;
+  RowVariables variables;
+  if (place) {
+    for (const double value : at) variables["x"].push_back(place->x() + value);
+    variables["y"] = std::vector<double>(at.size(), place->y());
+  } else {
+    variables[variable] = at;
+  }
   for (std::size_t shape = 0; shape < effect.shape.size(); ++shape) {
     for (const std::string& name : variables_of(effect.shape[shape])) {
-      if (name != variable) return {};
+      if (!variables.contains(name)) return {};
     }
-    RowVariables variables;
-    variables[variable] = at;
     try {
       const std::vector<double> f = evaluate_shape(effect.shape[shape], variables);
       for (std::size_t k = 0; k < f.size() && k < curve.size(); ++k) {
@@ -187,16 +256,40 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
   return curve;
 }
 
+namespace {
+
+/// An effect's curve at the level at which its bins show it: where the data do not tell what all
+/// bins have in common, the estimates leave that out, and so does the curve.
+std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
+                              const std::string& variable, const std::vector<Vector2>& told) {
+  if (curve.empty() || told.empty()) return curve;
+  std::vector<double> off;
+  for (const Vector2& bin : told) {
+    const std::vector<Vector2> here = effect_curve(effect, variable, bin.x(), bin.x());
+    if (here.empty()) return curve;
+    off.push_back(bin.y() - here.front().y());
+  }
+  // The median: a bin across a step has a mean of both sides.
+  std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2),
+                   off.end());
+  for (Vector2& point : curve) point.y() += off[off.size() / 2];
+  return curve;
+}
+
+}  // namespace
+
 Response response_along(const std::string& variable, const Effect& effect, const ModelFit& fit,
-                        const ScoreTest& tests) {
+                        const ScoreTest& tests, const std::vector<Effect>& rivals) {
   const ChannelFacts& facts = facts_of(parse_channel(effect.channel).value());
   Response result;
   result.channel = effect.channel;
   result.unit = facts.unit;
   result.variable = variable;
-  const std::vector<double> values = values_of(variable, fit, tests);
+  const std::string formula = formula_of(variable, effect);
+  if (formula.empty()) return result;
+  const std::vector<double> values = values_of(formula, fit, tests);
   if (values.empty()) return result;
-  Bins bins = bins_of(variable, values);
+  Bins bins = bins_of(formula, values);
   if (bins.bins.empty()) return result;
   Effect probe;
   probe.name = effect.channel + " along " + variable;
@@ -204,11 +297,22 @@ Response response_along(const std::string& variable, const Effect& effect, const
   probe.shape = std::move(bins.shapes);
   const std::vector<Score> scores = tests.test({probe});
   result.bins = std::move(bins.bins);
-  estimate(result.bins, scores.front(), facts.plausible, fit, tests);
+  std::vector<Effect> traced = rivals;
+  traced.push_back(effect);
+  estimate(result, scores.front(), facts.plausible, fit, tests, traces_of(traced, tests));
+  const std::vector<Vector2> told = std::move(result.rivals.back());
+  result.rivals.pop_back();
   if (result.bins.empty()) return result;
   const bool round = variable == "heading";
-  result.curve = effect_curve(effect, variable, round ? 0.0 : result.bins.front().at,
-                              round ? kTurn : result.bins.back().at);
+  const double low = round ? 0.0 : result.bins.front().at;
+  const double high = round ? kTurn : result.bins.back().at;
+  result.curve = levelled(effect_curve(effect, variable, low, high), effect, variable, told);
+  for (std::size_t k = 0; k < rivals.size(); ++k) {
+    if (rivals[k].channel != effect.channel || variable == kPlace) continue;
+    std::vector<Vector2> own = levelled(effect_curve(rivals[k], variable, low, high), rivals[k],
+                                        variable, result.rivals[k]);
+    if (!own.empty()) result.rivals[k] = std::move(own);
+  }
   return result;
 }
 

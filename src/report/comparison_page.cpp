@@ -11,30 +11,17 @@
 
 #include <fmt/format.h>
 
+#include "fit_sections.hpp"
+
 namespace trussmap {
 namespace {
 
 constexpr std::size_t kWorst = 12;
 constexpr std::size_t kRoutes = 30;
-constexpr std::size_t kTrends = 12;
-constexpr double kClear = 0.05;
+constexpr double kTelling = 0.05;
 
 std::string against_words(const Trend& trend) {
   return trend.against == "all" ? "everything alike" : trend.against;
-}
-
-PageTable trend_table(const Comparison& result) {
-  PageTable table;
-  table.caption = fmt::format("Trends, strongest first (of {} looked for)", result.trends.size());
-  table.headings = {"error of", "goes with", "explains chi\u00b2", "size (rms)", "p, adjusted"};
-  table.texts = 2;
-  for (const Trend& trend : result.trends) {
-    if (table.rows.size() == kTrends) break;
-    table.rows.push_back({trend.kind, against_words(trend), fmt::format("{:.1f}", trend.score),
-                          shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
-    table.tones.push_back(trend.p_adjusted < kClear ? Tone::bad : Tone::neutral);
-  }
-  return table;
 }
 
 PageTable route_table(const Comparison& result) {
@@ -64,30 +51,6 @@ PageTable outlier_table(const Comparison& result) {
                           probability_text(one.p_adjusted)});
   }
   return table;
-}
-
-PageSection trend_section(const Comparison& result, const std::vector<TrendPicture>& trends) {
-  PageSection section{"What the errors go with", {}};
-  section.blocks.emplace_back(
-      "For every variable, the error that goes with it most. Points are what the recordings show, "
-      "with 95 % intervals; the line is the trend that a score test finds. Points on zero: nothing "
-      "there.");
-  ChartRow charts;
-  for (std::size_t k = 0; k < trends.size(); ++k) {
-    const Trend& trend = trends[k].trend;
-    charts.push_back(response_chart(
-        fmt::format("trend-{}", k + 1),
-        trend.kind + " against " + variable_in_words(trends[k].response.variable),
-        trend.p_adjusted < kClear
-            ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
-                          100.0 * trend.score / std::max(result.chi2, 1e-300),
-                          probability_text(trend.p_adjusted))
-            : fmt::format("No trend to speak of: p {}.", probability_text(trend.p_adjusted)),
-        trends[k].response, "trend"));
-  }
-  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
-  section.blocks.emplace_back(trend_table(result));
-  return section;
 }
 
 }  // namespace
@@ -123,7 +86,7 @@ std::string comparison_verdict(const Comparison& result) {
       std::sqrt(result.misfit()));
   if (!held.empty()) text += ", and legs that it has not seen end " + held + " off";
   text += ".";
-  if (!result.trends.empty() && result.trends.front().p_adjusted < kClear) {
+  if (!result.trends.empty() && result.trends.front().p_adjusted < kTelling) {
     const Trend& first = result.trends.front();
     text += fmt::format(
         " Most telling: the {} error{} ({}).", first.kind,
@@ -155,14 +118,16 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
   page.notes.insert(page.notes.end(), result.warnings.begin(), result.warnings.end());
   if (!result.consistent) {
     page.notes.emplace_back(
-        "What to do next: put the effect that the strongest trend speaks of into the model "
-        "(trussmap add) and estimate it (trussmap fit).");
+        "What to do next: give trussmap diagnose the same recordings and model. It names the "
+        "effect "
+        "behind the strongest trend, how large it is, what else it could be, and what to drive to "
+        "tell.");
   }
   page.sections.push_back({"The map as a truss",
                            {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
                                                  result.routes, result.misfit()),
                                      worst_chart("worst-legs", result.worst, kWorst)}}});
-  page.sections.push_back(trend_section(result, trends));
+  page.sections.push_back(trend_section("What the errors go with", result, trends));
   page.sections.push_back({"Is the noise right?", {}});
   ChartRow noise{source_chart("noise", {{"", result.sources}})};
   if (!result.held_out.legs.empty()) {

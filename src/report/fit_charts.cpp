@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/report/fit_charts.hpp"
 
+#include "trussmap/criticism/effect_words.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -44,7 +46,9 @@ ShownUnit variable_unit(const std::string& variable) {
   if (variable == "speed") return {1.0, "m/s"};
   if (variable == "acceleration") return {1.0, "m/s\u00b2"};
   if (variable == "t") return {1.0, "s"};
-  if (variable == "distance" || variable == "x" || variable == "y") return {1.0, "m"};
+  if (variable == "distance" || variable == "x" || variable == "y" || variable == kPlace) {
+    return {1.0, "m"};
+  }
   return {1.0, ""};
 }
 
@@ -80,13 +84,14 @@ ShownUnit shown_unit(const std::string& unit) {
 
 std::string shown(double value, const std::string& unit) {
   const ShownUnit as = shown_unit(unit);
-  return fmt::format("{:.2g}{}{}", as.factor * value, as.name == "\u00b0" ? "" : " ", as.name);
+  return two_digits(as.factor * value) + (as.name.starts_with("\u00b0") ? "" : " ") + as.name;
 }
 
 std::string variable_in_words(const std::string& variable) {
   return variable == "turn_rate"  ? "turn rate"
          : variable == "t"        ? "time"
          : variable == "distance" ? "distance driven"
+         : variable == kPlace     ? "distance from its place"
                                   : variable;
 }
 
@@ -105,6 +110,9 @@ std::string channel_in_words(const std::string& channel) {
   if (channel == "bearing") return "bearings too large by";
   if (channel == "lever") return "sensor ahead by";
   if (channel == "lever_left") return "sensor to the left by";
+  if (channel == "advance") return "travel, missing per event";
+  if (channel == "rotate") return "turning, missing per event";
+  if (channel == "delay") return "sightings stamped late by";
   return channel;
 }
 

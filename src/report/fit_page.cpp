@@ -4,14 +4,12 @@
 
 #include "trussmap/criticism/effect_words.hpp"
 #include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
-#include "layers.hpp"
+#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {
@@ -21,14 +19,6 @@ constexpr const char* kAfter = "with them";
 
 std::string millimetres(const Comparison& one) {
   return fmt::format("{:.0f} mm", 1000.0 * one.held_out.arrival_rms);
-}
-
-/// The report's words in the signs that a page has.
-std::string typeset(std::string text) {
-  for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at)) {
-    text.replace(at, 2, "\u00b1");
-  }
-  return text;
 }
 
 std::string verdict(const Comparison& before, const Comparison& after,
@@ -48,97 +38,42 @@ std::string verdict(const Comparison& before, const Comparison& after,
                                   : " Something is still unexplained.");
 }
 
-PageTable effect_table(const std::vector<FittedEffect>& effects) {
-  PageTable table;
-  table.caption = "Coefficients with standard errors";
-  table.headings = {"effect", "channel", "shape", "coefficient", "standard error"};
-  table.texts = 3;
-  for (const FittedEffect& one : effects) {
-    const Effect& effect = one.estimate.effect;
-    for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
-      const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
-      table.rows.push_back({k == 0 ? effect.name : "", effect.channel,
-                            effect.shape[k % effect.shape.size()], text.value, text.error});
-    }
-  }
-  return table;
-}
+constexpr std::size_t kMostRivalsDrawn = 3;
 
-/// Coefficients in standard errors from zero: the only scale that all share.
-Chart strength_chart(const std::vector<FittedEffect>& effects) {
-  Chart chart;
-  chart.id = "coefficients";
-  chart.title = "How sure are the coefficients?";
-  chart.caption =
-      "Each coefficient in standard errors, with its 95 % interval. One whose interval holds 0 is "
-      "not seen by these recordings.";
-  chart.x = {.title = "coefficient over its standard error", .zero = true};
-  chart.layers.push_back({LayerKind::upright, "", {{"no effect", {0.0}}}, "faint"});
-  ChartLayer layer{LayerKind::intervals,
-                   "",
-                   {{"coefficient"}, {"standard errors"}, {"95 % from"}, {"to"}, {"value"}, {"sd"}},
-                   "1"};
-  for (const FittedEffect& one : effects) {
-    for (std::size_t k = 0; k < one.estimate.effect.coefficients.size(); ++k) {
-      const double sd = one.estimate.sd[k];
-      if (!(sd > 0.0) || !std::isfinite(sd)) continue;
-      const Effect& effect = one.estimate.effect;
-      const double strength = effect.coefficients[k] / sd;
-      layer.columns[0].texts.push_back(effect.name + " \u00d7 " +
-                                       effect.shape[k % effect.shape.size()]);
-      const double numbers[] = {strength, strength - kNormal95, strength + kNormal95,
-                                effect.coefficients[k], sd};
-      for (std::size_t i = 0; i < 5; ++i) layer.columns[i + 1].numbers.push_back(numbers[i]);
-    }
+/// The first few, with the coefficients that each would have.
+std::vector<Effect> drawn_rivals(const std::vector<LookAlike>& rivals, const ScoreTest& tests) {
+  std::vector<Effect> drawn;
+  for (const LookAlike& one : rivals) {
+    if (drawn.size() == kMostRivalsDrawn) break;
+    drawn.push_back(one.effect);
   }
-  make_unique(layer.columns[0].texts);
-  chart.y.categories = layer.columns[0].texts;
-  chart.height = bars_height(chart.y.categories.size());
-  if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
-  return chart;
-}
-
-PageSection effect_section(const std::vector<FittedEffect>& effects) {
-  PageSection section{"The effects", {}};
-  ChartRow signatures;
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    const FittedEffect& one = effects[k];
-    if (one.response.bins.empty()) continue;
-    Response drawn = one.response;
-    if (drawn.curve.empty()) {
-      drawn.curve = effect_curve(one.estimate.effect, drawn.variable, drawn.bins.front().at,
-                                 drawn.bins.back().at);
-    }
-    signatures.push_back(response_chart(
-        fmt::format("effect-{}", k + 1), one.estimate.effect.name,
-        "Points: the error that the recordings show where the model lacks all effects, with 95 % "
-        "intervals. Line: the effect as fitted. Where they agree, the effect has the right shape.",
-        drawn, "as fitted"));
-  }
-  if (!signatures.empty()) section.blocks.emplace_back(std::move(signatures));
-  section.blocks.emplace_back(ChartRow{strength_chart(effects)});
-  section.blocks.emplace_back(effect_table(effects));
-  return section;
-}
-
-PageTable model_table(const Comparison& before, const Comparison& after) {
-  PageTable table;
-  table.caption = "The two models";
-  table.headings = {"", "chi\u00b2", "degrees of freedom", "p", "held-out legs end off [mm]"};
-  const auto row = [&table](const char* name, const Comparison& one) {
-    table.rows.push_back({name, fmt::format("{:.1f}", one.chi2), std::to_string(one.dof),
-                          probability_text(one.p_value),
-                          one.held_out.legs.empty()
-                              ? "-"
-                              : fmt::format("{:.1f}", 1000.0 * one.held_out.arrival_rms)});
-    table.tones.push_back(one.consistent ? Tone::good : Tone::bad);
-  };
-  row(kBefore, before);
-  row(kAfter, after);
-  return table;
+  const std::vector<Score> scores = tests.test(drawn);
+  for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k].coefficients = scores[k].coefficients;
+  return drawn;
 }
 
 }  // namespace
+
+std::vector<FittedEffect> fitted_effects(const ModelFit& without,
+                                         const std::vector<EffectEstimate>& effects,
+                                         const std::vector<std::vector<LookAlike>>& rivals) {
+  std::vector<FittedEffect> result;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const Effect& effect = effects[k].effect;
+    ScoreTest tests(without);
+    for (std::size_t other = 0; other < effects.size(); ++other) {
+      if (other != k) tests.take_out(tests.columns(effects[other].effect));
+    }
+    FittedEffect one{effects[k], {}, range_of(effect, tests.context()), {}};
+    if (k < rivals.size()) one.rivals = drawn_rivals(rivals[k], tests);
+    const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
+    if (!variable.empty()) {
+      one.response = response_along(variable, effect, without, tests, one.rivals);
+    }
+    result.push_back(std::move(one));
+  }
+  return result;
+}
 
 Page fit_page(const FittedModel& without, const FittedModel& with,
               const std::vector<FittedEffect>& effects, const std::string& subject) {
@@ -164,27 +99,12 @@ Page fit_page(const FittedModel& without, const FittedModel& with,
     for (const std::string& why : one.estimate.not_fitted) page.notes.push_back(why);
   }
   page.notes.insert(page.notes.end(), after.warnings.begin(), after.warnings.end());
-  page.sections.push_back(effect_section(effects));
-  PageSection gain{"What it gains", {}};
-  if (!after.held_out.legs.empty()) {
-    gain.blocks.emplace_back(ChartRow{
-        ladder_chart("ladder", {{kBefore, before.held_out.arrival_rms, before.chi2, before.dof},
-                                {kAfter, after.held_out.arrival_rms, after.chi2, after.dof}}),
-        held_out_chart("held-out", {{kBefore, before.held_out}, {kAfter, after.held_out}})});
-  }
-  gain.blocks.emplace_back(
-      ChartRow{source_chart("noise", {{kBefore, before.sources}, {kAfter, after.sources}})});
-  gain.blocks.emplace_back(model_table(before, after));
-  page.sections.push_back(std::move(gain));
-  page.sections.push_back(
-      {"The map, before and after",
-       {ChartRow{truss_chart("map-before", "Without effects", without.map, before.routes,
-                             before.misfit()),
-                 truss_chart("map-after", "With them", with.map, after.routes, after.misfit())}}});
-  page.sections.push_back({"Legs, with the effects",
-                           {ChartRow{legs_chart("stretch", after.worst, LegError::stretch),
-                                     legs_chart("orientation", after.worst, LegError::orientation)},
-                            ChartRow{worst_chart("worst-legs", after.worst, 12)}}});
+  const NamedModel given{kBefore, without};
+  const NamedModel fitted{kAfter, with};
+  page.sections.push_back(effect_section("The effects", effects));
+  page.sections.push_back(gain_section(given, fitted));
+  page.sections.push_back(maps_section(given, fitted));
+  page.sections.push_back(legs_section("Legs, with the effects", after));
   return page;
 }
 

@@ -14,7 +14,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kDegreesTurned = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostTours = 250;  // drawn
 
 struct Look {
@@ -163,7 +163,7 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
       "After {} tours routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
       "askew, {:.1f} times better than single measurements ({:.2f} %).",
       result.tours.size(), 100.0 * elastic.stretch_error.mean,
-      kDegrees * elastic.orientation_error.mean,
+      kDegreesTurned * elastic.orientation_error.mean,
       raw.stretch_error.mean / std::max(elastic.stretch_error.mean, 1e-12),
       100.0 * raw.stretch_error.mean);
   page.facts = {
@@ -179,7 +179,8 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
   }
   const Quantity quantities[] = {
       {"stretch", "Routes too long or too short", "mean stretch error [%]", 100.0, stretch},
-      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegrees, orientation},
+      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegreesTurned,
+       orientation},
       {"position", "Landmarks off", "mean position error [m]", 1.0, position}};
   PageSection section{"Errors, tour by tour", {}};
   for (const Quantity& one : quantities) {

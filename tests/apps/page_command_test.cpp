@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,80 @@ TEST(PageInBrowser, OfCompareAndFitIsAlive) {
   const json fitted = page_of(scratch, "fit " + kMaps + "riddle --model " + model);
   expect_alive(fitted, "fit");
   EXPECT_NE(fitted["verdict"].get<std::string>().find("hard iron"), std::string::npos);
+}
+
+/// maps/riddle with a landmark of another name.
+std::string renamed_riddle(const ScratchFolder& scratch, const std::string& landmark,
+                           const std::string& name) {
+  for (const char* file : {"drive.csv", "sightings.csv", "survey.csv", "model.toml"}) {
+    std::string text = testing::text_in(kMaps + "riddle/" + file);
+    for (const auto& [before, after] : {std::pair{",", "\n"}, std::pair{"\n", ","}}) {
+      const std::string old = before + landmark + after;
+      for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + 1)) {
+        text.replace(at + 1, landmark.size(), name);
+      }
+    }
+    scratch.write(std::string("riddle/") + file, text);
+  }
+  const std::string folder = (scratch.path() / "riddle").string();
+  return folder + " --model " + folder + "/model.toml";
+}
+
+bool has_chart(const json& found, const std::string& id) {
+  return std::any_of(found["charts"].begin(), found["charts"].end(),
+                     [&id](const json& chart) { return chart["id"] == id; });
+}
+
+TEST(PageInBrowser, OfDiagnoseSaysWhatIsMissing) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const std::string hostile = "<script>document.title = 1</script>";
+  const json found = page_of(scratch, "diagnose " + renamed_riddle(scratch, "L0_1", hostile));
+  expect_alive(found, "diagnose");
+  const std::string verdict = found["verdict"];
+  EXPECT_NE(verdict.find("Missing: hard iron"), std::string::npos) << verdict;
+  EXPECT_NE(verdict.find("2.9\u00b0"), std::string::npos) << verdict;
+  EXPECT_NE(verdict.find("21 cm"), std::string::npos) << verdict;
+  for (const char* id : {"effect-1", "ladder", "changes", "noise", "map-before", "map-after"}) {
+    EXPECT_TRUE(has_chart(found, id)) << id;
+  }
+  const std::string html = testing::text_in(scratch.path() / "page.html");
+  EXPECT_EQ(html.find(hostile), std::string::npos);
+  EXPECT_NE(html.find("\\u003cscript>document.title = 1"), std::string::npos);
+  EXPECT_TRUE(found["title"].get<std::string>().starts_with("trussmap diagnose")) << found["title"];
+  EXPECT_NE(html.find("body tilt (a body that is tilted"), std::string::npos);
+  EXPECT_NE(html.find("Next drive, to tell: "), std::string::npos);
+  for (const char* part : {"wheels", "turning", "floor", "compass", "sighting", "noise"}) {
+    EXPECT_NE(html.find(std::string("<td>") + part + "</td>"), std::string::npos) << part;
+  }
+}
+
+TEST(PageInBrowser, OfDiscoverHasTheLadder) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const fs::path plots = scratch.path() / "plots";
+  const json found = page_of(scratch, "discover " + kRiddle + " --plots " + plots.string());
+  expect_alive(found, "discover");
+  const std::string verdict = found["verdict"];
+  EXPECT_NE(verdict.find("Found: hard iron"), std::string::npos) << verdict;
+  EXPECT_NE(verdict.find("as good as this robot's noise allows"), std::string::npos) << verdict;
+  EXPECT_TRUE(has_chart(found, "ladder"));
+  for (const json& chart : found["charts"]) {
+    EXPECT_TRUE(fs::exists(plots / (chart["id"].get<std::string>() + ".svg"))) << chart["id"];
+  }
+}
+
+TEST(PageInBrowser, SaysPlainlyThatNothingIsMissing) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "faultless").string();
+  ASSERT_EQ(run_trussmap("simulate --mesh 4x4 --tours 2 --seed 3 --out " + folder).status, 0);
+  const json found = page_of(scratch, "diagnose " + folder + " --model " + folder + "/model.toml");
+  expect_alive(found, "diagnose");
+  EXPECT_TRUE(found["verdict"].get<std::string>().starts_with("Nothing is missing"))
+      << found["verdict"];
+  const std::string html = testing::text_in(scratch.path() / "page.html");
+  EXPECT_NE(html.find("Would have been seen: "), std::string::npos);
 }
 
 TEST(PageInBrowser, OfBuildAndTourIsAlive) {

@@ -14,6 +14,10 @@
 // error is given back. Combinations of bins of which the data tell next to nothing (all alike, say,
 // for a compass with nothing to check its zero) are taken as 0. Standard errors are for the
 // dispersion that the bins leave: small where they explain all there is, large where they do not.
+//
+// A rival is drawn by its own curve, or, where it acts on another channel, by what the same bins
+// would show if it were the truth: where that meets the estimates, these data do not tell the two
+// apart.
 #pragma once
 
 #include "trussmap/criticism/score_test.hpp"
@@ -37,15 +41,29 @@ struct Response {
   std::string variable;  ///< heading (0 to 2 pi), speed, payload_kg ...
   std::vector<ResponseBin> bins;
   std::vector<Vector2> curve;  ///< (variable, g) of the effect; empty where it is no curve
+  /// Of each rival asked of, with its coefficients: (variable, g).
+  std::vector<std::vector<Vector2>> rivals;
 };
+
+/// The variable that stands for the distance from an effect's place, m.
+inline constexpr const char* kPlace = "place";
 
 /// The variable that shows an effect best: the one that its shapes name; for a constant, turn rate
 /// or speed, whichever the channel acts with. Empty for a place.
 [[nodiscard]] std::string natural_variable(const Effect& effect);
 
-/// The effect's channel along a variable, and the curve of its coefficients, if it has any.
+/// The effect's channel along a variable (kPlace: from its place), and the curve of its
+/// coefficients, if it has any. What is taken out of the tests is not in the picture.
 [[nodiscard]] Response response_along(const std::string& variable, const Effect& effect,
-                                      const ModelFit& fit, const ScoreTest& tests);
+                                      const ModelFit& fit, const ScoreTest& tests,
+                                      const std::vector<Effect>& rivals = {});
+
+/// Least and largest g of an effect over all rows in which the robot moves.
+struct EffectRange {
+  double least = 0.0;
+  double most = 0.0;
+};
+[[nodiscard]] EffectRange range_of(const Effect& effect, const ShapeContext& context);
 
 /// g of an effect at values of one variable: empty where it needs others.
 [[nodiscard]] std::vector<Vector2> effect_curve(const Effect& effect, const std::string& variable,

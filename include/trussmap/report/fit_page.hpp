@@ -5,6 +5,7 @@
 #pragma once
 
 #include "trussmap/criticism/comparison.hpp"
+#include "trussmap/criticism/diagnosis.hpp"
 #include "trussmap/criticism/fitted_map.hpp"
 #include "trussmap/criticism/response.hpp"
 #include "trussmap/report/page.hpp"
@@ -20,11 +21,19 @@ struct FittedModel {
   FittedMap map;
 };
 
-/// An effect as fitted, and what the recordings show of it where the model lacks it.
+/// An effect as fitted, and what the recordings show of it where the model lacks it alone.
 struct FittedEffect {
   EffectEstimate estimate;
-  Response response;  ///< of the fit without effects; no bins where there is nothing to draw
+  Response response;  ///< of the fit without it; no bins where there is nothing to draw
+  EffectRange range = {};
+  std::vector<Effect> rivals = {};  ///< of which the response has curves
 };
+
+/// Pictures of effects that a fit lacks, each with the others taken into account. `rivals` may be
+/// shorter: what looks like each.
+[[nodiscard]] std::vector<FittedEffect> fitted_effects(
+    const ModelFit& without, const std::vector<EffectEstimate>& effects,
+    const std::vector<std::vector<LookAlike>>& rivals = {});
 
 [[nodiscard]] Page fit_page(const FittedModel& without, const FittedModel& with,
                             const std::vector<FittedEffect>& effects, const std::string& subject);

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/discovery_page.hpp"
+
+#include "trussmap/criticism/effect_words.hpp"
+#include "trussmap/report/fit_charts.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "diagnosis_tables.hpp"
+#include "fit_sections.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr const char* kModelGiven = "as given";
+constexpr const char* kModelFound = "as found";
+
+std::string step_name(const DiscoveryStep& step) {
+  std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
+  for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
+  return name;
+}
+
+std::vector<LadderStep> ladder_of(const Discovery& discovery) {
+  std::vector<LadderStep> steps;
+  for (const DiscoveryStep& one : discovery.steps) {
+    steps.push_back({step_name(one), one.held_out.arrival_rms, one.chi2, one.dof});
+  }
+  return steps;
+}
+
+PageTable step_table(const Discovery& discovery) {
+  PageTable table;
+  table.caption = "The steps: what each promised before its fit, and what it kept";
+  table.headings = {
+      "model",        "chi\u00b2", "degrees of freedom", "promised chi\u00b2", "legs end off [mm]",
+      "promised [mm]"};
+  for (std::size_t k = 0; k < discovery.steps.size(); ++k) {
+    const DiscoveryStep& step = discovery.steps[k];
+    const bool legs = !step.held_out.legs.empty();
+    table.rows.push_back(
+        {step_name(step), fmt::format("{:.1f}", step.chi2), std::to_string(step.dof),
+         k > 0 ? fmt::format("{:.1f}", discovery.steps[k - 1].chi2 - step.promised_chi2) : "-",
+         legs ? fmt::format("{:.1f}", 1000.0 * step.held_out.arrival_rms) : "-",
+         k > 0 && legs ? fmt::format("{:.1f}", 1000.0 * step.promised.arrival_rms) : "-"});
+  }
+  return table;
+}
+
+std::string found_verdict(const Discovery& discovery, const DiscoveryPictures& pictures) {
+  const auto& effects = pictures.effects;
+  const Comparison& now = pictures.found.comparison;
+  if (effects.empty()) {
+    const std::string off = now.held_out.legs.empty()
+                                ? ""
+                                : " Legs end " + distance_text(now.held_out.arrival_rms) + " off";
+    if (!discovery.consistent) {
+      return fmt::format(
+                 "Nothing found, and something is unexplained: errors are {:.1f} times what "
+                 "the model's noise allows.",
+                 std::sqrt(now.misfit())) +
+             (off.empty() ? "" : off + ".");
+    }
+    return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
+                       discovery.last.tried) +
+           (off.empty() ? "" : off + ", as good as this robot's noise allows.");
+  }
+  std::string text = "Found: ";
+  if (effects.size() == 1) {
+    const FittedEffect& only = effects.front();
+    text += name_in_words(only.estimate.effect) + " \u2013 " +
+            typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
+  } else {
+    std::vector<std::string> names;
+    for (const FittedEffect& one : effects) names.push_back(name_in_words(one.estimate.effect));
+    text += listed(names);
+  }
+  const std::string gain =
+      gain_sentence(pictures.given.comparison, now, effects.size() == 1 ? "it" : "them");
+  if (!gain.empty()) return text + ". " + gain;
+  return text + (is_explained(now) ? ". The model now explains the measurements."
+                                   : ". Something is still unexplained.");
+}
+
+std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryPictures& pictures) {
+  std::vector<PageFact> facts;
+  for (const FittedEffect& one : pictures.effects) {
+    const SizeText size = size_text_of(one);
+    facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
+                                    (size.error.empty() ? "" : "; standard error " + size.error)});
+  }
+  const Comparison& given = pictures.given.comparison;
+  const Comparison& found = pictures.found.comparison;
+  const Tone tone = is_explained(found) ? Tone::good : Tone::bad;
+  if (!found.held_out.legs.empty()) {
+    const double off = given.held_out.arrival_rms;
+    const double now = found.held_out.arrival_rms;
+    if (!pictures.effects.empty()) {
+      facts.push_back(
+          {distance_text(off, now), "legs that no fit has seen ended so far off (rms)", Tone::bad});
+    }
+    facts.push_back(
+        {distance_text(now, off), "legs that no fit has seen now end so far off (rms)", tone});
+  }
+  facts.push_back({fmt::format("{:.2f}", found.misfit()),
+                   "chi\u00b2 per degree of freedom now (1 is right)", tone});
+  if (pictures.effects.empty()) {
+    facts.push_back({std::to_string(discovery.last.tried), "changes to the model tried"});
+  }
+  return facts;
+}
+
+std::vector<std::string> found_notes(const Discovery& discovery, const DiscoveryPictures& pictures,
+                                     const std::vector<std::vector<LookAlike>>& rivals) {
+  std::vector<std::string> notes;
+  for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
+    const Effect& effect = pictures.effects[k].estimate.effect;
+    if (pictures.effects.size() > 1) notes.push_back(effect_in_words(pictures.effects[k]));
+    notes.push_back(rivals_note(effect, rivals[k]));
+    for (const LookAlike& rival : rivals[k]) {
+      const std::string drive = separating_drive(effect, rival.effect);
+      if (drive.empty()) continue;
+      notes.push_back("Next drive, to tell: " + drive + ".");
+      break;
+    }
+    notes.push_back(cause_note(effect));
+  }
+  if (pictures.effects.empty()) notes.push_back(seen_from_note(pictures.tables));
+  notes.push_back("Stopped there: " + discovery.stopped + ".");
+  for (std::string& note : others_notes(discovery.last)) notes.push_back(std::move(note));
+  std::erase(notes, "");
+  return notes;
+}
+
+}  // namespace
+
+AddedEffects added_effects(const Discovery& discovery) {
+  AddedEffects added;
+  for (const EffectEstimate& one : discovery.fit.effects) {
+    // A place or threshold may have been sought anew since the step: then the name has it.
+    const auto start = [](const std::string& name) { return name.substr(0, name.find(" (x=")); };
+    for (const DiscoveryStep& step : discovery.steps) {
+      if (!step.added || start(step.added->name) != start(one.effect.name)) continue;
+      added.estimates.push_back(one);
+      added.rivals.push_back(step.look_alikes);
+      break;
+    }
+  }
+  return added;
+}
+
+Page discovery_page(const Discovery& discovery, const DiscoveryPictures& pictures,
+                    const std::string& subject) {
+  Page page;
+  page.command = "discover";
+  page.subject = subject;
+  page.verdict = found_verdict(discovery, pictures);
+  page.tone = discovery.consistent ? Tone::good : Tone::bad;
+  page.facts = found_facts(discovery, pictures);
+  page.notes = found_notes(discovery, pictures, added_effects(discovery).rivals);
+  page.sections.push_back({"Part by part", {pictures.tables.parts}});
+  const NamedModel given{kModelGiven, pictures.given};
+  const NamedModel found{kModelFound, pictures.found};
+  if (pictures.effects.empty()) {
+    page.sections.push_back(fit_section(given));
+  } else {
+    PageSection gain = gain_section(given, found, ladder_of(discovery));
+    gain.blocks.emplace_back(step_table(discovery));
+    page.sections.push_back(std::move(gain));
+    page.sections.push_back(effect_section("What was found", pictures.effects));
+    page.sections.push_back(maps_section(given, found));
+  }
+  page.sections.push_back(trend_section("What errors go with, in the model found",
+                                        pictures.found.comparison, pictures.trends));
+  page.sections.push_back(legs_section("Legs, in the model found", pictures.found.comparison));
+  page.sections.push_back(tried_section(discovery.last, pictures.tables));
+  return page;
+}
+
+}  // namespace trussmap

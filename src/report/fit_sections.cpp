@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit_sections.hpp"
+
+#include "trussmap/criticism/effect_words.hpp"
+#include "trussmap/report/fit_charts.hpp"
+#include "trussmap/report/table.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "layers.hpp"
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kTrends = 12;
+constexpr double kClear = 0.05;
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
+    text.replace(at, what.size(), by);
+    at += by.size();
+  }
+}
+
+PageTable effect_table(const std::vector<FittedEffect>& effects) {
+  PageTable table;
+  table.caption = "Coefficients with standard errors";
+  table.headings = {"effect", "channel", "shape", "coefficient", "standard error"};
+  table.texts = 3;
+  for (const FittedEffect& one : effects) {
+    const Effect& effect = one.estimate.effect;
+    for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+      const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
+      table.rows.push_back({k == 0 ? name_in_words(effect) : "", effect.channel,
+                            effect.shape[k % effect.shape.size()], text.value, text.error});
+    }
+  }
+  return table;
+}
+
+/// Coefficients in standard errors from zero: the only scale that all share.
+Chart strength_chart(const std::vector<FittedEffect>& effects) {
+  Chart chart;
+  chart.id = "coefficients";
+  chart.title = "How sure are the coefficients?";
+  chart.caption =
+      "Each coefficient in standard errors, with its 95 % interval. One whose interval holds 0 is "
+      "not seen by these recordings.";
+  chart.x = {.title = "coefficient over its standard error", .zero = true};
+  chart.layers.push_back({LayerKind::upright, "", {{"no effect", {0.0}}}, "faint"});
+  ChartLayer layer{LayerKind::intervals,
+                   "",
+                   {{"coefficient"}, {"standard errors"}, {"95 % from"}, {"to"}, {"value"}, {"sd"}},
+                   "1"};
+  for (const FittedEffect& one : effects) {
+    for (std::size_t k = 0; k < one.estimate.effect.coefficients.size(); ++k) {
+      const double sd = one.estimate.sd[k];
+      if (!(sd > 0.0) || !std::isfinite(sd)) continue;
+      const Effect& effect = one.estimate.effect;
+      const double strength = effect.coefficients[k] / sd;
+      layer.columns[0].texts.push_back(name_in_words(effect) + " \u00d7 " +
+                                       effect.shape[k % effect.shape.size()]);
+      const double numbers[] = {strength, strength - kNormal95, strength + kNormal95,
+                                effect.coefficients[k], sd};
+      for (std::size_t i = 0; i < 5; ++i) layer.columns[i + 1].numbers.push_back(numbers[i]);
+    }
+  }
+  make_unique(layer.columns[0].texts);
+  chart.y.categories = layer.columns[0].texts;
+  chart.height = bars_height(chart.y.categories.size());
+  if (!chart.y.categories.empty()) chart.layers.push_back(std::move(layer));
+  return chart;
+}
+
+std::string trend_goes_with(const Trend& trend) {
+  return trend.against == "all" ? "everything alike" : trend.against;
+}
+
+PageTable trend_table(const Comparison& result) {
+  PageTable table;
+  table.caption = fmt::format("Trends, strongest first (of {} looked for)", result.trends.size());
+  table.headings = {"error of", "goes with", "explains chi\u00b2", "size (rms)", "p, adjusted"};
+  table.texts = 2;
+  for (const Trend& trend : result.trends) {
+    if (table.rows.size() == kTrends) break;
+    table.rows.push_back({trend.kind, trend_goes_with(trend), fmt::format("{:.1f}", trend.score),
+                          shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
+    table.tones.push_back(trend.p_adjusted < kClear ? Tone::bad : Tone::neutral);
+  }
+  return table;
+}
+
+PageTable model_table(const NamedModel& before, const NamedModel& after) {
+  PageTable table;
+  table.caption = "The two models";
+  table.headings = {"", "chi\u00b2", "degrees of freedom", "p", "held-out legs end off [mm]"};
+  for (const NamedModel* named : {&before, &after}) {
+    const Comparison& one = named->model.comparison;
+    table.rows.push_back({named->name, fmt::format("{:.1f}", one.chi2), std::to_string(one.dof),
+                          probability_text(one.p_value),
+                          one.held_out.legs.empty()
+                              ? "-"
+                              : fmt::format("{:.1f}", 1000.0 * one.held_out.arrival_rms)});
+    table.tones.push_back(is_explained(one) ? Tone::good : Tone::bad);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string typeset(std::string text) {
+  replace_all(text, "+-", "\u00b1");
+  replace_all(text, "chi^2", "chi\u00b2");
+  const std::string degrees = " deg";
+  for (std::size_t at = text.find(degrees); at != std::string::npos; at = text.find(degrees, at)) {
+    const std::size_t end = at + degrees.size();
+    if (end < text.size() && std::isalnum(static_cast<unsigned char>(text[end])) != 0) {
+      at = end;
+      continue;
+    }
+    text.replace(at, degrees.size(), "\u00b0");
+  }
+  return text;
+}
+
+std::string distance_text(double metres, double beside) {
+  const double larger = std::max(metres, beside);
+  if (larger < 0.0995) return two_digits(1000.0 * metres) + " mm";
+  if (larger < 0.995) return two_digits(100.0 * metres) + " cm";
+  return two_digits(metres) + " m";
+}
+
+std::string effect_in_words(const FittedEffect& effect) {
+  const Effect& one = effect.estimate.effect;
+  return name_in_words(one) + ": " +
+         typeset(size_in_words(one, effect.range.least, effect.range.most));
+}
+
+bool is_explained(const Comparison& comparison) {
+  return comparison.p_value >= 0.01;
+}
+
+std::string gain_sentence(const Comparison& before, const Comparison& after,
+                          const std::string& it) {
+  if (before.held_out.legs.empty() || after.held_out.legs.empty()) return "";
+  const double off = before.held_out.arrival_rms;
+  const double with = after.held_out.arrival_rms;
+  return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
+                     distance_text(with, off),
+                     is_explained(after) ? ", as good as this robot's noise allows"
+                                         : ", and something is still unexplained");
+}
+
+PageSection effect_section(const std::string& title, const std::vector<FittedEffect>& effects) {
+  PageSection section{title, {}};
+  ChartRow signatures;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const FittedEffect& one = effects[k];
+    if (one.response.bins.empty()) continue;
+    Response drawn = one.response;
+    if (drawn.curve.empty()) {
+      drawn.curve = effect_curve(one.estimate.effect, drawn.variable, drawn.bins.front().at,
+                                 drawn.bins.back().at);
+    }
+    std::vector<NamedCurve> rivals;
+    for (std::size_t rival = 0; rival < drawn.rivals.size(); ++rival) {
+      const Effect& other = one.rivals[rival];
+      const bool same = rival > 0 && other.channel == one.rivals[rival - 1].channel &&
+                        other.shape == one.rivals[rival - 1].shape;
+      if (same) {
+        rivals.back().name += " or " + name_in_words(other);
+      } else {
+        rivals.push_back({name_in_words(other), drawn.rivals[rival]});
+      }
+    }
+    signatures.push_back(response_chart(
+        fmt::format("effect-{}", k + 1), name_in_words(one.estimate.effect),
+        std::string(
+            "Points: the error that the recordings show where the model lacks this effect, with "
+            "95 % intervals. Line: the effect as fitted. Where they agree, the effect has the "
+            "right shape.") +
+            (rivals.empty() ? ""
+                            : " Dashed: what the points would show if it were the other effect "
+                              "instead; the nearer to the points, the harder to tell."),
+        drawn, "as fitted", rivals));
+  }
+  if (!signatures.empty()) section.blocks.emplace_back(std::move(signatures));
+  section.blocks.emplace_back(ChartRow{strength_chart(effects)});
+  section.blocks.emplace_back(effect_table(effects));
+  return section;
+}
+
+PageSection gain_section(const NamedModel& before, const NamedModel& after,
+                         const std::vector<LadderStep>& ladder) {
+  PageSection section{"What it gains", {}};
+  const Comparison& one = before.model.comparison;
+  const Comparison& other = after.model.comparison;
+  if (!other.held_out.legs.empty()) {
+    const std::vector<LadderStep> two{
+        {before.name, one.held_out.arrival_rms, one.chi2, one.dof},
+        {after.name, other.held_out.arrival_rms, other.chi2, other.dof}};
+    section.blocks.emplace_back(ChartRow{
+        ladder_chart("ladder", ladder.empty() ? two : ladder),
+        held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})});
+  }
+  section.blocks.emplace_back(
+      ChartRow{source_chart("noise", {{before.name, one.sources}, {after.name, other.sources}})});
+  section.blocks.emplace_back(model_table(before, after));
+  return section;
+}
+
+PageSection maps_section(const NamedModel& before, const NamedModel& after) {
+  const auto chart = [](const char* id, const NamedModel& one) {
+    std::string title = one.name;
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    return truss_chart(id, title, one.model.map, one.model.comparison.routes,
+                       one.model.comparison.misfit());
+  };
+  return {"The map, before and after",
+          {ChartRow{chart("map-before", before), chart("map-after", after)}}};
+}
+
+PageSection fit_section(const NamedModel& model) {
+  const Comparison& one = model.model.comparison;
+  ChartRow noise{source_chart("noise", {{"", one.sources}})};
+  if (!one.held_out.legs.empty()) noise.push_back(held_out_chart("held-out", {{"", one.held_out}}));
+  return {"The map and the noise",
+          {ChartRow{truss_chart("map", "Map with the forces in its bars", model.model.map,
+                                one.routes, one.misfit())},
+           std::move(noise)}};
+}
+
+PageSection legs_section(const std::string& title, const Comparison& comparison) {
+  return {title,
+          {ChartRow{legs_chart("stretch", comparison.worst, LegError::stretch),
+                    legs_chart("orientation", comparison.worst, LegError::orientation)},
+           ChartRow{worst_chart("worst-legs", comparison.worst, 12)}}};
+}
+
+PageSection trend_section(const std::string& title, const Comparison& result,
+                          const std::vector<TrendPicture>& trends) {
+  PageSection section{title, {}};
+  section.blocks.emplace_back(
+      "For every variable, the error that goes with it most. Points are what the recordings show, "
+      "with 95 % intervals; the line is the trend that a score test finds. Points on zero: nothing "
+      "there.");
+  ChartRow charts;
+  for (std::size_t k = 0; k < trends.size(); ++k) {
+    const Trend& trend = trends[k].trend;
+    charts.push_back(response_chart(
+        fmt::format("trend-{}", k + 1),
+        trend.kind + " against " + variable_in_words(trends[k].response.variable),
+        trend.p_adjusted < kClear
+            ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
+                          100.0 * trend.score / std::max(result.chi2, 1e-300),
+                          probability_text(trend.p_adjusted))
+            : fmt::format("No trend to speak of: p {}.", probability_text(trend.p_adjusted)),
+        trends[k].response, "trend"));
+  }
+  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
+  section.blocks.emplace_back(trend_table(result));
+  return section;
+}
+
+}  // namespace trussmap

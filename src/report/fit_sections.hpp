@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Sections that pages on fitted models have in common.
+#pragma once
+
+#include "trussmap/report/comparison_page.hpp"
+#include "trussmap/report/fit_charts.hpp"
+#include "trussmap/report/fit_page.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// A model with the name that charts and tables call it by.
+struct NamedModel {
+  std::string name;
+  const FittedModel& model;
+};
+
+/// The words of reports with the signs that a page has: "±" and "°".
+[[nodiscard]] std::string typeset(std::string text);
+
+/// "16 mm", "21 cm", "1.3 m". With `beside`, in the unit that suits the larger of the two.
+[[nodiscard]] std::string distance_text(double metres, double beside = 0.0);
+
+/// "hard iron: the compass reads up to 2.9° too much or too little".
+[[nodiscard]] std::string effect_in_words(const FittedEffect& effect);
+
+/// No misfit to speak of, as diagnose and discover count it.
+[[nodiscard]] bool is_explained(const Comparison& comparison);
+
+/// "Without it legs end 21 cm off; with it 1.6 cm, as good as this robot's noise allows." Empty
+/// without held-out legs. `it`: "it", "them".
+[[nodiscard]] std::string gain_sentence(const Comparison& before, const Comparison& after,
+                                        const std::string& it);
+
+/// Each effect as the recordings show it, how sure it is, and its coefficients.
+[[nodiscard]] PageSection effect_section(const std::string& title,
+                                         const std::vector<FittedEffect>& effects);
+
+/// `ladder` may be empty: then it is the two models.
+[[nodiscard]] PageSection gain_section(const NamedModel& before, const NamedModel& after,
+                                       const std::vector<LadderStep>& ladder = {});
+
+/// The map as each of the two has it.
+[[nodiscard]] PageSection maps_section(const NamedModel& before, const NamedModel& after);
+
+/// One model alone: its map, its noise, its held-out legs.
+[[nodiscard]] PageSection fit_section(const NamedModel& model);
+
+/// Every leg, and the worst.
+[[nodiscard]] PageSection legs_section(const std::string& title, const Comparison& comparison);
+
+/// A picture per variable.
+[[nodiscard]] PageSection trend_section(const std::string& title, const Comparison& comparison,
+                                        const std::vector<TrendPicture>& trends);
+
+}  // namespace trussmap
