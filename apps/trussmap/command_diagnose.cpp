@@ -122,17 +122,20 @@ void print_verdict(const Diagnosis& result) {
   }
   for (const Finding& one : result.findings) {
     if (one.status != Status::missing && one.status != Status::negligible) continue;
-    const Effect& effect = one.candidate.effect;
-    fmt::print("{}: {}; {}\n", name_of(one.status), effect.name, in_words(effect, one.sd));
+    Effect effect = one.candidate.effect;
+    effect.coefficients = one.together;
+    fmt::print("{}: {}; {}\n", name_of(one.status), effect.name, in_words(effect, one.together_sd));
     for (const LookAlike& rival : one.look_alikes) {
       fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
                  rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
     }
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
-    fmt::print("  without it legs end {} off, with it {} (rms of {} held-out legs, predicted)\n",
-               length(result.held_out.arrival_rms),
-               length(result.findings.front().held_out.arrival_rms), result.held_out.legs.size());
+    const bool several = result.findings.size() > 1 && !result.findings[1].together.empty();
+    const char* what = several ? "them" : "it";
+    fmt::print("  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n",
+               what, length(result.held_out.arrival_rms), what,
+               length(result.with_missing.arrival_rms), result.held_out.legs.size());
   }
   if (!result.next_drive.empty()) fmt::print("  to tell them apart: {}\n", result.next_drive);
 }
@@ -156,21 +159,35 @@ void print_others(const Diagnosis& result, std::size_t count) {
   }
 }
 
+/// "channel x shape", cut where a curve's formula is longer than a line.
+std::string shape_text(const Effect& effect) {
+  constexpr std::size_t kLongest = 64;
+  std::string text = fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", "));
+  if (text.size() > kLongest) text.replace(kLongest - 3, std::string::npos, "...");
+  return text;
+}
+
+/// What is significant by itself and yet absent is explained by what comes before it.
+std::string status_text(const Finding& one) {
+  if (one.status == Status::absent && one.p_adjusted < 0.05) return "explained by the above";
+  return std::string(name_of(one.status));
+}
+
 void print(const Diagnosis& result, const DiagnoseOptions& options) {
   print_verdict(result);
   TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
                   {},
                   true,
                   2};
-  table.rows.push_back({"best candidates", "channel x shape", "score (dof)", "p, adjusted",
+  table.rows.push_back({"best candidates", "channel x shape", "chi2 less (dof)", "p, adjusted",
                         "held out [mm]", "status"});
   for (std::size_t k = 0; k < std::min(options.list, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
     const Effect& effect = one.candidate.effect;
-    table.rows.push_back(
-        {effect.name, fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", ")),
-         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
-         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), std::string(name_of(one.status))});
+    table.rows.push_back({effect.name, shape_text(effect),
+                          fmt::format("{:.1f} ({})", one.score, one.dof),
+                          probability_text(one.p_adjusted),
+                          fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
   }
   fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
              format_table(table));

@@ -10,6 +10,7 @@
 #include "trussmap/report/fit_page.hpp"
 #include "trussmap/report/table.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -84,7 +85,10 @@ ordered_json json(const FitResult& result) {
 
 void print(const FitResult& result) {
   for (const EffectEstimate& one : result.after.effects) {
-    fmt::print("{}: {}\n", one.effect.name, in_words(one.effect, one.sd));
+    const bool none = std::all_of(one.effect.coefficients.begin(), one.effect.coefficients.end(),
+                                  [](double a) { return a == 0.0; });
+    fmt::print("{}: {}\n", one.effect.name,
+               none && !one.not_fitted.empty() ? "not fitted" : in_words(one.effect, one.sd));
     TextTable table{{Align::left, Align::right, Align::right}, {}, false, 4};
     for (std::size_t k = 0; k < one.effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(one.effect.coefficients[k], one.sd[k]);

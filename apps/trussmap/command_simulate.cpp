@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap simulate: a recording of a wheeled robot on a mesh, with its nominal model.
+#include "trussmap/core/error.hpp"
 #include "trussmap/effects/model.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/model_toml.hpp"
@@ -156,7 +157,13 @@ Simulated simulate(const SimulateOptions& options) {
     if (options.no_survey) result.drive.recording.survey.clear();
     return result;
   } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
+    const std::string what = error.what();
+    for (const Effect& effect : result.effects) {
+      if (effect.line > 0 && what.starts_with(fmt::format("effect \"{}\"", effect.name))) {
+        throw InputError(options.effects.model, effect.line, what);
+      }
+    }
+    throw UsageError(what);
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "effect_options.hpp"
 
+#include "trussmap/core/error.hpp"
 #include "trussmap/effects/catalogue.hpp"
 #include "trussmap/io/model_toml.hpp"
 #include "trussmap/report/table.hpp"
@@ -56,17 +57,24 @@ Effect named_effect(const std::string& option) {
   return effect;
 }
 
-Effect applicable(const Effect& effect) {
+[[noreturn]] void refuse(const Effect& effect, const std::string& file, const std::string& what) {
+  const std::string text = fmt::format("effect \"{}\" {}", effect.name, what);
+  if (effect.line > 0) throw InputError(file, effect.line, text);
+  throw UsageError(text);
+}
+
+Effect applicable(const Effect& effect, const std::string& file) {
   Effect result = resolved(effect);
   if (result.coefficients.empty()) {
-    throw UsageError(
-        fmt::format("effect \"{}\" has no coefficients, expected one per shape", effect.name));
+    refuse(effect, file, "has no coefficients, expected one per shape");
   }
   // A simulated recording is one session, the first.
   if (result.per_session) {
     if (result.coefficients.size() < result.shape.size()) {
-      throw UsageError(fmt::format("effect \"{}\" has {} coefficients, expected {}, one per shape",
-                                   effect.name, result.coefficients.size(), result.shape.size()));
+      refuse(effect, file,
+             fmt::format("has {} coefficient{}, expected {}, one per shape",
+                         result.coefficients.size(), result.coefficients.size() == 1 ? "" : "s",
+                         result.shape.size()));
     }
     result.coefficients.resize(result.shape.size());
     result.per_session = false;
@@ -91,10 +99,13 @@ std::vector<Effect> effects_of(const EffectOptions& options) {
   std::vector<Effect> effects;
   if (!options.model.empty()) effects = read_model(options.model).effects;
   for (const std::string& option : options.named) effects.push_back(named_effect(option));
-  try {
-    for (Effect& effect : effects) effect = applicable(effect);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
+  for (Effect& effect : effects) {
+    try {
+      effect = applicable(effect, options.model);
+    } catch (const std::invalid_argument& error) {
+      if (effect.line > 0) throw InputError(options.model, effect.line, error.what());
+      throw UsageError(error.what());
+    }
   }
   return effects;
 }

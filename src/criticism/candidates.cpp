@@ -32,7 +32,8 @@ struct Spread {
 };
 
 constexpr std::size_t kThinned = 2000;
-constexpr int kRounds = 14;                 // of refining inner values
+constexpr int kQuickRounds = 10;  // of refining inner values
+constexpr int kExactRounds = 7;
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
 
 Spread spread_of(const std::string& name, const ShapeContext& context) {
@@ -367,6 +368,10 @@ class Gatherer {
     const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
     const std::string v = centred ? fmt::format("({}-{})", n, number(u.mean)) : n;
     add(plain(channel, u, Form::line, {v}, n, covariate ? -1.0 : -2.0));
+    if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
+      add(plain(channel, u, Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"},
+                n + " and heading", -3.0));
+    }
     if (u.distinct < 3) return;
     const bool signs = u.two_sided() && n != "x" && n != "y";
     if (signs && !covariate) {
@@ -386,10 +391,6 @@ class Gatherer {
       threshold.pattern = {"max(0, " + n + "-{c})"};
       threshold.inner_names = {"c"};
       take_thresholds(threshold, n);
-    }
-    if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
-      add(plain(channel, u, Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"},
-                n + " and heading", -3.0));
     }
     if (u.distinct < 6) return;
     std::vector<std::string> bells;
@@ -465,13 +466,14 @@ std::vector<Candidate> candidates_for(const ModelFit& fit, const ShapeContext& c
   return Gatherer(fit, context).run();
 }
 
-Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
-  if (candidate.inner.empty()) return candidate;
+namespace {
+
+/// Goes to better inner values, `step` apart, and halves the step where there are none.
+Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vector<double> step,
+                  int rounds, Look look) {
   Candidate best = candidate;
-  double score = tests.test({candidate.effect}).front().score;
-  std::vector<double> step = candidate.inner_step;
-  for (double& s : step) s *= 0.5;
-  for (int round = 0; round < kRounds; ++round) {
+  double score = tests.test({candidate.effect}, look).front().score;
+  for (int round = 0; round < rounds; ++round) {
     std::vector<Candidate> around;
     std::vector<Effect> effects;
     for (std::size_t k = 0; k < step.size(); ++k) {
@@ -484,7 +486,7 @@ Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
       }
     }
     bool better = false;
-    const std::vector<Score> scores = tests.test(effects);
+    const std::vector<Score> scores = tests.test(effects, look);
     for (std::size_t k = 0; k < scores.size(); ++k) {
       if (scores[k].score <= score * (1.0 + 1e-9)) continue;
       score = scores[k].score;
@@ -495,6 +497,20 @@ Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
     for (double& s : step) s *= 0.5;
   }
   return best;
+}
+
+std::vector<double> times(double factor, std::vector<double> steps) {
+  for (double& step : steps) step *= factor;
+  return steps;
+}
+
+}  // namespace
+
+Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
+  if (candidate.inner.empty()) return candidate;
+  const Candidate near =
+      climbed(tests, candidate, times(0.5, candidate.inner_step), kQuickRounds, Look::quick);
+  return climbed(tests, near, times(0.0625, candidate.inner_step), kExactRounds, Look::exact);
 }
 
 }  // namespace trussmap

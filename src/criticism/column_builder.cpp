@@ -3,6 +3,7 @@
 #include "trussmap/criticism/column_builder.hpp"
 
 #include "trussmap/adjustment/measurement_rows.hpp"
+#include "trussmap/effects/shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,8 +50,9 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
 
 ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
                              const EffectBorder& border, const Eigen::VectorXd& offsets,
-                             const RecordingState& state, const std::vector<double>& weights)
-    : context_(context) {
+                             const RecordingState& state, const std::vector<double>& weights,
+                             double together)
+    : context_(context), together_(together), middles_(context.recordings().size()) {
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k]) * one.whitener;
@@ -61,10 +63,12 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
       }
       const std::vector<PieceRow>& rows = problem.pieces[one.source];
       const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
-      Piece piece{rows_, one.rows, piece_rows_.size(), piece_rows_.size() + rows.size()};
+      Piece piece{rows_, one.rows, idx(one.session), stretches_.size(), 0};
+      const std::size_t first = piece_rows_.size();
       for (std::size_t row = 0; row < rows.size(); ++row) {
-        piece_rows_.push_back({idx(one.session), rows[row].row, -(W * influences[row])});
+        piece_rows_.push_back({rows[row].row, -(W * influences[row])});
       }
+      take_stretches(piece, first);
       pieces_.push_back(piece);
     } else if (one.session >= 0) {
       const ViewPattern view = view_of(border, offsets, one);
@@ -76,17 +80,52 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   }
 }
 
+void ColumnBuilder::take_stretches(Piece& piece, std::size_t first_row) {
+  const Drive& drive = context_.recordings()[piece.session].drive;
+  std::vector<std::size_t>& middles = middles_[piece.session];
+  for (std::size_t k = first_row; k < piece_rows_.size();) {
+    Stretch stretch{piece_rows_[k].row, k, k + 1};
+    if (together_ > 0.0) {
+      double time = duration_of(drive, piece_rows_[k].row);
+      for (; stretch.end < piece_rows_.size(); ++stretch.end) {
+        time += duration_of(drive, piece_rows_[stretch.end].row);
+        if (time > together_) break;
+      }
+      stretch.place = middles.size();
+      middles.push_back(piece_rows_[(stretch.begin + stretch.end) / 2].row);
+    }
+    stretches_.push_back(stretch);
+    k = stretch.end;
+  }
+  piece.end = stretches_.size();
+}
+
+RowVariables ColumnBuilder::thinned(std::size_t session, Instant at) const {
+  RowVariables result;
+  for (const auto& [name, values] : context_.variables(session, at)) {
+    std::vector<double>& some = result[name];
+    some.reserve(middles_[session].size());
+    for (const std::size_t row : middles_[session]) some.push_back(values[row]);
+  }
+  return result;
+}
+
 const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
   const auto found = bases_.find(channel);
   if (found != bases_.end()) return found->second;
-  Eigen::Matrix4Xd basis(4, static_cast<Eigen::Index>(piece_rows_.size()));
-  for (std::size_t k = 0; k < piece_rows_.size(); ++k) {
-    const Row& row = piece_rows_[k];
-    const Drive& drive = context_.recordings()[row.session].drive;
-    const DrivePattern unit = row_pattern(channel, 1.0, context_.travel(row.session, row.row),
-                                          duration_of(drive, row.row), context_.robot().wheelbase);
-    basis.col(static_cast<Eigen::Index>(k)).noalias() =
-        row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+  Eigen::Matrix4Xd basis = Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(stretches_.size()));
+  for (const Piece& piece : pieces_) {
+    const Drive& drive = context_.recordings()[piece.session].drive;
+    for (std::size_t k = piece.begin; k < piece.end; ++k) {
+      for (std::size_t at = stretches_[k].begin; at < stretches_[k].end; ++at) {
+        const Row& row = piece_rows_[at];
+        const DrivePattern unit =
+            row_pattern(channel, 1.0, context_.travel(piece.session, row.row),
+                        duration_of(drive, row.row), context_.robot().wheelbase);
+        basis.col(static_cast<Eigen::Index>(k)).noalias() +=
+            row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+      }
+    }
   }
   return bases_.emplace(channel, std::move(basis)).first->second;
 }
@@ -95,8 +134,16 @@ const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Ins
   const auto key = std::make_pair(shape, at);
   const auto found = values_.find(key);
   if (found != values_.end()) return found->second;
-  if (values_.size() * piece_rows_.size() > kValuesKept) values_.clear();
-  return values_.emplace(key, context_.values(shape, at)).first->second;
+  if (values_.size() * stretches_.size() > kValuesKept) values_.clear();
+  const bool of_rows = at == Instant::middle || at == Instant::end;
+  if (together_ == 0.0 || !of_rows) {
+    return values_.emplace(key, context_.values(shape, at)).first->second;
+  }
+  std::vector<RowVariables>& some = thinned_[at];
+  for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
+  Values result;
+  for (const RowVariables& session : some) result.push_back(evaluate_shape(shape, session));
+  return values_.emplace(key, std::move(result)).first->second;
 }
 
 void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int session,
@@ -105,13 +152,11 @@ void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int se
   const Values& f =
       values(shape, acts_on(channel) == ActsOn::readings ? Instant::end : Instant::middle);
   for (const Piece& piece : pieces_) {
-    if (piece.begin == piece.end) continue;
-    const std::size_t s = piece_rows_[piece.begin].session;
-    if (session >= 0 && s != idx(session)) continue;
-    const std::vector<double>& here = f[s];
+    if (session >= 0 && piece.session != idx(session)) continue;
+    const std::vector<double>& here = f[piece.session];
     Vector4 sum = Vector4::Zero();
     for (std::size_t k = piece.begin; k < piece.end; ++k) {
-      sum += here[piece_rows_[k].row] * units.col(static_cast<Eigen::Index>(k));
+      sum += here[stretches_[k].place] * units.col(static_cast<Eigen::Index>(k));
     }
     for (int row = 0; row < piece.rows; ++row) column[piece.first_row + row] = sum[row];
   }

@@ -42,13 +42,13 @@ struct Tested {
 
 /// Runs score tests chunk by chunk, so that no more than a chunk's columns are held.
 template <typename Visit>
-void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
+void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates, Look look,
                   const Visit& visit) {
   for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
     const std::size_t end = std::min(candidates.size(), first + kChunk);
     std::vector<Effect> effects;
     for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
-    std::vector<Score> scores = tests.test(effects);
+    std::vector<Score> scores = tests.test(effects, look);
     for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
   }
 }
@@ -90,21 +90,26 @@ class Diagnostician {
  private:
   void test_all() {
     const std::vector<Candidate> candidates = candidates_for(fit_, tests_.context());
-    std::map<std::string, std::size_t> family;  // -> tested_
-    visit_scores(tests_, candidates, [&](std::size_t k, Score& score) {
-      ++result_.tried;
-      const Candidate& one = candidates[k];
-      if (!one.family.empty()) {
-        const auto [found, fresh] = family.emplace(one.family, tested_.size());
-        if (!fresh) {
-          Tested& best = tested_[found->second];
-          ++best.tried;
-          if (score.score > best.score.score) take(best, one, score);
-          return;
-        }
-      }
+    result_.tried = static_cast<int>(candidates.size());
+    std::vector<Candidate> members;
+    std::vector<Candidate> tested;
+    for (const Candidate& one : candidates) (one.family.empty() ? tested : members).push_back(one);
+    struct Best {
+      std::size_t member = 0;
+      double score = -1.0;
+      int tried = 0;
+    };
+    std::map<std::string, Best> families;
+    visit_scores(tests_, members, Look::quick, [&](std::size_t k, const Score& score) {
+      Best& best = families[members[k].family];
+      ++best.tried;
+      if (score.score > best.score) best = {k, score.score, best.tried};
+    });
+    for (const auto& [name, best] : families) tested.push_back(members[best.member]);
+    visit_scores(tests_, tested, Look::exact, [&](std::size_t k, Score& score) {
       tested_.emplace_back();
-      take(tested_.back(), one, score);
+      take(tested_.back(), tested[k], score);
+      if (!tested[k].family.empty()) tested_.back().tried = families[tested[k].family].tried;
     });
   }
 
@@ -120,6 +125,20 @@ class Diagnostician {
 
   [[nodiscard]] static double dispersion_of(const Score& score, const LocalDispersion& local) {
     return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
+  }
+
+  /// Log of what an effect of unknown size pays for having been fitted: sizes from the smallest
+  /// that shows to a hundred times that are equally likely on a logarithmic scale, so that no unit
+  /// and no belief about a size comes between look-alikes.
+  [[nodiscard]] static double penalty(double score, int dof) {
+    constexpr double kLogRange = 1.3;  // log(2 log(100) / sqrt(2 pi))
+    return dof * (kLogRange + 0.5 * std::log(1.0 + score / std::max(1, dof)));
+  }
+
+  /// The same for inner parameters: found on a grid, then refined.
+  [[nodiscard]] static double inner_penalty(double score, const Tested& one) {
+    return std::log(static_cast<double>(one.tried)) +
+           0.5 * static_cast<double>(one.candidate.inner.size()) * std::log(1.0 + score);
   }
 
   /// p-values against the dispersion that each would leave, as a whole and where it acts; evidence
@@ -146,8 +165,11 @@ class Diagnostician {
       most = std::max(most, std::min(1.0, remaining * one.p_value));
       one.p_adjusted = most;
       remaining -= one.tried;
-      one.evidence = 0.5 * one.score.score / std::max(least, one.dispersion) - one.score.occam -
-                     std::log(static_cast<double>(one.tried)) + one.candidate.log_prior;
+      // What noise in these very rows would claim is a matter of p: an effect whose rows another
+      // effect moves as well is as large as it is.
+      const double net = one.score.score / least;
+      one.evidence = 0.5 * net - penalty(net, one.score.dof) + one.candidate.log_prior;
+      if (!one.candidate.inner.empty()) one.evidence -= inner_penalty(net, one);
       if (one.score.dof == 0) one.evidence = -1e300;
     }
   }
@@ -211,7 +233,7 @@ class Diagnostician {
       candidates.push_back(still[k].candidate);
     }
     const LocalDispersion local(fit, left);
-    visit_scores(left, candidates, [&](std::size_t k, Score& score) {
+    visit_scores(left, candidates, Look::exact, [&](std::size_t k, Score& score) {
       Tested& one = still[places[k]];
       one.dispersion = dispersion_of(score, local);
       drop_columns(score);
@@ -283,7 +305,7 @@ class Diagnostician {
     const std::optional<ModelFit> noisier =
         law != nullptr ? std::optional(with_noise(fit_, tests_, *law)) : std::nullopt;
     const ModelFit& ground = noisier ? *noisier : fit_;
-    ScoreTest left(ground);
+    ScoreTest left = noisier ? ScoreTest(ground) : tests_;
     std::vector<Tested> still = tested_;
     let_others_claim(left, ground, still);
     for (std::size_t k = 0; k < still.size(); ++k) {
@@ -302,13 +324,31 @@ class Diagnostician {
       const auto at = static_cast<std::size_t>(best - still.data());
       missing_.push_back(at);
       const Score whole = tests_.test({tested_[at].candidate.effect}).front();
-      if (missing_.size() == 1) find_look_alikes(whole, at);
       left.take_out(left.columns(tested_[at].candidate.effect));
       append(aside_, whole.projected);
       dof -= whole.dof;
       if (missing_.size() == options_.most_missing) break;
       ask_again(ground, left, still, [](const Tested&) { return true; });
       judge(still, left.residuals().squaredNorm(), dof);
+    }
+    std::stable_sort(missing_.begin(), missing_.end(), [this](std::size_t a, std::size_t b) {
+      return tested_[a].evidence > tested_[b].evidence;
+    });
+    for (const std::size_t one : missing_) look_alikes_.push_back(look_alikes_of(one));
+    estimate_together();
+  }
+
+  /// Sizes of all that is missing, each with the others there.
+  void estimate_together() {
+    for (const std::size_t one : missing_) {
+      ScoreTest others = tests_;
+      for (const std::size_t other : missing_) {
+        if (other != one) others.take_out(tests_.columns(tested_[other].candidate.effect));
+      }
+      Score score = others.test({tested_[one].candidate.effect}).front();
+      if (score.dof == 0) score = tested_[one].score;
+      drop_columns(score);
+      together_.push_back(std::move(score));
     }
   }
 
@@ -318,36 +358,55 @@ class Diagnostician {
     return winner.form != Form::catalogue && winner.form != Form::line && one.form == winner.form;
   }
 
-  void find_look_alikes(const Score& winner, std::size_t at) {
+  [[nodiscard]] std::vector<LookAlike> look_alikes_of(std::size_t at) const {
+    std::vector<LookAlike> alike;
+    const Score winner = tests_.test({tested_[at].candidate.effect}).front();
     Eigen::VectorXd trace = Eigen::VectorXd::Zero(winner.projected.rows());
     for (std::size_t k = 0; k < winner.coefficients.size(); ++k) {
       trace += winner.coefficients[k] * winner.projected.col(static_cast<Eigen::Index>(k));
     }
     const double length = trace.norm();
-    if (length == 0.0) return;
+    if (length == 0.0) return alike;
     std::vector<Candidate> rivals;
     for (std::size_t k = 0; k < tested_.size(); ++k) {
       const Candidate& one = tested_[k].candidate;
       if (k != at && is_rival(one, tested_[at].candidate)) rivals.push_back(one);
     }
-    visit_scores(tests_, rivals, [&](std::size_t k, const Score& score) {
+    visit_scores(tests_, rivals, Look::exact, [&](std::size_t k, const Score& score) {
       if (score.dof == 0) return;
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
       const double cosine = (score.projected * factor.solve(trace)).norm() / length;
-      if (cosine >= kLookAlike) look_alikes_.push_back({rivals[k].effect, std::min(1.0, cosine)});
+      if (cosine >= kLookAlike) alike.push_back({rivals[k].effect, std::min(1.0, cosine)});
     });
-    std::stable_sort(look_alikes_.begin(), look_alikes_.end(),
+    std::stable_sort(alike.begin(), alike.end(),
                      [](const LookAlike& a, const LookAlike& b) { return a.cosine > b.cosine; });
-    if (look_alikes_.size() > kMostLookAlikes) look_alikes_.resize(kMostLookAlikes);
+    if (alike.size() > kMostLookAlikes) alike.resize(kMostLookAlikes);
+    return alike;
+  }
+
+  /// What the effect of such coefficients moves the held-out legs by; empty where not known.
+  [[nodiscard]] static Eigen::VectorXd moves(const Tested& one,
+                                             const std::vector<double>& coefficients) {
+    if (one.slopes.size() == 0) return {};
+    return one.slopes * Eigen::Map<const Eigen::VectorXd>(coefficients.data(), one.slopes.cols());
+  }
+
+  [[nodiscard]] HeldOutFigures predicted(const Eigen::VectorXd& moved) const {
+    return moved.size() == 0 ? figures_of(result_.held_out) : figures_of(legs_->moved(moved));
   }
 
   [[nodiscard]] HeldOutFigures predicted(const Tested& one) const {
-    if (one.slopes.size() == 0) return figures_of(result_.held_out);
-    Eigen::VectorXd a(one.slopes.cols());
-    for (Eigen::Index k = 0; k < a.size(); ++k) {
-      a[k] = one.score.coefficients[static_cast<std::size_t>(k)];
+    return predicted(moves(one, one.score.coefficients));
+  }
+
+  [[nodiscard]] HeldOutFigures predicted_with_missing() const {
+    Eigen::VectorXd moved;
+    for (std::size_t k = 0; k < missing_.size(); ++k) {
+      const Eigen::VectorXd own = moves(tested_[missing_[k]], together_[k].coefficients);
+      if (own.size() == 0) continue;
+      moved = moved.size() == 0 ? own : Eigen::VectorXd(moved + own);
     }
-    return figures_of(legs_->moved(one.slopes * a));
+    return predicted(moved);
   }
 
   /// Relative rise of the arrival error over `floor` that a shape's smallest detectable size makes;
@@ -383,7 +442,9 @@ class Diagnostician {
       return other.effect.name == one.candidate.effect.name &&
              other.effect.shape == one.candidate.effect.shape;
     };
-    if (std::any_of(look_alikes_.begin(), look_alikes_.end(), is_this)) return Status::cannot_tell;
+    for (const std::vector<LookAlike>& rivals : look_alikes_) {
+      if (std::any_of(rivals.begin(), rivals.end(), is_this)) return Status::cannot_tell;
+    }
     return detectable_rise(one, floor) <= kPractical ? Status::absent : Status::cannot_tell;
   }
 
@@ -411,6 +472,7 @@ class Diagnostician {
       if (rank(a) != rank(b)) return rank(a) < rank(b);
       return tested_[a].evidence > tested_[b].evidence;
     });
+    result_.with_missing = predicted_with_missing();
     const double floor = missing_.empty() ? result_.held_out.arrival_rms
                                           : predicted(tested_[missing_.front()]).arrival_rms;
     for (const std::size_t k : order) {
@@ -435,7 +497,11 @@ class Diagnostician {
       finding.tried = one.tried;
       finding.held_out = predicted(one);
       finding.status = status_of(k, finding.held_out, floor);
-      if (!missing_.empty() && k == missing_.front()) finding.look_alikes = look_alikes_;
+      if (rank(k) < missing_.size()) {
+        finding.look_alikes = look_alikes_[rank(k)];
+        finding.together = together_[rank(k)].coefficients;
+        finding.together_sd = together_[rank(k)].sd;
+      }
       result_.findings.push_back(std::move(finding));
     }
     result_.p_value = chi2_p_value(result_.chi2, result_.dof);
@@ -460,9 +526,10 @@ class Diagnostician {
   std::unique_ptr<HeldOutLegs> legs_;
   bool predictable_ = false;
   std::vector<Tested> tested_;
-  std::vector<std::size_t> missing_;  ///< of tested_, best first
-  std::vector<LookAlike> look_alikes_;
-  Eigen::MatrixXd aside_;  ///< projected columns of what is missing
+  std::vector<std::size_t> missing_;                 ///< of tested_, best first
+  std::vector<std::vector<LookAlike>> look_alikes_;  ///< of each that is missing
+  std::vector<Score> together_;                      ///< of each that is missing
+  Eigen::MatrixXd aside_;                            ///< projected columns of what is missing
   Diagnosis result_;
 };
 

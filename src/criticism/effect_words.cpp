@@ -218,6 +218,25 @@ std::string event_of(const std::string& shape) {
   return "each event";
 }
 
+/// ", per m/s of speed": what a coefficient's size is the size of, by its shape.
+std::string per_shape(const std::string& shape) {
+  if (shape == "1") return "";
+  if (shape == "speed") return " per m/s";
+  if (shape == "turn_rate") return " per rad/s turned to the left";
+  if (shape == "abs(turn_rate)") return " per rad/s turned";
+  if (shape == "sign(turn_rate)") {
+    return " when turning to the left, and as much the other way to the right";
+  }
+  if (shape == "acceleration") return " per m/s^2";
+  if (shape == "distance") return " per m driven";
+  if (shape == "t") return " per s";
+  return " per unit of " + shape;
+}
+
+bool is_event(const std::string& shape) {
+  return event_of(shape) != "each event";
+}
+
 bool is_plain_factor(const Effect& effect) {
   return effect.shape == std::vector<std::string>{"1"} && !effect.per_session;
 }
@@ -330,11 +349,25 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
                        phrase.more, effect.shape[0].substr(4, effect.shape[0].size() - 5));
   }
   std::string text;
+  const std::optional<Vector2> place = place_of(effect);
   for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
     const std::string& shape = effect.shape[k % effect.shape.size()];
     text += text.empty() ? "" : "; ";
-    text += sentence(*channel, effect.coefficients[k], sd[k]);
-    if (shape != "1") text += " per unit of " + shape;
+    if (*channel == Channel::compass && shape == "turn_rate") {
+      text += fmt::format("the compass is {} {}",
+                          with_error(1e3 * std::abs(effect.coefficients[k]), 1e3 * sd[k], " ms"),
+                          effect.coefficients[k] > 0.0 ? "early" : "late");
+      continue;
+    }
+    std::string one = sentence(*channel, effect.coefficients[k], sd[k]);
+    if (is_event(shape) && one.starts_with("each event")) {
+      one.replace(0, std::string("each event").size(), event_of(shape));
+    } else if (place) {
+      one += " around" + at_place(*place).substr(3);
+    } else {
+      one += per_shape(shape);
+    }
+    text += one;
     if (effect.per_session) text += fmt::format(" in session {}", k / effect.shape.size());
   }
   return text;

@@ -30,20 +30,24 @@ Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
 
 ScoreTest::ScoreTest(const ModelFit& fit)
     : fit_(fit),
-      clean_(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets_of(fit),
-             fit.adjustment.state),
-      system_(std::make_unique<RecordingSystem>(fit.problem, fit.columns.border)),
-      clean_system_(std::make_unique<RecordingSystem>(clean_.problem, clean_.border)) {
+      clean_(std::make_shared<NoiseFree>(fit.recordings, fit.model, fit.problem, fit.columns.border,
+                                         offsets_of(fit), fit.adjustment.state)),
+      system_(std::make_shared<RecordingSystem>(fit.problem, fit.columns.border)),
+      clean_system_(std::make_shared<RecordingSystem>(clean_->problem, clean_->border)) {
   std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   for (const int k : fit.adjustment.left_out) weights[idx(k)] = 0.0;
   for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
     system->set_weights(weights);
-    system->linearise(system == system_.get() ? fit.adjustment.state : clean_.state,
+    system->linearise(system == system_.get() ? fit.adjustment.state : clean_->state,
                       fit.adjustment.coefficients);
     system->factorise();
   }
-  builder_ = std::make_unique<ColumnBuilder>(clean_.context, clean_.problem, clean_.border,
-                                             offsets_of(fit), clean_.state, weights);
+  const auto builder = [&](double together) {
+    return std::make_shared<ColumnBuilder>(clean_->context, clean_->problem, clean_->border,
+                                           offsets_of(fit), clean_->state, weights, together);
+  };
+  rows_ = builder(0.0);
+  seconds_ = builder(1.0);
   residuals_ = free_of_map(*clean_system_, system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   take_out(clean_system_->border());
@@ -131,8 +135,6 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * S *
                                                              scale.asDiagonal());
   for (Eigen::Index k = 0; k < dof; ++k) result.dof += modes.eigenvalues()[k] > 1e-6 ? 1 : 0;
-  const Eigen::VectorXd pivots = factor.vectorD();
-  result.occam = 0.5 * (pivots.array().log().sum() - prior.array().log().sum());
   result.p_value = chi2_p_value(result.score, result.dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const auto place = static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]);
@@ -153,8 +155,9 @@ Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
   return rows;
 }
 
-std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const {
+std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates, Look look) const {
   const RecordingSystem& system = *clean_system_;
+  ColumnBuilder& builder = look == Look::exact ? *rows_ : *seconds_;
   std::vector<Score> scores;
   scores.reserve(candidates.size());
   for (std::size_t first = 0; first < candidates.size();) {
@@ -162,7 +165,7 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const 
     Eigen::Index count = 0;
     std::size_t next = first;
     while (next < candidates.size() && (next == first || count < kBatch)) {
-      parts.push_back(builder_->columns(candidates[next]));
+      parts.push_back(builder.columns(candidates[next]));
       count += parts.back().cols();
       ++next;
     }
@@ -178,7 +181,7 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates) const 
     for (std::size_t k = first; k < next; ++k) {
       Eigen::MatrixXd& own = parts[k - first];
       const Eigen::Index shapes = own.cols();
-      scores.push_back(score_of(candidates[k], builder_->largest(candidates[k]), std::move(own),
+      scores.push_back(score_of(candidates[k], builder.largest(candidates[k]), std::move(own),
                                 left.middleCols(at, shapes)));
       scores.back().landmarks = -landmark_rows(nodes.middleCols(at, shapes));
       at += shapes;

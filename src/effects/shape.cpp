@@ -17,6 +17,9 @@ double sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
 }
 
+constexpr const char* kLanguage =
+    "+ - * / ^ ( ), numbers, variables, and sin cos tan abs sign min max exp log sqrt";
+
 [[noreturn]] void refuse(const std::string& expression, const std::string& why) {
   throw std::invalid_argument(fmt::format("shape \"{}\" {}", expression, why));
 }
@@ -48,8 +51,29 @@ std::string with_squares(const std::string& expression) {
   return text;
 }
 
+/// muParser knows more than a shape may have: assignments, comparisons, "? :", lists.
+void check_syntax(const std::string& expression) {
+  std::vector<bool> lists;  // per open parenthesis: of min or max
+  std::string word;         // the last
+  for (const char c : expression) {
+    const bool name = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+    if (c == '(') lists.push_back(word == "min" || word == "max");
+    if (c == ')' && !lists.empty()) lists.pop_back();
+    const bool known = name || std::string_view("+-*/^() ").find(c) != std::string_view::npos ||
+                       (c == ',' && !lists.empty() && lists.back());
+    if (!known) {
+      refuse(expression,
+             fmt::format("cannot be read: {} has no meaning there, expected {}",
+                         c == '\n' ? std::string("a line's end") : fmt::format("\"{}\"", c),
+                         kLanguage));
+    }
+    word = name ? word + c : "";
+  }
+}
+
 /// A parser that knows our functions and no others, with the expression set.
 mu::Parser parser_of(const std::string& expression) {
+  check_syntax(expression);
   mu::Parser parser;
   parser.ClearFun();
   parser.ClearConst();
@@ -77,8 +101,7 @@ mu::Parser parser_of(const std::string& expression) {
 std::string reason(const mu::Parser::exception_type& error) {
   std::string text = error.GetMsg();
   while (!text.empty() && (text.back() == '.' || text.back() == '\n')) text.pop_back();
-  return "cannot be read: " + text + ", expected + - * / ^ ( ), numbers, variables, and sin cos " +
-         "tan abs sign min max exp log sqrt";
+  return "cannot be read: " + text + ", expected " + kLanguage;
 }
 
 std::string list(const RowVariables& variables) {

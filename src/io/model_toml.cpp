@@ -3,6 +3,7 @@
 #include "trussmap/io/model_toml.hpp"
 
 #include "trussmap/core/error.hpp"
+#include "trussmap/effects/channel.hpp"
 #include "trussmap/io/atomic_file.hpp"
 #include "trussmap/io/csv.hpp"
 
@@ -150,7 +151,9 @@ class ModelReader {
       }
     }
     check(effect, table);
-    effect.line = static_cast<int>(table.source().begin.line);
+    // What can still be wrong with it is most likely its formula.
+    const toml::node* shape = table.get("shape");
+    effect.line = static_cast<int>((shape != nullptr ? *shape : table).source().begin.line);
     return effect;
   }
 
@@ -167,6 +170,11 @@ class ModelReader {
                (effect.shape.empty() ? "channel but no shape" : "shape but no channel") +
                ", expected both or neither");
     }
+    if (!effect.channel.empty() && !parse_channel(effect.channel)) {
+      fail(table.get("channel")->source(),
+           "effect \"" + effect.name + "\" has channel \"" + effect.channel +
+               "\", which is unknown, expected one of " + channel_names());
+    }
     for (const std::string& shape : effect.shape) {
       if (shape.find_first_not_of(" \t") == std::string::npos) {
         fail(table.source(),
@@ -178,9 +186,10 @@ class ModelReader {
     const bool fits = effect.per_session ? shapes == 0 || coefficients % shapes == 0
                                          : coefficients == 0 || coefficients == shapes;
     if (shapes > 0 && !fits) {
-      fail(table.source(), "effect \"" + effect.name + "\" has " + std::to_string(coefficients) +
-                               " coefficients, expected " + std::to_string(shapes) +
-                               ", one per shape" + (effect.per_session ? ", per session" : ""));
+      fail(table.get("coefficients")->source(),
+           "effect \"" + effect.name + "\" has " + std::to_string(coefficients) +
+               " coefficients, expected " + std::to_string(shapes) + ", one per shape" +
+               (effect.per_session ? ", per session" : ""));
     }
   }
 

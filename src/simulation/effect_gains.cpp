@@ -60,6 +60,15 @@ PathBias bias_of(const ChannelGains& gains, const TrueMotion& motion) {
   bias.pieces = motion.pieces;
   const auto creep = gains.find(Channel::creep);
   if (creep != gains.end()) bias.slip = creep->second;
+  // An event in a spin moves the robot, not its wheels: they would have to turn back for it, which
+  // were an event of its own.
+  const auto advance = gains.find(Channel::advance);
+  if (advance != gains.end()) {
+    for (std::size_t row = 0; row < motion.rows.size(); ++row) {
+      const bool spins = motion.rows[row].activity == Activity::spin;
+      bias.jump.push_back(spins ? advance->second[row] : 0.0);
+    }
+  }
   for (const TrueStop& stop : motion.stops) {
     const std::size_t row = stop.rows == 0 ? 0 : stop.rows - 1;
     bias.sensor.emplace_back(gain(gains, Channel::lever, row),
@@ -121,7 +130,7 @@ std::vector<WheelTravels> wheels_under(const TrueMotion& motion, const ChannelGa
     //   (left + travel) L + (right + travel) R = sum,   (right + turn) R - (left + turn) L = skew
     const double travel = g(Channel::travel);
     const double turn = g(Channel::turn);
-    const double sum = 2.0 * (row.speed * row.duration - g(Channel::advance));
+    const double sum = 2.0 * (row.speed * row.duration + row.jump - g(Channel::advance));
     const double skew = wheelbase * (row.turn_rate * row.duration - g(Channel::rotate) -
                                      g(Channel::drift) * row.duration);
     const double determinant = (left + travel) * (right + turn) + (right + travel) * (left + turn);
@@ -154,9 +163,11 @@ MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk
                                   wheelbase));
   };
   result.gains = gains_now();
-  const bool bends_path = result.gains.contains(Channel::creep) ||
-                          result.gains.contains(Channel::lever) ||
-                          result.gains.contains(Channel::lever_left);
+  const bool bends_path =
+      std::any_of(result.gains.begin(), result.gains.end(), [](const auto& one) {
+        return one.first == Channel::creep || one.first == Channel::advance ||
+               one.first == Channel::lever || one.first == Channel::lever_left;
+      });
   if (!bends_path && rates == Rates::true_motion) return result;
   // Rows keep their number and times from pass to pass, so that gains can be carried over.
   for (int pass = 0; pass < kMostPasses; ++pass) {

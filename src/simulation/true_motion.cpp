@@ -21,6 +21,8 @@
 namespace trussmap {
 namespace {
 
+constexpr int kPasses = 60;
+
 using std::numbers::pi;
 
 int whole_rows(double seconds, double row_duration) {
@@ -98,6 +100,10 @@ class Path {
     return motion_.pieces.back();
   }
 
+  [[nodiscard]] double jump_of(std::size_t row) const {
+    return row < bias_.jump.size() ? bias_.jump[row] : 0.0;
+  }
+
   [[nodiscard]] double slip_of(std::size_t row) const {
     return row < bias_.slip.size() ? bias_.slip[row] : 0.0;
   }
@@ -139,12 +145,12 @@ class Path {
   }
 
   /// The row that ends at the present pose.
-  void add_row(Activity activity, double speed, double turn_rate) {
+  void add_row(Activity activity, double speed, double turn_rate, double jump = 0.0) {
     const double t = time_after(motion_.rows.size() + 1);
     surroundings_.temperature_C = temperature(t);
     const double slip_speed = slip_of(motion_.rows.size()) * speed;
-    motion_.rows.push_back(
-        {t, style_.row_duration, speed, turn_rate, activity, pose_, surroundings_, slip_speed});
+    motion_.rows.push_back({t, style_.row_duration, speed, turn_rate, activity, pose_,
+                            surroundings_, slip_speed, jump});
   }
 
   void rest(double seconds) {
@@ -159,9 +165,24 @@ class Path {
     if (rows == 0 && angle != 0.0) rows = motion_.pieces.back() = 1;
     const double before = pose_.heading;
     for (int k = 1; k <= rows; ++k) {
-      pose_.heading = before + angle * k / rows;
-      add_row(Activity::spin, 0.0, angle / (rows * style_.row_duration));
+      const double heading = before + angle * k / rows;
+      const double jump = jump_of(motion_.rows.size());
+      set_position(pose_.position() + jump * unit_step(pose_.heading, heading));
+      pose_.heading = heading;
+      add_row(Activity::spin, 0.0, angle / (rows * style_.row_duration), jump);
     }
+  }
+
+  /// Where a spin by an angle, which is next, will leave the robot by its jumps, from here.
+  [[nodiscard]] Vector2 jumped(double angle) const {
+    Vector2 sum = Vector2::Zero();
+    const std::size_t piece = motion_.pieces.size();
+    const int rows = piece < bias_.pieces.size() ? bias_.pieces[piece] : 0;
+    for (int k = 0; k < rows; ++k) {
+      const double from = pose_.heading + angle * k / rows;
+      sum += jump_of(motion_.rows.size() + idx(k)) * unit_step(from, from + angle / rows);
+    }
+    return sum;
   }
 
   /// A bend that leaves the leg a leg: not so large that it leads back to where it began.
@@ -186,10 +207,16 @@ class Path {
     const std::vector<double> profile = speed_profile(rows, ramp_rows);
     LegShape shape = draw_shape(profile);
     shape.end = end_with_slip(shape, profile);
-    const Vector2 way = way_to(target, shape);
+    Vector2 way = way_to(target, shape);
+    const auto spin_to = [&] {
+      const double turned = direction(way) - direction(shape.end);
+      return wrap_angle(turned + shape.headings.front() - pose_.heading);
+    };
+    for (int pass = 0; pass < kPasses && !bias_.jump.empty(); ++pass) {
+      way = way_to(target - jumped(spin_to()), shape);
+    }
     const double length = way.norm() / shape.end.norm();
-    const double turned = direction(way) - direction(shape.end);
-    spin(wrap_angle(turned + shape.headings.front() - pose_.heading));
+    spin(spin_to());
 
     const double offset = pose_.heading - shape.headings.front();
     const double speed = length / (rows * dt);
@@ -226,7 +253,7 @@ class Path {
     const Vector2 ahead = arriving_ ? sensor() : Vector2::Zero();
     if (ahead.isZero(0.0)) return straight;
     Vector2 way = straight;
-    for (int pass = 0; pass < 60; ++pass) {
+    for (int pass = 0; pass < kPasses; ++pass) {
       const double arrival = direction(way) - direction(shape.end) + shape.headings.back();
       way = straight - rotation(arrival) * ahead;
     }

@@ -112,19 +112,19 @@ struct BadModel {
 };
 
 TEST(CriticismCommands, WrongEffectsAreNamedWithTheModelsLineAndWriteNothing) {
-  const std::string robot = "[robot]\nwheelbase = 0.34\n\n";  // the effect is on line 4
+  const std::string robot = "[robot]\nwheelbase = 0.34\n\n";  // the effect begins on line 4
   const BadModel cases[] = {
       {"formula", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"sin(\"]\n",
-       ":4: effect \"e\": shape \"sin(\" cannot be read"},
+       ":7: effect \"e\": shape \"sin(\" cannot be read"},
       {"variable", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"payload\"]\n",
-       ":4: effect \"e\": shape \"payload\" names \"payload\", which is unknown, expected one of "},
+       ":7: effect \"e\": shape \"payload\" names \"payload\", which is unknown, expected one of "},
       {"count",
        "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"1\"]\ncoefficients = [1, 2]\n",
-       ":4: effect \"e\" has 2 coefficients, expected 1"},
+       ":8: effect \"e\" has 2 coefficients, expected 1"},
       {"division", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"1/starts\"]\n",
-       ":4: effect \"e\": shape \"1/starts\" "},
+       ":7: effect \"e\": shape \"1/starts\" "},
       {"channel", "[[effect]]\nname = \"e\"\nchannel = \"spin\"\nshape = [\"1\"]\n",
-       ":4: effect \"e\" has channel \"spin\", which is unknown"},
+       ":6: effect \"e\" has channel \"spin\", which is unknown"},
       {"catalogue", "[[effect]]\nname = \"ghosts\"\n",
        ":4: effect \"ghosts\" is not in the catalogue"}};
   for (const BadModel& one : cases) {

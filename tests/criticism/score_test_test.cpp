@@ -61,6 +61,28 @@ TEST(ScoreTest, PromisesWhatARefitTakesOffChi2) {
   }
 }
 
+// A second of driving at a time: nearly the same for what changes little within it, and the very
+// same for a constant.
+TEST(ScoreTest, AQuickLookIsNearTheExactOne) {
+  SimulatedRecording one = simulate_recording({}, 4);  // seed 4
+  widen(one.recording, one.model.robot.wheelbase, -0.02);
+  const ModelFit fit = fit_model({one.recording}, one.model);
+  const ScoreTest tests(fit);
+  const std::string bell = "exp(-((x-4)^2+(y-4)^2)/(2*3^2))";
+  const std::vector<Effect> effects{effect_of("turn", {"1"}), effect_of("lever", {"1"}),
+                                    effect_of("creep", {bell}), effect_of("compass", {bell}),
+                                    effect_of("travel", {"t"})};
+  const std::vector<Score> exact = tests.test(effects);
+  const std::vector<Score> quick = tests.test(effects, Look::quick);
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const bool constant = effects[k].shape.front() == "1";
+    const double near = constant ? 1e-9 : 0.02;
+    EXPECT_NEAR((exact[k].columns - quick[k].columns).norm() / exact[k].columns.norm(), 0.0, near)
+        << effects[k].channel;
+    EXPECT_EQ(exact[k].dof, quick[k].dof);
+  }
+}
+
 TEST(ScoreTest, ManyAtOnceAreTheSameAsOneByOne) {
   const SimulatedRecording one = simulate_recording({}, 5);
   const ModelFit fit = fit_model({one.recording}, one.model);

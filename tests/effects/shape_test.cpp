@@ -49,6 +49,11 @@ TEST(Shape, SaysWhatIsWrong) {
       << complaint("sin(x");
   EXPECT_EQ(complaint("rint(x)").rfind("shape \"rint(x)\" cannot be read: ", 0), 0U);
   EXPECT_EQ(complaint("").rfind("shape \"\" cannot be read: ", 0), 0U);
+  for (const char* other : {"x=3", "x, y", "(x, y)", "x>1", "x>0.5 ? 1 : 0", "x\n+y", "x && y"}) {
+    EXPECT_NE(complaint(other).find("has no meaning there, expected + - * /"), std::string::npos)
+        << complaint(other);
+  }
+  EXPECT_EQ(complaint("min(x, max(y,2))"), "none");
   EXPECT_EQ(complaint("x x").rfind("shape \"x x\" cannot be read: ", 0), 0U);
 }
 

@@ -25,10 +25,12 @@ namespace trussmap {
 class ColumnBuilder {
  public:
   /// Keeps references to context, problem and border. `weights` of the measurements (information);
-  /// `offsets` of the border's coefficients from their references.
+  /// `offsets` of the border's coefficients from their references. `together`: s of driving that
+  /// count as one row, with the variables of its middle, for a quick look; 0: every row by itself.
   ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
                 const EffectBorder& border, const Eigen::VectorXd& offsets,
-                const RecordingState& state, const std::vector<double>& weights);
+                const RecordingState& state, const std::vector<double>& weights,
+                double together = 0.0);
 
   /// One column per coefficient of the effect (resolved), its rows in the order of the problem's
   /// measurements. Throws std::invalid_argument like effect_columns.
@@ -40,14 +42,20 @@ class ColumnBuilder {
 
  private:
   struct Row {
-    std::size_t session = 0;
-    std::size_t row = 0;
+    std::size_t row = 0;                  ///< of the drive
     Matrix4 influence = Matrix4::Zero();  ///< whitened
+  };
+  /// Rows of a piece that share a shape's value.
+  struct Stretch {
+    std::size_t place = 0;  ///< of the value, in its session
+    std::size_t begin = 0;  ///< of piece_rows_
+    std::size_t end = 0;
   };
   struct Piece {
     Eigen::Index first_row = 0;
     int rows = 0;
-    std::size_t begin = 0;  ///< of rows_of_pieces_
+    std::size_t session = 0;
+    std::size_t begin = 0;  ///< of stretches_
     std::size_t end = 0;
   };
   struct View {
@@ -60,6 +68,8 @@ class ColumnBuilder {
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
 
+  void take_stretches(Piece& piece, std::size_t first_row);
+  [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
   const Eigen::Matrix4Xd& basis(Channel channel);
   const Values& values(const std::string& shape, ShapeContext::Instant at);
   double largest(const std::string& shape, ShapeContext::Instant at, int session);
@@ -69,11 +79,15 @@ class ColumnBuilder {
                  Eigen::Ref<Eigen::VectorXd> column);
 
   const ShapeContext& context_;
+  double together_ = 0.0;
   Eigen::Index rows_ = 0;
   std::vector<Row> piece_rows_;
+  std::vector<Stretch> stretches_;
+  std::vector<std::vector<std::size_t>> middles_;  ///< per session, rows that stand for a stretch
   std::vector<Piece> pieces_;
   std::vector<View> views_;
   std::map<Channel, Eigen::Matrix4Xd> bases_;
+  std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
   std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
   std::map<std::tuple<std::string, ShapeContext::Instant, int>, double> largest_;
 };

@@ -11,8 +11,8 @@
 //                against the dispersion that the candidate itself would leave, or against that of
 //                the very rows that speak for it where it is clearly larger: a wrong noise law or
 //                a single bad leg makes no effect (local_dispersion.hpp)
-//   order        evidence: log Bayes factor with the channel's plausible size, and a little more
-//                belief in the catalogue than in a free form
+//   order        evidence: log Bayes factor, sizes equally likely on a logarithmic scale, and a
+//                little more belief in the catalogue than in a free form
 //   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
 //                show as well
 //   absent       where even the smallest detectable size would raise the arrival error by less than
@@ -59,7 +59,10 @@ struct Finding {
   Status status = Status::cannot_tell;
   HeldOutFigures held_out;             ///< predicted, with it added
   std::vector<LookAlike> look_alikes;  ///< of those that are missing
-  int tried = 1;                       ///< members of its family
+  /// Of those that are missing: the coefficients with all that is missing added at once.
+  std::vector<double> together;
+  std::vector<double> together_sd;
+  int tried = 1;  ///< members of its family
 };
 
 struct Unobservable {
@@ -76,6 +79,7 @@ struct Diagnosis {
   double chi2 = 0.0;
   int dof = 0;
   HeldOut held_out;               ///< of the present model
+  HeldOutFigures with_missing;    ///< predicted, with all that is missing added
   std::vector<Finding> findings;  ///< best first
   std::vector<Unobservable> unobservable;
   std::vector<NoiseTest> noise;   ///< best explanation first

@@ -12,8 +12,6 @@
 //   estimate = -(S + P)^-1 g,  sd^2 = diag (S + P)^-1
 //   smallest detectable = sqrt(24.4 / S_kk): 90 % power at p = 0.05/200
 //
-//   score / (2 phi) - log(det(1 + S/P)) / 2: log of the Bayes factor for the effect
-//
 // phi = max(1, chi^2/dof): under a large misfit a smaller map has smaller residuals, and without
 // phi the pure scale would take credit for that (design of score tests: Rao 1948).
 //
@@ -40,7 +38,6 @@ struct Score {
   double score = 0.0;
   int dof = 0;  ///< shapes that can be seen at all
   double p_value = 1.0;
-  double occam = 0.0;                       ///< log(det(1 + S/P)) / 2
   std::vector<double> coefficients;         ///< 0 where unseen
   std::vector<double> sd;                   ///< infinite where unseen
   std::vector<double> smallest_detectable;  ///< of each shape alone; infinite where unseen
@@ -52,21 +49,26 @@ struct Score {
   Eigen::MatrixXd landmarks;  ///< what one unit of each moves the landmarks by, two rows each, m
 };
 
+/// Every row by itself, or a second of driving at a time: a tenth of the work, enough to find the
+/// best of many places or thresholds.
+enum class Look { exact, quick };
+
 class ScoreTest {
  public:
-  /// Keeps a reference to the fit.
+  /// Keeps a reference to the fit. A copy shares all but what was taken out.
   explicit ScoreTest(const ModelFit& fit);
 
   /// Tests several candidates at once (resolved, their coefficients at 0). Throws
   /// std::invalid_argument like effect_columns.
-  [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates) const;
+  [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,
+                                        Look look = Look::exact) const;
 
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
   /// Whitened columns of an effect (resolved), M.
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
-    return builder_->columns(effect);
+    return rows_->columns(effect);
   }
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
@@ -85,7 +87,7 @@ class ScoreTest {
   [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
-  [[nodiscard]] const ShapeContext& context() const { return clean_.context; }
+  [[nodiscard]] const ShapeContext& context() const { return clean_->context; }
 
  private:
   [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
@@ -95,10 +97,11 @@ class ScoreTest {
   [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
 
   const ModelFit& fit_;
-  NoiseFree clean_;
-  std::unique_ptr<RecordingSystem> system_;
-  std::unique_ptr<RecordingSystem> clean_system_;
-  std::unique_ptr<ColumnBuilder> builder_;
+  std::shared_ptr<const NoiseFree> clean_;
+  std::shared_ptr<RecordingSystem> system_;
+  std::shared_ptr<RecordingSystem> clean_system_;
+  std::shared_ptr<ColumnBuilder> rows_;
+  std::shared_ptr<ColumnBuilder> seconds_;  ///< for a quick look
   Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
   Eigen::VectorXd residuals_;
   double dispersion_ = 1.0;

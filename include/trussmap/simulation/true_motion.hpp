@@ -48,6 +48,7 @@ struct TrueRow {
   Pose pose;  ///< at t; heading not wrapped
   Surroundings surroundings;
   double slip_speed = 0.0;  ///< m/s to its left, constant within the row
+  double jump = 0.0;        ///< m ahead beside its speed, all through the row
 };
 
 /// The robot at a landmark.
@@ -69,6 +70,7 @@ struct TrueMotion {
 /// What a path gives way to. Empty lists: to nothing.
 struct PathBias {
   std::vector<double> slip;     ///< per row, sideways (to the left) for every forward metre
+  std::vector<double> jump;     ///< per row: ahead, while it spins on the spot, m
   std::vector<Vector2> sensor;  ///< per stop: what meets the landmark, from the axle; robot axes, m
   std::vector<int> pieces;      ///< rows of each piece, of an earlier path of the same seed
 };
