@@ -217,7 +217,7 @@ void run_compare(const CompareOptions& options) {
   }
   if (options.page.wanted()) {
     add_page(files,
-             comparison_page(result, fitted_map(fit), trend_pictures(result, fit, tests),
+             comparison_page(fitted_model(fit, result), trend_pictures(result, fit, tests),
                              subject_of(options.input.recordings, options.input.model)),
              options.page);
   }

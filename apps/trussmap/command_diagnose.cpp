@@ -211,7 +211,8 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   const ComparisonOptions compared = comparison_options(options.input);
   const ScoreTest tests(fit);
   DiagnosisPictures pictures;
-  pictures.given = {compare(input.recordings, fit.model, compared, fit, tests), fitted_map(fit)};
+  pictures.given =
+      fitted_model(fit, compare(input.recordings, fit.model, compared, fit, tests));
   pictures.trends = trend_pictures(pictures.given.comparison, fit, tests);
   pictures.tables = diagnosis_tables(result, tests.context());
   const std::vector<const Finding*> missing = found_by(result);
@@ -228,8 +229,8 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   pictures.effects = fitted_effects(fit, estimates, rivals);
   if (with) {
     const ScoreTest after(*with);
-    pictures.with = {compare(input.recordings, with->model, compared, *with, after),
-                     fitted_map(*with)};
+    pictures.with =
+        fitted_model(*with, compare(input.recordings, with->model, compared, *with, after));
   }
   return diagnosis_page(result, pictures,
                         subject_of(options.input.recordings, options.input.model));

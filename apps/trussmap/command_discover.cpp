@@ -9,6 +9,7 @@
 #include "trussmap/report/discovery_page.hpp"
 #include "trussmap/report/table.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -101,6 +102,28 @@ void print(const Discovery& result) {
   }
 }
 
+/// The models between the one given and the one found, fitted anew.
+std::vector<FittedStep> models_between(const ModelRecordings& input, const Discovery& result,
+                                       const ModelFit& given, const ModelFitOptions& options,
+                                       const ComparisonOptions& compared) {
+  std::vector<FittedStep> models;
+  Model model = given.model;
+  ModelFitOptions how = options;
+  how.near = &given;
+  for (std::size_t k = 1; k + 1 < result.steps.size(); ++k) {
+    const DiscoveryStep& step = result.steps[k];
+    model.effects.push_back(*step.added);
+    std::erase_if(model.effects, [&step](const Effect& one) {
+      return std::find(step.dropped.begin(), step.dropped.end(), one.name) != step.dropped.end();
+    });
+    const ModelFit fit = fit_model(input.recordings, model, how);
+    const ScoreTest tests(fit);
+    models.push_back({step_name(step), fitted_model(fit, compare(input.recordings, fit.model,
+                                                                 compared, fit, tests))});
+  }
+  return models;
+}
+
 Page page_of(const ModelRecordings& input, const Discovery& result, const DiagnosisOptions& how,
              const DiscoverOptions& options) {
   const ComparisonOptions compared = comparison_options(options.input);
@@ -112,10 +135,11 @@ Page page_of(const ModelRecordings& input, const Discovery& result, const Diagno
   const ScoreTest after(result.fit);
   const AddedEffects added = added_effects(result);
   DiscoveryPictures pictures;
-  pictures.given = {compare(input.recordings, before.model, compared, before, tests),
-                    fitted_map(before)};
-  pictures.found = {compare(input.recordings, result.fit.model, compared, result.fit, after),
-                    fitted_map(result.fit)};
+  pictures.given =
+      fitted_model(before, compare(input.recordings, before.model, compared, before, tests));
+  pictures.between = models_between(input, result, before, given, compared);
+  pictures.found = fitted_model(
+      result.fit, compare(input.recordings, result.fit.model, compared, result.fit, after));
   pictures.effects = fitted_effects(before, added.estimates, added.rivals);
   pictures.trends = trend_pictures(pictures.found.comparison, result.fit, after);
   pictures.tables = diagnosis_tables(result.last, after.context(), pictures.effects);

@@ -117,8 +117,8 @@ void print(const FitResult& result) {
 /// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
 FittedModel shown_model(const ModelRecordings& input, const ModelFit& fit, const ScoreTest& tests,
                         const FitOptions& options) {
-  return {compare(input.recordings, fit.model, comparison_options(options.input), fit, tests),
-          fitted_map(fit)};
+  return fitted_model(
+      fit, compare(input.recordings, fit.model, comparison_options(options.input), fit, tests));
 }
 
 Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {

@@ -96,8 +96,9 @@ std::string comparison_verdict(const Comparison& result) {
   return text;
 }
 
-Page comparison_page(const Comparison& result, const FittedMap& map,
-                     const std::vector<TrendPicture>& trends, const std::string& subject) {
+Page comparison_page(const FittedModel& model, const std::vector<TrendPicture>& trends,
+                     const std::string& subject) {
+  const Comparison& result = model.comparison;
   Page page;
   page.command = "compare";
   page.subject = subject;
@@ -124,8 +125,8 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
         "tell.");
   }
   page.sections.push_back({"The map as a truss",
-                           {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
-                                                 result.routes, result.misfit()),
+                           {ChartRow{truss_chart("map", "Map with the forces in its bars",
+                                                 model.map, result.routes, loudest_force(result)),
                                      worst_chart("worst-legs", result.worst, kWorst)}}});
   page.sections.push_back(trend_section("What the errors go with", result, trends));
   page.sections.push_back({"Is the noise right?", {}});
@@ -134,12 +135,14 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
     noise.push_back(held_out_chart("held-out", {{"", result.held_out}}));
   }
   page.sections.back().blocks.emplace_back(std::move(noise));
+  add_quantiles(page.sections.back(), {{"", model}});
   page.sections.push_back(
       {"Legs and routes",
        {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
                  legs_chart("orientation", result.worst, LegError::orientation)}}});
   if (!result.routes.empty()) page.sections.back().blocks.emplace_back(route_table(result));
   if (!result.outliers.empty()) page.sections.back().blocks.emplace_back(outlier_table(result));
+  move_tables_last(page);
   return page;
 }
 

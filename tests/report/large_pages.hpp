@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A comparison of any size, made up: for the size and speed of its page.
+// Pages of recordings of any size, made up: for their size and speed.
 #pragma once
 
 #include "trussmap/report/comparison_page.hpp"
+#include "trussmap/report/diagnosis_page.hpp"
+#include "trussmap/report/discovery_page.hpp"
+#include "trussmap/report/map_page.hpp"
 
 #include <cmath>
 #include <string>
@@ -13,7 +16,7 @@
 namespace trussmap::testing {
 
 /// So many legs, a fifth as many routes, a tenth as many landmarks.
-inline Page large_comparison_page(int legs) {
+inline FittedModel large_model(int legs) {
   const int across = static_cast<int>(std::ceil(std::sqrt(legs / 10.0)));
   Comparison result;
   result.consistent = false;
@@ -47,6 +50,14 @@ inline Page large_comparison_page(int legs) {
   }
   result.held_out.arrival_rms = 0.02;
   result.sources = {{"wheels", 3.0, 0.1, 100.0}, {"compass", 1.0, 0.1, 100.0}};
+  std::vector<SourceResiduals> residuals{{"wheels", {}}, {"compass", {}}};
+  for (int k = 0; k < 4 * legs; ++k) {
+    residuals[k % 4 == 3 ? 1 : 0].standardised.push_back(8.0 * k / (4.0 * legs) - 4.0);
+  }
+  return {result, map, residuals};
+}
+
+inline std::vector<TrendPicture> large_trends() {
   std::vector<TrendPicture> trends;
   for (const char* variable : {"heading", "speed", "turn_rate", "t", "distance", "payload_kg"}) {
     TrendPicture picture;
@@ -58,10 +69,86 @@ inline Page large_comparison_page(int legs) {
       picture.response.bins.push_back({0.1 * bin, 0.1 * bin, 0.1 * bin + 0.1, 0.01 * bin, 0.003});
       picture.response.curve.emplace_back(0.1 * bin, 0.01 * bin);
     }
-    result.trends.push_back(picture.trend);
     trends.push_back(picture);
   }
-  return comparison_page(result, map, trends, "a large recording");
+  return trends;
+}
+
+inline Page large_comparison_page(int legs) {
+  FittedModel model = large_model(legs);
+  for (const TrendPicture& one : large_trends()) model.comparison.trends.push_back(one.trend);
+  return comparison_page(model, large_trends(), "a large recording");
+}
+
+inline FittedEffect large_effect() {
+  FittedEffect one;
+  one.estimate = {{"hard iron", "compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03}},
+                  {0.001, 0.001},
+                  {}};
+  one.response = large_trends().front().response;
+  one.range = {-0.05, 0.05};
+  return one;
+}
+
+/// Two effects missing, one of them with a rival.
+inline Diagnosis large_diagnosis(int legs) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Diagnosis::Verdict::missing;
+  diagnosis.missing = "hard iron";
+  diagnosis.p_value = 1e-30;
+  diagnosis.tried = 900;
+  diagnosis.held_out = large_model(legs).comparison.held_out;
+  Finding finding;
+  finding.candidate.effect = large_effect().estimate.effect;
+  finding.status = Status::missing;
+  finding.look_alikes = {{{"body tilt", "compass", {"sin(heading)", "cos(heading)"}, {}}, 0.99}};
+  diagnosis.findings = {finding, finding};
+  return diagnosis;
+}
+
+inline Page large_diagnosis_page(int legs) {
+  DiagnosisPictures pictures{
+      large_model(legs), large_model(legs), {large_effect(), large_effect()}, large_trends(), {}};
+  return diagnosis_page(large_diagnosis(legs), pictures, "a large recording");
+}
+
+/// Five models, one after the other.
+inline Page large_discovery_page(int legs) {
+  Discovery discovery;
+  for (int k = 0; k < 5; ++k) {
+    DiscoveryStep step;
+    if (k > 0) step.added = large_effect().estimate.effect;
+    step.chi2 = 1e5 / (k + 1);
+    step.dof = legs;
+    step.held_out = large_model(legs).comparison.held_out;
+    discovery.steps.push_back(step);
+  }
+  discovery.stopped = "nothing more is significant";
+  discovery.last = large_diagnosis(legs);
+  discovery.fit.effects = {large_effect().estimate};
+  DiscoveryPictures pictures;
+  pictures.given = pictures.found = large_model(legs);
+  for (int k = 0; k < 3; ++k) pictures.between.push_back({"+ an effect", large_model(legs)});
+  pictures.effects = {large_effect()};
+  pictures.trends = large_trends();
+  return discovery_page(discovery, pictures, "a large recording");
+}
+
+inline Page large_map_page(int legs) {
+  BuiltMap built;
+  const FittedModel model = large_model(legs);
+  for (const FittedLandmark& one : model.map.landmarks) {
+    built.picture.map.add_landmark(one.name, one.position);
+    built.picture.before[one.name] = one.position + Vector2(1.0, 0.1 * one.position.x());
+    built.picture.truth[one.name] = one.position;
+  }
+  for (const RouteMisfit& one : model.comparison.routes) {
+    built.picture.map.add_route(*built.picture.map.find(one.from), *built.picture.map.find(one.to));
+  }
+  built.method = "elastic";
+  built.legs = legs;
+  built.survey = compare_with_survey(positions_of(built.picture.map), {});
+  return map_page(built, "a large recording");
 }
 
 }  // namespace trussmap::testing
