@@ -18,6 +18,8 @@
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -39,7 +41,7 @@ struct FitResult {
   double predicted = 0.0;  ///< decrease of chi^2, by the score test
 };
 
-FitResult fit_both(const ModelRecordings& input, const FitOptions& options) {
+FitResult fit_both(const ModelRecordings& input, const FitOptions& options, Progress& progress) {
   ModelFitOptions how;
   how.problem = problem_options(options.input);
   how.gate = gate_of(options.input);
@@ -47,9 +49,12 @@ FitResult fit_both(const ModelRecordings& input, const FitOptions& options) {
   Model without = input.model;
   without.effects.clear();
   how.fit_effects = false;
+  progress.next();
   result.before = fit_model(input.recordings, without, how);
   how.fit_effects = true;
+  progress.next();
   result.after = fit_model(input.recordings, input.model, how);
+  progress.next();
   result.held_out_before =
       predict_held_out(input.recordings, result.before, how, options.input.legs);
   result.held_out_after = predict_held_out(input.recordings, result.after, how, options.input.legs);
@@ -84,7 +89,8 @@ ordered_json json(const FitResult& result) {
 
 void print(const FitResult& result) {
   for (const EffectEstimate& one : result.after.effects) {
-    fmt::print("{}: {}\n", one.effect.name, in_words(one.effect, one.sd));
+    fmt::print("{}\n", verdict_text(Mood::good, fmt::format("{}: {}", one.effect.name,
+                                                            in_words(one.effect, one.sd))));
     TextTable table{{Align::left, Align::right, Align::right}, {}, false, 4};
     for (std::size_t k = 0; k < one.effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(one.effect.coefficients[k], one.sd[k]);
@@ -92,7 +98,7 @@ void print(const FitResult& result) {
       table.rows.push_back({one.effect.channel + " x " + shape, text.value,
                             text.error.empty() ? "" : "+- " + text.error});
     }
-    fmt::print("{}", format_table(table));
+    fmt::print("{}", table_text(table));
     for (const std::string& why : one.not_fitted) fmt::print("    {}\n", why);
   }
   const RecordingAdjustment& before = result.before.adjustment;
@@ -107,11 +113,11 @@ void print(const FitResult& result) {
   };
   row("without effects", before, result.held_out_before);
   row("with them", after, result.held_out_after);
-  fmt::print("\n{}", format_table(table));
+  fmt::print("\n{}", table_text(table));
   fmt::print("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n", result.predicted,
              before.chi2 - after.chi2);
   fmt::print("  {}\n", held_out_line(result.held_out_after));
-  for (const std::string& warning : after.warnings) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : after.warnings) fmt::print("{}", warning_text(warning));
 }
 
 /// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
@@ -133,19 +139,28 @@ Page page_of(const ModelRecordings& input, const FitResult& result, const FitOpt
 }
 
 void run_fit(const FitOptions& options) {
+  std::vector<ProgressStep> steps{{"reading", 5},
+                                  {"fitting without effects", 20},
+                                  {"fitting the effects", 30},
+                                  {"predicting held-out legs", 45}};
+  if (options.page.wanted()) steps.push_back({"comparing both", 100});
+  Progress progress(steps);
+  progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
   if (input.model.effects.empty()) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  const FitResult result = fit_both(input, options);
+  const FitResult result = fit_both(input, options, progress);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.after.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
+  progress.next();
   if (options.page.wanted()) add_page(files, page_of(input, result, options), options.page);
   write_files(files);
+  progress.end();
   print(result);
 }
 

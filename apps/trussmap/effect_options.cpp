@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -145,7 +146,7 @@ std::string effects_table(const nlohmann::ordered_json& effects) {
                             effect.at("shape").at(k)});
     }
   }
-  return format_table(table);
+  return table_text(table);
 }
 
 }  // namespace trussmap::app
