@@ -211,7 +211,7 @@ void print(const Comparison& result, const CompareOptions& options) {
 }
 
 void run_compare(const CompareOptions& options) {
-  Progress progress({{"reading", 5}, {"fitting the map", 30}, {"comparing", 65}});
+  Progress progress({{"reading", 1}, {"fitting the map", 4}, {"comparing", 40}});
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
   const ComparisonOptions how = comparison_options(options.input);

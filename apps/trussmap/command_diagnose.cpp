@@ -246,8 +246,8 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
 
 void run_diagnose(const DiagnoseOptions& options) {
   std::vector<ProgressStep> steps{
-      {"reading", 5}, {"fitting the map", 10}, {"looking for what is missing", 85}};
-  if (options.page.wanted()) steps.push_back({"comparing with what is missing", 40});
+      {"reading", 0.5}, {"fitting the map", 2.5}, {"looking for what is missing", 50}};
+  if (options.page.wanted()) steps.push_back({"comparing with what is missing", 50});
   Progress progress(steps);
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);

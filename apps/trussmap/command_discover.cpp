@@ -175,7 +175,7 @@ class Told {
     fits_ = fits;
     if (fits && ++found_ > 1) progress_.insert({kAdding, kLooking});
     progress_.next();
-    progress_.say(what);
+    if (fits) progress_.say(what);
   }
   void page() {
     // Where nothing was found, the two steps of an effect are passed over.
@@ -186,7 +186,7 @@ class Told {
  private:
   static std::vector<ProgressStep> steps(bool page) {
     std::vector<ProgressStep> result{
-        {"reading", 2}, {"fitting the model given", 8}, kLooking, kAdding, kLooking};
+        {"reading", 0.5}, {"fitting the model given", 2.5}, kLooking, kAdding, kLooking};
     if (page) result.push_back({"comparing the models", 60});
     return result;
   }

@@ -139,11 +139,11 @@ Page page_of(const ModelRecordings& input, const FitResult& result, const FitOpt
 }
 
 void run_fit(const FitOptions& options) {
-  std::vector<ProgressStep> steps{{"reading", 5},
-                                  {"fitting without effects", 20},
-                                  {"fitting the effects", 30},
-                                  {"predicting held-out legs", 45}};
-  if (options.page.wanted()) steps.push_back({"comparing both", 100});
+  std::vector<ProgressStep> steps{{"reading", 0.5},
+                                  {"fitting without effects", 2.5},
+                                  {"fitting the effects", 5},
+                                  {"predicting held-out legs", 8}};
+  if (options.page.wanted()) steps.push_back({"comparing both", 50});
   Progress progress(steps);
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);

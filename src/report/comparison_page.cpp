@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "diagnosis_tables.hpp"
 #include "fit_sections.hpp"
 
 namespace trussmap {
@@ -115,14 +116,17 @@ Page comparison_page(const FittedModel& model, const std::vector<TrendPicture>& 
                       {fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
                        "held-out legs end so far off (rms)", page.tone});
   }
-  page.notes = result.advice;
-  page.notes.insert(page.notes.end(), result.warnings.begin(), result.warnings.end());
   if (!result.consistent) {
-    page.notes.emplace_back(
-        "What to do next: give trussmap diagnose the same recordings and model. It names the "
-        "effect "
-        "behind the strongest trend, how large it is, what else it could be, and what to drive to "
-        "tell.");
+    page.answers.push_back(
+        {kNext,
+         "Give trussmap diagnose the same recordings and model. It names the effect behind the "
+         "strongest trend, how large it is, what else it could be, and what to drive to tell."});
+  }
+  for (const std::string& line : result.advice) {
+    page.answers.push_back({"What do these data lack?", capitalised(typeset(line)) + "."});
+  }
+  for (const std::string& line : result.warnings) {
+    page.answers.push_back({"Warnings", capitalised(typeset(line)) + "."});
   }
   page.sections.push_back({"The map as a truss",
                            {ChartRow{truss_chart("map", "Map with the forces in its bars",

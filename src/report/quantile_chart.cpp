@@ -18,13 +18,18 @@ double normal_quantile(std::size_t k, std::size_t count) {
                                (static_cast<double>(k) + 0.5) / static_cast<double>(count));
 }
 
-/// Places in a sorted sample, evenly spread over the axis of quantiles: both ends are among them.
+/// Places in a sorted sample: all, or some evenly spread over the axis of quantiles, both ends
+/// among them.
 std::vector<std::size_t> drawn_places(std::size_t count) {
   std::vector<std::size_t> places;
+  if (count <= kMostPoints) {
+    for (std::size_t k = 0; k < count; ++k) places.push_back(k);
+    return places;
+  }
   const double end = normal_quantile(count - 1, count);
-  const std::size_t points = std::min(count, kMostPoints);
-  for (std::size_t k = 0; k < points; ++k) {
-    const double z = end * (2.0 * static_cast<double>(k) / static_cast<double>(points - 1) - 1.0);
+  for (std::size_t k = 0; k < kMostPoints; ++k) {
+    const double z =
+        end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostPoints - 1) - 1.0);
     const double share = boost::math::cdf(boost::math::normal(), z);
     const auto place = static_cast<std::size_t>(std::clamp(
         std::floor(share * static_cast<double>(count)), 0.0, static_cast<double>(count - 1)));

@@ -85,12 +85,20 @@ void expect_alive(const json& found, const std::string& command) {
   }
 }
 
+bool has_chart(const json& found, const std::string& id) {
+  return std::any_of(found["charts"].begin(), found["charts"].end(),
+                     [&id](const json& chart) { return chart["id"] == id; });
+}
+
 TEST(PageInBrowser, OfCompareAndFitIsAlive) {
   TRUSSMAP_NEEDS_BROWSER();
   const ScratchFolder scratch;
   const json compared = page_of(scratch, "compare " + kRiddle);
   expect_alive(compared, "compare");
   EXPECT_NE(compared["verdict"].get<std::string>().find("does not explain"), std::string::npos);
+  EXPECT_TRUE(has_chart(compared, "quantiles"));
+  EXPECT_NE(testing::text_in(scratch.path() / "page.html").find("<dd>Give trussmap diagnose"),
+            std::string::npos);
   const std::string model = (scratch.path() / "m.toml").string();
   ASSERT_EQ(run_trussmap("add " + kMaps + "riddle/model.toml \"hard iron\" --out " + model).status,
             0);
@@ -114,11 +122,6 @@ std::string renamed_riddle(const ScratchFolder& scratch, const std::string& land
   }
   const std::string folder = (scratch.path() / "riddle").string();
   return folder + " --model " + folder + "/model.toml";
-}
-
-bool has_chart(const json& found, const std::string& id) {
-  return std::any_of(found["charts"].begin(), found["charts"].end(),
-                     [&id](const json& chart) { return chart["id"] == id; });
 }
 
 TEST(PageInBrowser, OfDiagnoseSaysWhatIsMissing) {

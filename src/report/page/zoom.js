@@ -57,10 +57,10 @@ export function addZoom(entry, make) {
   });
   const button = (textContent, label, times) => {
     const made = make('button', {type: 'button', textContent, className: 'zoom'});
-    made.setAttribute('aria-label', `${label} the map "${entry.chart.title}"`);
+    made.setAttribute('aria-label', `${label} the chart "${entry.chart.title}"`);
     made.addEventListener('click', () => zoom(times));
     return made;
   };
   return [button('+', 'Zoom into', STEP), button('\u2212', 'Zoom out of', 1 / STEP),
-          button('Whole map', 'Show the whole of', 1e-9)];
+          button('Show all', 'Show the whole of', 1e-9)];
 }
