@@ -107,8 +107,8 @@ std::string noise_advice(const Comparison& comparison) {
   }
   if (noisy.empty()) return "";
   return fmt::format(
-      "Check the noise in the model: errors are as large as if it were {} what is stated. Correct "
-      "it, and diagnose again.",
+      "Check the noise in the model. Errors beside what it states: {}. Correct it, and diagnose "
+      "again.",
       listed(noisy));
 }
 

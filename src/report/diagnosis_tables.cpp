@@ -368,10 +368,17 @@ std::string named_with_sizes(const std::vector<FittedEffect>& effects) {
 }
 
 std::string sized_in_words(const FittedEffect& effect) {
+  constexpr double kClear = 2.0;  // standard errors
   const SizeText size = size_text_of(effect);
-  return capitalised(effect_in_words(effect)) +
-         (size.error.empty() ? "."
-                             : fmt::format(" ({}, standard error {}).", size.size, size.error));
+  std::string text = capitalised(effect_in_words(effect));
+  if (size.error.empty()) return text + ".";
+  text += fmt::format(" ({}, standard error {})", size.size, size.error);
+  const EffectEstimate& fitted = effect.estimate;
+  bool seen = false;
+  for (std::size_t k = 0; k < fitted.sd.size(); ++k) {
+    seen = seen || std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k];
+  }
+  return text + (seen ? "." : "; beside the others it is hardly seen.");
 }
 
 std::string advised_drive(const std::string& advice) {

@@ -210,7 +210,8 @@ TEST(PageInBrowser, SaysPlainlyThatNothingExplainsTheErrors) {
   EXPECT_NE(verdict.find("no effect explains"), std::string::npos) << verdict;
   EXPECT_NE(verdict.find("More noise than the model states"), std::string::npos) << verdict;
   const std::string html = testing::text_in(scratch.path() / "page.html");
-  EXPECT_NE(html.find("Check the noise in the model: "), std::string::npos);
+  EXPECT_NE(html.find("Check the noise in the model. Errors beside what it states: "),
+            std::string::npos);
 }
 
 TEST(PageInBrowser, SaysPlainlyThatNothingIsMissing) {
