@@ -29,6 +29,7 @@ function(trussmap_page_script variable)
             --charset=ascii --legal-comments=inline --log-level=warning ${aliases}
             --outfile=${script}
     DEPENDS ${source}/page.js ${source}/spec.js ${source}/vega.js ${source}/notice.js
+            ${source}/zoom.js
     COMMENT "Bundling the script of the pages"
     VERBATIM)
   set(${variable} ${script} PARENT_SCOPE)

@@ -17,6 +17,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -43,7 +46,8 @@ struct Run {
 
 std::string table(const Run& run) {
   const PoseGraphAdjustment& r = run.result;
-  std::string text = r.converged ? "adjusted: converged to a minimum\n" : "NOT CONVERGED\n";
+  std::string text = r.converged ? verdict_text(Mood::good, "adjusted: converged to a minimum\n")
+                                 : verdict_text(Mood::bad, "NOT CONVERGED") + "\n";
   const auto row = [&text](std::string_view name, const std::string& value) {
     text += fmt::format("  {:<18}{}\n", name, value);
   };
@@ -58,7 +62,7 @@ std::string table(const Run& run) {
   row("gradient norm", fmt::format("{:.3g}", r.gradient_norm));
   row("started from", r.start);
   row("time", fmt::format("{:.3f} s", run.seconds));
-  for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
+  for (const std::string& warning : r.warnings) text += warning_text(warning);
   return text;
 }
 
@@ -115,15 +119,21 @@ Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
 }
 
 void run_adjust(const AdjustOptions& options) {
+  Progress progress({{"reading", 20}, {"adjusting", 80}});
+  progress.next();
   PoseGraph graph = read_g2o(options.graph);
+  progress.next();
   const Run run = adjust_graph(options, graph);
+  Files files;
   if (!options.out.empty()) {
     for (std::size_t v = 0; v < graph.vertices.size(); ++v) {
       graph.vertices[v].estimate = run.result.estimates[v];
     }
-    write_g2o(graph, options.out);
+    files.emplace_back(options.out, format_g2o(graph));
   }
-  if (!options.json.empty()) write_file(options.json, json(run).dump(2) + "\n");
+  if (!options.json.empty()) files.emplace_back(options.json, json(run).dump(2) + "\n");
+  write_files(files);
+  progress.end();
   fmt::print("{}", table(run));
 }
 

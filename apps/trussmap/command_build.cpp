@@ -30,6 +30,8 @@
 #include "map_files.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -178,7 +180,7 @@ void print_result(const RecordingMap& built, const std::optional<AdjustedMap>& a
     fmt::print("  landmark {} was sighted too seldom to be placed\n", name);
   }
   if (judged_too) print_survey(judged);
-  for (const std::string& warning : warnings) fmt::print("\nwarning: {}\n", warning);
+  for (const std::string& warning : warnings) fmt::print("\n{}", warning_text(warning));
   if (!options.out.empty()) fmt::print("\n  map written to {}\n", options.out);
 }
 
@@ -267,6 +269,9 @@ std::vector<std::string> doubts_of(const RecordingMap& built,
 
 void run_build(const BuildOptions& options) {
   check_usage(options);
+  const bool at_once = options.method == "adjustment";
+  Progress progress({{"reading", 30}, {at_once ? "adjusting" : "building the map", 70}});
+  progress.next();
   std::vector<Recording> recordings;
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
@@ -279,8 +284,9 @@ void run_build(const BuildOptions& options) {
       throw InputError(options.model, 0, error.what());
     }
   }
+  progress.next();
   std::optional<AdjustedMap> adjusted;
-  if (options.method == "adjustment") {
+  if (at_once) {
     adjusted = map_by_adjustment(recordings, model, options.gate.value_or(kAdjustmentGate),
                                  map_options(options));
   }
@@ -325,6 +331,7 @@ void run_build(const BuildOptions& options) {
     add_page(files, map_page(shown, subject_of(options.recordings, options.model)), options.page);
   }
   write_files(files);
+  progress.end();
   print_result(built, adjusted, options, judged_too, judged, warnings);
 }
 

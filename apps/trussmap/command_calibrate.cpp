@@ -25,6 +25,8 @@
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -167,9 +169,14 @@ ordered_json json(const WheelCalibration& found, const HeldOut& held,
 }
 
 /// What the held-out legs say of the calibration: nothing that their scatter does not bear out.
-std::string verdict(const HeldOut& held) {
+struct Verdict {
+  Mood mood = Mood::doubt;
+  std::string text;
+};
+
+Verdict verdict(const HeldOut& held) {
   if (held.legs() == 0) {
-    return "calibrated; no legs with truth could be held out to judge it by\n";
+    return {Mood::doubt, "calibrated; no legs with truth could be held out to judge it by"};
   }
   const std::string figures =
       fmt::format("{} held-out legs end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
@@ -187,15 +194,16 @@ std::string verdict(const HeldOut& held) {
   const double gain = sum / n;
   const double sd = n > 1.0 ? std::sqrt(std::max(0.0, squares / n - gain * gain) / (n - 1.0)) : 0.0;
   if (held.legs() < kFewest || std::abs(gain) < 2.0 * sd) {
-    return "calibrated: " + figures + "; too few legs, or too short, to tell which is better\n";
+    return {Mood::doubt,
+            "calibrated: " + figures + "; too few legs, or too short, to tell which is better"};
   }
-  return (gain > 0.0 ? "calibrated: " : "calibration does not help: ") + figures + "\n";
+  return gain > 0.0 ? Verdict{Mood::good, "calibrated: " + figures}
+                    : Verdict{Mood::bad, "calibration does not help: " + figures};
 }
 
 /// The same as a sentence.
 std::string page_verdict(const HeldOut& held) {
-  std::string sentence = verdict(held);
-  sentence.back() = '.';
+  std::string sentence = verdict(held).text + ".";
   sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
   return sentence;
 }
@@ -228,7 +236,8 @@ std::string text(const TruthAlignment& truth) {
 
 std::string text(const WheelCalibration& found, const HeldOut& held,
                  const std::optional<Tested>& test) {
-  std::string out = verdict(held);
+  const auto [mood, said] = verdict(held);
+  std::string out = verdict_text(mood, said) + "\n";
   TextTable table;
   table.columns = {Align::left, Align::right, Align::left};
   const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
@@ -243,7 +252,7 @@ std::string text(const WheelCalibration& found, const HeldOut& held,
   row("E_s  true / measured travel", found.scale, "");
   row("k    left wheel's noise", found.noise_left, "m^1/2");
   row("k    right wheel's noise", found.noise_right, "m^1/2");
-  out += "\n" + format_table(table);
+  out += "\n" + table_text(table);
   out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n",
                      found.dof > 0 ? found.chi2 / found.dof : 0.0, found.dof);
   if (!found.truth.clocks.empty()) out += text(found.truth);
@@ -253,6 +262,8 @@ std::string text(const WheelCalibration& found, const HeldOut& held,
 }
 
 void run_calibrate(const CalibrateOptions& options) {
+  Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
+  progress.next();
   std::vector<Recording> recordings;
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
@@ -264,7 +275,9 @@ void run_calibrate(const CalibrateOptions& options) {
   HeldOut held;
   std::optional<Tested> test;
   try {
+    progress.next();
     found = calibrate_wheels(recordings, model, calibration_options(options));
+    progress.next();
     held = held_out(recordings, model, options);
     if (!unseen.empty()) test = tested(unseen, model, found.model);
   } catch (const std::invalid_argument& error) {
@@ -282,6 +295,7 @@ void run_calibrate(const CalibrateOptions& options) {
              options.page);
   }
   write_files(files);
+  progress.end();
   fmt::print("{}", text(found, held, test));
 }
 

@@ -16,6 +16,8 @@
 #include "commands.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -129,7 +131,7 @@ void print_trends(const Comparison& result) {
     return;
   }
   fmt::print("\nWhere the residuals go (of {} trends looked for)\n{}", result.trends.size(),
-             format_table(table));
+             table_text(table));
 }
 
 void print_worst(const Comparison& result, std::size_t count) {
@@ -143,7 +145,7 @@ void print_worst(const Comparison& result, std::size_t count) {
                          fmt::format("{:.1f} ({})", leg.chi2, leg.dof),
                          signed_percent(leg.stretch_error), signed_mrad(leg.orientation_error)});
   }
-  if (legs.rows.size() > 1) fmt::print("\nWorst legs\n{}", format_table(legs));
+  if (legs.rows.size() > 1) fmt::print("\nWorst legs\n{}", table_text(legs));
   TextTable routes{
       {Align::left, Align::right, Align::right, Align::right, Align::right, Align::right},
       {},
@@ -158,7 +160,7 @@ void print_worst(const Comparison& result, std::size_t count) {
                            signed_percent(route.stretch_error),
                            signed_mrad(route.orientation_error)});
   }
-  if (routes.rows.size() > 1) fmt::print("\nMost strained routes\n{}", format_table(routes));
+  if (routes.rows.size() > 1) fmt::print("\nMost strained routes\n{}", table_text(routes));
 }
 
 void print_sources(const Comparison& result) {
@@ -172,7 +174,7 @@ void print_sources(const Comparison& result) {
                           : off < -kSure ? "stated too large"
                                          : "as stated"});
   }
-  if (table.rows.size() > 1) fmt::print("\nNoise\n{}", format_table(table));
+  if (table.rows.size() > 1) fmt::print("\nNoise\n{}", table_text(table));
 }
 
 void print_outliers(const Comparison& result, std::size_t count) {
@@ -183,15 +185,18 @@ void print_outliers(const Comparison& result, std::size_t count) {
     table.rows.push_back({one.what, fmt::format("{:.1f} ({})", one.statistic, one.dof),
                           probability_text(one.p_adjusted)});
   }
-  if (table.rows.size() > 1) fmt::print("\nOutliers\n{}", format_table(table));
+  if (table.rows.size() > 1) fmt::print("\nOutliers\n{}", table_text(table));
 }
 
 void print(const Comparison& result, const CompareOptions& options) {
   if (result.consistent) {
-    fmt::print("consistent: the model explains these measurements to within its noise\n");
+    fmt::print("{}\n", verdict_text(Mood::good,
+                                    "consistent: the model explains these measurements to "
+                                    "within its noise"));
   } else {
-    fmt::print("misfit: errors are {:.1f} times what the model's noise allows\n",
-               std::sqrt(result.chi2 / std::max(1, result.dof)));
+    fmt::print("{}\n", verdict_text(Mood::bad, fmt::format("misfit: errors are {:.1f} times what "
+                                                           "the model's noise allows",
+                                                           std::sqrt(result.misfit()))));
   }
   fmt::print("  chi2 {:.1f}, dof {}, p {}; {} legs, {} landmarks\n  {}\n", result.chi2, result.dof,
              probability_text(result.p_value), result.legs, result.landmarks,
@@ -202,13 +207,17 @@ void print(const Comparison& result, const CompareOptions& options) {
   print_sources(result);
   if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
   for (const std::string& line : result.advice) fmt::print("  {}\n", line);
-  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
 }
 
 void run_compare(const CompareOptions& options) {
+  Progress progress({{"reading", 1}, {"fitting the map", 4}, {"comparing", 40}});
+  progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
   const ComparisonOptions how = comparison_options(options.input);
+  progress.next();
   const ModelFit fit = fit_to_compare(input.recordings, input.model, how);
+  progress.next();
   const ScoreTest tests(fit);
   const Comparison result = compare(input.recordings, input.model, how, fit, tests);
   Files files;
@@ -217,11 +226,12 @@ void run_compare(const CompareOptions& options) {
   }
   if (options.page.wanted()) {
     add_page(files,
-             comparison_page(result, fitted_map(fit), trend_pictures(result, fit, tests),
+             comparison_page(fitted_model(fit, result), trend_pictures(result, fit, tests),
                              subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
   write_files(files);
+  progress.end();
   print(result, options);
 }
 

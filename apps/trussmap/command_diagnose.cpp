@@ -16,6 +16,8 @@
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -112,19 +114,24 @@ std::string length(double metres) {
 
 void print_verdict(const Diagnosis& result) {
   if (result.verdict == Diagnosis::Verdict::nothing_missing) {
-    fmt::print("nothing missing: none of {} effects tried explains more than chance\n",
-               result.tried);
+    const std::string text = fmt::format(
+        "nothing missing: none of {} effects tried explains more than chance", result.tried);
+    fmt::print("{}\n", verdict_text(Mood::good, text));
   } else if (result.verdict == Diagnosis::Verdict::unexplained_misfit) {
-    fmt::print(
+    const std::string text = fmt::format(
         "unexplained misfit: the model's noise does not allow these errors (p {}), and none of {} "
-        "effects tried explains them\n",
+        "effects tried explains them",
         probability_text(result.p_value), result.tried);
+    fmt::print("{}\n", verdict_text(Mood::bad, text));
   }
   for (const Finding& one : result.findings) {
     if (one.status != Status::missing && one.status != Status::negligible) continue;
     Effect effect = one.candidate.effect;
     effect.coefficients = one.together;
-    fmt::print("{}: {}; {}\n", name_of(one.status), effect.name, in_words(effect, one.together_sd));
+    const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
+    fmt::print("{}\n",
+               verdict_text(mood, fmt::format("{}: {}; {}", name_of(one.status), effect.name,
+                                              in_words(effect, one.together_sd))));
     for (const LookAlike& rival : one.look_alikes) {
       fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
                  rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
@@ -159,14 +166,6 @@ void print_others(const Diagnosis& result, std::size_t count) {
   }
 }
 
-/// "channel x shape", cut where a curve's formula is longer than a line.
-std::string shape_text(const Effect& effect) {
-  constexpr std::size_t kLongest = 64;
-  std::string text = fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", "));
-  if (text.size() > kLongest) text.replace(kLongest - 3, std::string::npos, "...");
-  return text;
-}
-
 /// What is significant by itself and yet absent is explained by what comes before it.
 std::string status_text(const Finding& one) {
   if (one.status == Status::absent && one.p_adjusted < 0.05) return "explained by the above";
@@ -174,6 +173,7 @@ std::string status_text(const Finding& one) {
 }
 
 void print(const Diagnosis& result, const DiagnoseOptions& options) {
+  constexpr std::size_t kWidestCell = 36;  // characters; --json has all of it
   print_verdict(result);
   TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
                   {},
@@ -184,13 +184,15 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
   for (std::size_t k = 0; k < std::min(options.list, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
     const Effect& effect = one.candidate.effect;
-    table.rows.push_back({effect.name, shape_text(effect),
-                          fmt::format("{:.1f} ({})", one.score, one.dof),
-                          probability_text(one.p_adjusted),
-                          fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
+    table.rows.push_back(
+        {shortened(effect.name, kWidestCell),
+         shortened(fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", ")),
+                   kWidestCell),
+         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
+         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
   }
   fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
-             format_table(table));
+             table_text(table));
   print_others(result, options.list);
   if (!result.unobservable.empty()) fmt::print("\nNot to be seen in these data\n");
   for (const Unobservable& one : result.unobservable) {
@@ -198,7 +200,7 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
   }
   if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
   for (const std::string& line : result.advice) fmt::print("  {}\n", line);
-  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
 }
 
 /// The model with what is missing put in and fitted; with the first alone where not all can be.
@@ -228,7 +230,7 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   const ComparisonOptions compared = comparison_options(options.input);
   const ScoreTest tests(fit);
   DiagnosisPictures pictures;
-  pictures.given = {compare(input.recordings, fit.model, compared, fit, tests), fitted_map(fit)};
+  pictures.given = fitted_model(fit, compare(input.recordings, fit.model, compared, fit, tests));
   pictures.trends = trend_pictures(pictures.given.comparison, fit, tests);
   pictures.tables = diagnosis_tables(result, tests.context());
   const std::vector<const Finding*> missing = found_by(result);
@@ -245,14 +247,19 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   pictures.effects = fitted_effects(fit, estimates, rivals);
   if (with) {
     const ScoreTest after(*with);
-    pictures.with = {compare(input.recordings, with->model, compared, *with, after),
-                     fitted_map(*with)};
+    pictures.with =
+        fitted_model(*with, compare(input.recordings, with->model, compared, *with, after));
   }
   return diagnosis_page(result, pictures,
                         subject_of(options.input.recordings, options.input.model));
 }
 
 void run_diagnose(const DiagnoseOptions& options) {
+  std::vector<ProgressStep> steps{
+      {"reading", 0.5}, {"fitting the map", 2.5}, {"looking for what is missing", 50}};
+  if (options.page.wanted()) steps.push_back({"comparing with what is missing", 50});
+  Progress progress(steps);
+  progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
   DiagnosisOptions how;
   how.problem = problem_options(options.input);
@@ -262,17 +269,21 @@ void run_diagnose(const DiagnoseOptions& options) {
   ModelFitOptions given;
   given.problem = how.problem;
   given.gate = how.gate;
+  progress.next();
   const ModelFit fit = fit_model(input.recordings, input.model, given);
+  progress.next();
   Diagnosis result = diagnose(input.recordings, fit, how);
   result.advice = advice_on(input.recordings, input.model, how.problem);
   Files files;
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
+  progress.next();
   if (options.page.wanted()) {
     add_page(files, page_of(input, fit, result, how, options), options.page);
   }
   write_files(files);
+  progress.end();
   print(result, options);
 }
 

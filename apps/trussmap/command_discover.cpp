@@ -9,6 +9,7 @@
 #include "trussmap/report/discovery_page.hpp"
 #include "trussmap/report/table.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -17,6 +18,8 @@
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -64,11 +67,24 @@ ordered_json json(const Discovery& result) {
           {"warnings", result.fit.adjustment.warnings}};
 }
 
+std::string verdict(const Discovery& result) {
+  const auto added =
+      std::count_if(result.steps.begin(), result.steps.end(),
+                    [](const DiscoveryStep& step) { return step.added.has_value(); });
+  const std::string found = added == 0   ? "nothing found, the model stays as it is"
+                            : added == 1 ? "one effect found"
+                                         : fmt::format("{} effects found, one by one", added);
+  return result.consistent
+             ? verdict_text(Mood::good, fmt::format("consistent: {}; {}", found, result.stopped))
+             : verdict_text(Mood::bad,
+                            fmt::format("unexplained misfit: {}; {}", found, result.stopped));
+}
+
 void print(const Discovery& result) {
+  fmt::print("{}\n", verdict(result));
   for (const EffectEstimate& one : result.fit.effects) {
-    fmt::print("{}: {}\n", one.effect.name, in_words(one.effect, one.sd));
+    fmt::print("  {}: {}\n", one.effect.name, in_words(one.effect, one.sd));
   }
-  if (result.fit.effects.empty()) fmt::print("nothing found: the model stays as it is\n");
   TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right},
                   {},
@@ -87,8 +103,7 @@ void print(const Discovery& result) {
          step.added ? fmt::format("{:.1f}", 1e3 * step.promised.arrival_rms) : "-",
          fmt::format("{}", step.held_out.legs.size())});
   }
-  fmt::print("\n{}  {}: {}\n", format_table(table),
-             result.consistent ? "consistent" : "unexplained misfit", result.stopped);
+  fmt::print("\n{}", table_text(table));
   for (const DiscoveryStep& step : result.steps) {
     for (const LookAlike& rival : step.look_alikes) {
       fmt::print("  instead of {} it could be: {} ({} x {}), cosine {:.3f}\n", step.added->name,
@@ -97,8 +112,30 @@ void print(const Discovery& result) {
     }
   }
   for (const std::string& warning : result.fit.adjustment.warnings) {
-    fmt::print("warning: {}\n", warning);
+    fmt::print("{}", warning_text(warning));
   }
+}
+
+/// The models between the one given and the one found, fitted anew.
+std::vector<FittedStep> models_between(const ModelRecordings& input, const Discovery& result,
+                                       const ModelFit& given, const ModelFitOptions& options,
+                                       const ComparisonOptions& compared) {
+  std::vector<FittedStep> models;
+  Model model = given.model;
+  ModelFitOptions how = options;
+  how.near = &given;
+  for (std::size_t k = 1; k + 1 < result.steps.size(); ++k) {
+    const DiscoveryStep& step = result.steps[k];
+    model.effects.push_back(*step.added);
+    std::erase_if(model.effects, [&step](const Effect& one) {
+      return std::find(step.dropped.begin(), step.dropped.end(), one.name) != step.dropped.end();
+    });
+    const ModelFit fit = fit_model(input.recordings, model, how);
+    const ScoreTest tests(fit);
+    models.push_back({step_name(step), fitted_model(fit, compare(input.recordings, fit.model,
+                                                                 compared, fit, tests))});
+  }
+  return models;
 }
 
 Page page_of(const ModelRecordings& input, const Discovery& result, const DiagnosisOptions& how,
@@ -112,10 +149,11 @@ Page page_of(const ModelRecordings& input, const Discovery& result, const Diagno
   const ScoreTest after(result.fit);
   const AddedEffects added = added_effects(result);
   DiscoveryPictures pictures;
-  pictures.given = {compare(input.recordings, before.model, compared, before, tests),
-                    fitted_map(before)};
-  pictures.found = {compare(input.recordings, result.fit.model, compared, result.fit, after),
-                    fitted_map(result.fit)};
+  pictures.given =
+      fitted_model(before, compare(input.recordings, before.model, compared, before, tests));
+  pictures.between = models_between(input, result, before, given, compared);
+  pictures.found = fitted_model(
+      result.fit, compare(input.recordings, result.fit.model, compared, result.fit, after));
   pictures.effects = fitted_effects(before, added.estimates, added.rivals);
   pictures.trends = trend_pictures(pictures.found.comparison, result.fit, after);
   pictures.tables = diagnosis_tables(result.last, after.context(), pictures.effects);
@@ -123,7 +161,45 @@ Page page_of(const ModelRecordings& input, const Discovery& result, const Diagno
                         subject_of(options.input.recordings, options.input.model));
 }
 
+/// Tells how far a discovery is: as if one effect were found, and one more whenever there is.
+class Told {
+ public:
+  explicit Told(bool page) : progress_(steps(page)) { progress_.next(); }
+
+  void part(const std::string& what) {
+    const bool fits = what.starts_with("fitting \"");
+    if (fits && fits_) {  // a rival, in the same step
+      progress_.say(what);
+      return;
+    }
+    fits_ = fits;
+    if (fits && ++found_ > 1) progress_.insert({kAdding, kLooking});
+    progress_.next();
+    if (fits) progress_.say(what);
+  }
+  void page() {
+    // Where nothing was found, the two steps of an effect are passed over.
+    for (int k = found_ == 0 ? 0 : 2; k < 3; ++k) progress_.next();
+  }
+  void end() { progress_.end(); }
+
+ private:
+  static std::vector<ProgressStep> steps(bool page) {
+    std::vector<ProgressStep> result{
+        {"reading", 0.5}, {"fitting the model given", 2.5}, kLooking, kAdding, kLooking};
+    if (page) result.push_back({"comparing the models", 60});
+    return result;
+  }
+
+  static inline const ProgressStep kLooking{"looking for what is missing", 50};
+  static inline const ProgressStep kAdding{"fitting an effect", 20};
+  Progress progress_;
+  bool fits_ = false;
+  int found_ = 0;
+};
+
 void run_discover(const DiscoverOptions& options) {
+  Told told(options.page.wanted());
   const ModelRecordings input = read_model_recordings(options.input);
   DiscoveryOptions how;
   how.diagnosis.problem = problem_options(options.input);
@@ -131,8 +207,10 @@ void run_discover(const DiscoverOptions& options) {
   how.diagnosis.gate = gate_of(options.input);
   how.diagnosis.level = options.level;
   how.most_effects = options.most;
+  how.progress = [&told](const std::string& what) { told.part(what); };
   Discovery result = discover(input.recordings, input.model, how);
   result.last.advice = advice_on(input.recordings, result.fit.model, how.diagnosis.problem);
+  told.page();
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.fit.model));
   if (!options.input.json.empty()) {
@@ -142,6 +220,7 @@ void run_discover(const DiscoverOptions& options) {
     add_page(files, page_of(input, result, how.diagnosis, options), options.page);
   }
   write_files(files);
+  told.end();
   print(result);
 }
 

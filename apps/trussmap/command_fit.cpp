@@ -19,6 +19,8 @@
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -40,7 +42,7 @@ struct FitResult {
   double predicted = 0.0;  ///< decrease of chi^2, by the score test
 };
 
-FitResult fit_both(const ModelRecordings& input, const FitOptions& options) {
+FitResult fit_both(const ModelRecordings& input, const FitOptions& options, Progress& progress) {
   ModelFitOptions how;
   how.problem = problem_options(options.input);
   how.gate = gate_of(options.input);
@@ -48,9 +50,12 @@ FitResult fit_both(const ModelRecordings& input, const FitOptions& options) {
   Model without = input.model;
   without.effects.clear();
   how.fit_effects = false;
+  progress.next();
   result.before = fit_model(input.recordings, without, how);
   how.fit_effects = true;
+  progress.next();
   result.after = fit_model(input.recordings, input.model, how);
+  progress.next();
   result.held_out_before =
       predict_held_out(input.recordings, result.before, how, options.input.legs);
   result.held_out_after = predict_held_out(input.recordings, result.after, how, options.input.legs);
@@ -87,8 +92,11 @@ void print(const FitResult& result) {
   for (const EffectEstimate& one : result.after.effects) {
     const bool none = std::all_of(one.effect.coefficients.begin(), one.effect.coefficients.end(),
                                   [](double a) { return a == 0.0; });
-    fmt::print("{}: {}\n", one.effect.name,
-               none && !one.not_fitted.empty() ? "not fitted" : in_words(one.effect, one.sd));
+    const bool unseen = none && !one.not_fitted.empty();
+    fmt::print("{}\n",
+               verdict_text(unseen ? Mood::doubt : Mood::good,
+                            fmt::format("{}: {}", one.effect.name,
+                                        unseen ? "not fitted" : in_words(one.effect, one.sd))));
     TextTable table{{Align::left, Align::right, Align::right}, {}, false, 4};
     for (std::size_t k = 0; k < one.effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(one.effect.coefficients[k], one.sd[k]);
@@ -96,7 +104,7 @@ void print(const FitResult& result) {
       table.rows.push_back({one.effect.channel + " x " + shape, text.value,
                             text.error.empty() ? "" : "+- " + text.error});
     }
-    fmt::print("{}", format_table(table));
+    fmt::print("{}", table_text(table));
     for (const std::string& why : one.not_fitted) fmt::print("    {}\n", why);
   }
   const RecordingAdjustment& before = result.before.adjustment;
@@ -111,18 +119,18 @@ void print(const FitResult& result) {
   };
   row("without effects", before, result.held_out_before);
   row("with them", after, result.held_out_after);
-  fmt::print("\n{}", format_table(table));
+  fmt::print("\n{}", table_text(table));
   fmt::print("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n", result.predicted,
              before.chi2 - after.chi2);
   fmt::print("  {}\n", held_out_line(result.held_out_after));
-  for (const std::string& warning : after.warnings) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : after.warnings) fmt::print("{}", warning_text(warning));
 }
 
 /// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
 FittedModel shown_model(const ModelRecordings& input, const ModelFit& fit, const ScoreTest& tests,
                         const FitOptions& options) {
-  return {compare(input.recordings, fit.model, comparison_options(options.input), fit, tests),
-          fitted_map(fit)};
+  return fitted_model(
+      fit, compare(input.recordings, fit.model, comparison_options(options.input), fit, tests));
 }
 
 Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {
@@ -137,19 +145,28 @@ Page page_of(const ModelRecordings& input, const FitResult& result, const FitOpt
 }
 
 void run_fit(const FitOptions& options) {
+  std::vector<ProgressStep> steps{{"reading", 0.5},
+                                  {"fitting without effects", 2.5},
+                                  {"fitting the effects", 5},
+                                  {"predicting held-out legs", 8}};
+  if (options.page.wanted()) steps.push_back({"comparing both", 50});
+  Progress progress(steps);
+  progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
   if (input.model.effects.empty()) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  const FitResult result = fit_both(input, options);
+  const FitResult result = fit_both(input, options, progress);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.after.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
+  progress.next();
   if (options.page.wanted()) add_page(files, page_of(input, result, options), options.page);
   write_files(files);
+  progress.end();
   print(result);
 }
 

@@ -27,6 +27,7 @@
 #include "json_values.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -166,7 +167,7 @@ std::string constants_text(const Result& result) {
     row("  left, first order", result.first_order.left);
     row("  right, first order", result.first_order.right);
   }
-  return "\n" + format_table(table);
+  return "\n" + table_text(table);
 }
 
 std::string scatter_text(const Result& result) {
@@ -182,7 +183,7 @@ std::string scatter_text(const Result& result) {
   row("of the runs", result.estimate.observed.diagonal().cwiseSqrt());
   row("of the model", result.estimate.modelled.diagonal().cwiseSqrt());
   row("mean of the runs", result.estimate.mean);
-  return "\n" + format_table(table);
+  return "\n" + table_text(table);
 }
 
 std::string fit_text(const Result& result) {
@@ -199,14 +200,15 @@ std::string fit_text(const Result& result) {
       {"distances as chi-square has them", "", probability_text(result.fit.distance_p_value)});
   table.rows.push_back(
       {"covariance as two wheels give it", "", probability_text(result.fit.shape_p_value)});
-  return "\n" + format_table(table);
+  return "\n" + table_text(table);
 }
 
 std::string text(const Result& result) {
   const std::string verdict =
-      fmt::format("the wheels' noise {} the end errors of {} runs\n",
+      fmt::format("the wheels' noise {} the end errors of {} runs",
                   result.fit.good ? "explains" : "does not explain", result.estimate.runs);
-  return verdict + constants_text(result) + scatter_text(result) + fit_text(result) +
+  return verdict_text(result.fit.good ? Mood::good : Mood::bad, verdict) + "\n" +
+         constants_text(result) + scatter_text(result) + fit_text(result) +
          warnings_text(result.doubts);
 }
 

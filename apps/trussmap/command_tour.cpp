@@ -143,8 +143,9 @@ void print_result(const TourResult& result, const CommandOptions& options) {
 
 TourResult toured(const CommandOptions& options) {
   TourOptions experiment = experiment_options(options);
-  Progress progress(options.seeds, "seeds");
-  experiment.seeds_done = [&progress](int done) { progress.report(done); };
+  Progress progress({{"seeds"}});
+  progress.next();
+  experiment.seeds_done = [&](int done) { progress.report(done, options.seeds); };
   return run_tours(experiment);
 }
 

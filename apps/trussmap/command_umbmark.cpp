@@ -24,6 +24,7 @@
 #include "json_values.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -227,7 +228,7 @@ std::string corrections_text(const Round& round, const UmbmarkOptions& options) 
   row("right wheel's travel times", use.right_factor, "");
   return fmt::format("\n  Use from now on ({}):\n{}",
                      options.solution == "exact" ? "exact solution" : "the papers' formulas",
-                     format_table(table));
+                     table_text(table));
 }
 
 std::string solutions_text(const Round& round) {
@@ -244,7 +245,7 @@ std::string solutions_text(const Round& round) {
   row("E_b  wheelbase / believed", &SquareSolution::wheelbase_ratio, "");
   row("alpha  missing per quarter turn", &SquareSolution::alpha, "rad");
   row("beta  turned per leg", &SquareSolution::beta, "rad");
-  return "\n" + format_table(table);
+  return "\n" + table_text(table);
 }
 
 std::string clusters_text(const Round& round) {
@@ -260,7 +261,7 @@ std::string clusters_text(const Round& round) {
     table.rows.push_back({name, std::to_string(mean->count), x[0], x[1], y[0], y[1],
                           fmt::format("{:.4f}", mean->mean.norm())});
   }
-  return "\n" + format_table(table);
+  return "\n" + table_text(table);
 }
 
 std::string one_way_text(const Round& round) {
@@ -300,7 +301,9 @@ Page page_of(const std::vector<Round>& rounds, const UmbmarkOptions& options) {
 }
 
 std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options) {
-  std::string out = verdict(rounds.back(), rounds.size());
+  std::string out =
+      verdict_text(rounds.back().clusters.second_round_worthwhile ? Mood::doubt : Mood::good,
+                   verdict(rounds.back(), rounds.size()));
   if (rounds.size() > 1) {
     TextTable table{{Align::left, Align::right, Align::left, Align::left}, {}, false, 2};
     for (std::size_t k = 0; k < rounds.size(); ++k) {
@@ -308,7 +311,7 @@ std::string text(const std::vector<Round>& rounds, const UmbmarkOptions& options
       table.rows.push_back(
           {fmt::format("round {}: systematic error", k + 1), cells[0], cells[1], "m"});
     }
-    out += "\n" + format_table(table);
+    out += "\n" + table_text(table);
   }
   const Round& last = rounds.back();
   if (rounds.size() > 1 && last.clusters.sem > 0.0 && !last.clusters.second_round_worthwhile) {

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -156,7 +157,7 @@ std::string effects_table(const nlohmann::ordered_json& effects) {
                             effect.at("shape").at(k)});
     }
   }
-  return format_table(table);
+  return table_text(table);
 }
 
 }  // namespace trussmap::app

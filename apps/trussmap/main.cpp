@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "trussmap/core/error.hpp"
+#include "trussmap/io/atomic_file.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -21,6 +23,20 @@ int complain(const std::exception& error, int status) {
   return status;
 }
 
+/// Ctrl-C, a closed terminal: nothing half written stays behind, and the program ends as if it had
+/// not been asked.
+extern "C" void end_by(int signal) {
+  trussmap::discard_temporaries();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void clean_up_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, end_by) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup
+  }
+}
+
 /// The first word must be a command: CLI11 would only miss one.
 void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
@@ -36,6 +52,7 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  clean_up_on_signals();
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
   app.require_subcommand(1);
   app.set_version_flag("--version", "trussmap " TRUSSMAP_VERSION);

@@ -2,56 +2,86 @@
 // SPDX-License-Identifier: MIT
 //
 // How far a long run is, on standard error, where that is a terminal: nothing in the first second,
-// then a line that is written over and gone in the end.
+// then a line that is written over, and gone in the end.
+//
+//   looking for what is missing (step 3 of 4), 12 s left
+//
+// The steps are known beforehand, each with its usual share of the time; the time left follows from
+// how long the steps before have taken, or from the parts that a step reports. A clock of its own
+// keeps the line alive while the library works.
 #pragma once
 
 #include <chrono>
-#include <cstdio>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
 #include <string>
-#include <unistd.h>
-#include <utility>
-
-#include <fmt/format.h>
+#include <thread>
+#include <vector>
 
 namespace trussmap::app {
 
-/// "12 of 50 seeds, 8 s left".
-inline std::string progress_text(int done, int total, const std::string& what, double seconds) {
-  const double left = done > 0 ? seconds * (total - done) / done : 0.0;
-  const std::string time =
-      left < 90.0 ? fmt::format("{:.0f} s", left) : fmt::format("{:.0f} min", left / 60.0);
-  return fmt::format("{} of {} {}, {} left", done, total, what, time);
-}
+struct ProgressStep {
+  std::string what;    ///< "fitting the map"
+  double share = 1.0;  ///< of the time, roughly; any unit
+};
+
+/// Where a run of steps is. Without a terminal, so that it can be tested.
+class ProgressClock {
+ public:
+  explicit ProgressClock(std::vector<ProgressStep> steps) : steps_(std::move(steps)) {}
+
+  /// The next step begins, the first one with the first call. `seconds`: since the run began.
+  void next(double seconds);
+  /// More steps than were known, after the present one.
+  void insert(const std::vector<ProgressStep>& steps);
+  /// What the present step is about at the moment.
+  void say(std::string what) { said_ = std::move(what); }
+  /// So many of its parts are done.
+  void report(int done, int total);
+
+  /// Seconds from now to the end of the run; none where nothing tells.
+  [[nodiscard]] std::optional<double> left(double seconds) const;
+  [[nodiscard]] std::string line(double seconds) const;
+
+ private:
+  [[nodiscard]] double share_before() const;
+  [[nodiscard]] double share_after() const;
+
+  std::vector<ProgressStep> steps_;
+  std::size_t begun_ = 0;  ///< how many have begun
+  double since_ = 0.0;     ///< when the present one did
+  std::string said_;
+  int done_ = 0;
+  int total_ = 0;
+};
 
 class Progress {
  public:
-  Progress(int total, std::string what)
-      : total_(total), what_(std::move(what)), shown_(::isatty(STDERR_FILENO) == 1) {}
-  ~Progress() { clear(); }
+  /// Nothing has begun: call next().
+  explicit Progress(std::vector<ProgressStep> steps);
+  ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void report(int done) {
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-    if (!shown_ || seconds < 1.0) return;
-    clear();
-    fmt::print(stderr, "{}", progress_text(done, total_, what_, seconds));
-    std::fflush(stderr);
-    written_ = true;
-  }
+  void next();
+  void insert(const std::vector<ProgressStep>& steps);
+  void say(const std::string& what);
+  void report(int done, int total);
+  /// Takes the line away; before anything is printed.
+  void end();
 
  private:
-  void clear() {
-    if (written_) fmt::print(stderr, "\r\033[K");
-    written_ = false;
-  }
+  [[nodiscard]] double seconds() const;
+  void run();
 
-  int total_;
-  std::string what_;
-  bool shown_;
-  bool written_ = false;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool end_ = false;
+  bool written_ = false;
+  ProgressClock clock_;
+  std::thread thread_;  ///< where there is a terminal
 };
 
 }  // namespace trussmap::app

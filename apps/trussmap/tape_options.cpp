@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "option_checks.hpp"
+#include "terminal.hpp"
 
 namespace trussmap::app {
 
@@ -100,7 +101,7 @@ std::vector<std::string> quantity_cells(const Estimate& estimate) {
 
 std::string warnings_text(const std::vector<std::string>& warnings) {
   std::string text = warnings.empty() ? "" : "\n";
-  for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
+  for (const std::string& warning : warnings) text += warning_text(warning);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include "trussmap/core/error.hpp"
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -49,6 +50,26 @@ fs::path temporary_for(const fs::path& path) {
   temporary += ".part" + std::to_string(::getpid());
   return temporary;
 }
+
+// What discard_temporaries() deletes: names that are complete before the first file is begun.
+using Names = std::vector<std::string>;
+std::atomic<const Names*> under_way{nullptr};
+static_assert(std::atomic<const Names*>::is_always_lock_free);
+
+/// Makes names known while it lives. Of several calls at once the last one's are.
+class UnderWay {
+ public:
+  explicit UnderWay(Names names) : names_(std::move(names)) { under_way = &names_; }
+  ~UnderWay() {
+    const Names* mine = &names_;
+    under_way.compare_exchange_strong(mine, nullptr);
+  }
+  UnderWay(const UnderWay&) = delete;
+  UnderWay& operator=(const UnderWay&) = delete;
+
+ private:
+  Names names_;
+};
 
 /// Where a file really goes.
 struct Target {
@@ -112,6 +133,11 @@ void write_files(const std::vector<std::pair<fs::path, std::string>>& files) {
   std::vector<Target> targets;
   targets.reserve(files.size());
   for (const auto& [path, content] : files) targets.push_back(target_of(path, targets));
+  Names names;
+  for (const Target& target : targets) {
+    if (!target.stream) names.push_back(temporary_for(target.place).string());
+  }
+  const UnderWay known(std::move(names));
   std::vector<fs::path> temporaries;
   const auto clean_up = [&temporaries] {
     std::error_code ignored;
@@ -139,6 +165,12 @@ void write_files(const std::vector<std::pair<fs::path, std::string>>& files) {
       throw InputError(files[k].first.string(), 0, "cannot be written: " + failed.message());
     }
   }
+}
+
+void discard_temporaries() noexcept {
+  const Names* names = under_way.load();
+  if (names == nullptr) return;
+  for (const std::string& name : *names) ::unlink(name.c_str());
 }
 
 }  // namespace trussmap

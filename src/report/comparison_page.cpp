@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "diagnosis_tables.hpp"
 #include "fit_sections.hpp"
 
 namespace trussmap {
@@ -96,8 +97,9 @@ std::string comparison_verdict(const Comparison& result) {
   return text;
 }
 
-Page comparison_page(const Comparison& result, const FittedMap& map,
-                     const std::vector<TrendPicture>& trends, const std::string& subject) {
+Page comparison_page(const FittedModel& model, const std::vector<TrendPicture>& trends,
+                     const std::string& subject) {
+  const Comparison& result = model.comparison;
   Page page;
   page.command = "compare";
   page.subject = subject;
@@ -114,18 +116,21 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
                       {fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
                        "held-out legs end so far off (rms)", page.tone});
   }
-  page.notes = result.advice;
-  page.notes.insert(page.notes.end(), result.warnings.begin(), result.warnings.end());
   if (!result.consistent) {
-    page.notes.emplace_back(
-        "What to do next: give trussmap diagnose the same recordings and model. It names the "
-        "effect "
-        "behind the strongest trend, how large it is, what else it could be, and what to drive to "
-        "tell.");
+    page.answers.push_back(
+        {kNext,
+         "Give trussmap diagnose the same recordings and model. It names the effect behind the "
+         "strongest trend, how large it is, what else it could be, and what to drive to tell."});
+  }
+  for (const std::string& line : result.advice) {
+    page.answers.push_back({"What do these data lack?", capitalised(typeset(line)) + "."});
+  }
+  for (const std::string& line : result.warnings) {
+    page.answers.push_back({"Warnings", capitalised(typeset(line)) + "."});
   }
   page.sections.push_back({"The map as a truss",
-                           {ChartRow{truss_chart("map", "Map with the forces in its bars", map,
-                                                 result.routes, result.misfit()),
+                           {ChartRow{truss_chart("map", "Map with the forces in its bars",
+                                                 model.map, result.routes, loudest_force(result)),
                                      worst_chart("worst-legs", result.worst, kWorst)}}});
   page.sections.push_back(trend_section("What the errors go with", result, trends));
   page.sections.push_back({"Is the noise right?", {}});
@@ -134,12 +139,14 @@ Page comparison_page(const Comparison& result, const FittedMap& map,
     noise.push_back(held_out_chart("held-out", {{"", result.held_out}}));
   }
   page.sections.back().blocks.emplace_back(std::move(noise));
+  add_quantiles(page.sections.back(), {{"", model}});
   page.sections.push_back(
       {"Legs and routes",
        {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
                  legs_chart("orientation", result.worst, LegError::orientation)}}});
   if (!result.routes.empty()) page.sections.back().blocks.emplace_back(route_table(result));
   if (!result.outliers.empty()) page.sections.back().blocks.emplace_back(outlier_table(result));
+  move_tables_last(page);
   return page;
 }
 

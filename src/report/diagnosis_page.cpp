@@ -30,15 +30,7 @@ std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisPictures&
   const auto& effects = pictures.effects;
   const bool matters = diagnosis.findings.front().status == Status::missing;
   std::string text = matters ? "Missing: " : "Missing, but too small to matter: ";
-  if (effects.size() == 1) {
-    const FittedEffect& only = effects.front();
-    text += name_in_words(only.estimate.effect) + " \u2013 " +
-            typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
-  } else {
-    std::vector<std::string> names;
-    for (const FittedEffect& one : effects) names.push_back(name_in_words(one.estimate.effect));
-    text += listed(names);
-  }
+  text += named_with_sizes(effects);
   const std::string it = effects.size() == 1 ? "it" : "them";
   if (pictures.with) {
     return text + ". " + gain_sentence(pictures.given.comparison, pictures.with->comparison, it);
@@ -67,8 +59,8 @@ std::string verdict_of(const Diagnosis& diagnosis, const DiagnosisPictures& pict
   }
   std::string text = fmt::format(
       "Something is wrong that no effect explains: errors are {:.1f} times what the model's noise "
-      "allows, and none of {} changes tried accounts for them.",
-      std::sqrt(diagnosis.chi2 / std::max(1, diagnosis.dof)), diagnosis.tried);
+      "allows.",
+      std::sqrt(diagnosis.chi2 / std::max(1, diagnosis.dof)));
   const std::vector<std::string> others = others_notes(diagnosis);
   return others.empty() ? text : text + " " + others.front();
 }
@@ -83,14 +75,13 @@ std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictur
   if (!pictures.effects.empty()) {
     facts.push_back(
         {chance_text(diagnosis.p_value),
-         fmt::format("chance of as much without it, {} tests allowed for", diagnosis.tried)});
+         fmt::format("chance of as much by luck ({} tests allowed for)", diagnosis.tried)});
   }
   if (!diagnosis.held_out.legs.empty()) {
     const Tone tone = pictures.effects.empty() ? Tone::neutral : Tone::bad;
     const double off = diagnosis.held_out.arrival_rms;
     const double less = pictures.with ? pictures.with->comparison.held_out.arrival_rms : off;
-    facts.push_back(
-        {distance_text(off, less), "legs that no fit has seen end so far off (rms)", tone});
+    facts.push_back({distance_text(off, less), kLegsEnd, tone});
     if (pictures.with) {
       const Comparison& with = pictures.with->comparison;
       facts.push_back({distance_text(less, off), "the same with what is missing",
@@ -105,42 +96,56 @@ std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictur
   return facts;
 }
 
-/// Advice, "what is lacking: why it matters; what to drive", with the drive first.
-std::string advised_drive(const std::string& advice) {
-  const std::size_t drive = advice.rfind("; ");
-  if (drive == std::string::npos) return "Next drive, to see more: " + advice + ".";
-  return fmt::format("Next drive, to see more: {} ({}).", advice.substr(drive + 2),
-                     advice.substr(0, drive));
+/// Sources that are clearly noisier than stated, and what to do about it.
+std::string noise_advice(const Comparison& comparison) {
+  constexpr double kClear = 3.0;  // standard errors
+  std::vector<std::string> noisy;
+  for (const SourceCalibration& one : comparison.sources) {
+    if (one.factor - 1.0 > kClear * one.sd) {
+      noisy.push_back(fmt::format("{} {} times", one.source, two_digits(one.factor)));
+    }
+  }
+  if (noisy.empty()) return "";
+  return fmt::format(
+      "Check the noise in the model. Errors beside what it states: {}. Correct it, and diagnose "
+      "again.",
+      listed(noisy));
 }
 
-std::vector<std::string> notes_on(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
-  std::vector<std::string> notes;
+std::vector<PageAnswer> answers_on(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
+  std::vector<PageAnswer> answers;
   if (diagnosis.verdict == Diagnosis::Verdict::missing) {
-    if (pictures.effects.size() > 1) {
-      for (const FittedEffect& one : pictures.effects) notes.push_back(effect_in_words(one));
-    }
-    const Finding& first = diagnosis.findings.front();
-    notes.push_back(rivals_note(first.candidate.effect, first.look_alikes));
-    if (!diagnosis.next_drive.empty()) {
-      notes.push_back("Next drive, to tell: " + diagnosis.next_drive + ".");
-    }
     for (const FittedEffect& one : pictures.effects) {
-      notes.push_back(cause_note(one.estimate.effect));
+      answers.push_back({kHowLarge, sized_in_words(one)});
     }
-    notes.emplace_back(
-        "Then: put it into the model (trussmap add) and estimate it (trussmap fit), or have "
-        "trussmap discover do both, and look for more.");
+    answers.push_back({kHowSure, sure_text(diagnosis.p_value, diagnosis.tried)});
+    const Finding& first = diagnosis.findings.front();
+    answers.push_back({kWhatElse, rivals_note(first.candidate.effect, first.look_alikes)});
+    if (!diagnosis.next_drive.empty()) {
+      answers.push_back({kNext, "To tell them apart, " + diagnosis.next_drive + "."});
+    }
+    answers.push_back(
+        {kNext,
+         "Put it into the model (trussmap add) and estimate it (trussmap fit), or have trussmap "
+         "discover do both, and look for more."});
+    for (const FittedEffect& one : pictures.effects) {
+      answers.push_back({kCause, cause_note(one.estimate.effect)});
+    }
   } else {
-    notes.push_back(seen_from_note(pictures.tables));
-    if (!diagnosis.advice.empty()) {
-      notes.push_back(advised_drive(diagnosis.advice.front()));
+    if (diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit) {
+      answers.push_back({kNext, noise_advice(pictures.given.comparison)});
     }
+    if (!diagnosis.advice.empty()) {
+      answers.push_back({kNext, advised_drive(diagnosis.advice.front())});
+    }
+    answers.push_back({kSeen, seen_from_note(pictures.tables)});
   }
   const std::vector<std::string> others = others_notes(diagnosis);
   const bool said = diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit;
-  for (std::size_t k = said ? 1 : 0; k < others.size(); ++k) notes.push_back(others[k]);
-  std::erase(notes, "");
-  return notes;
+  for (std::size_t k = said ? 1 : 0; k < others.size(); ++k)
+    answers.push_back({kBeside, others[k]});
+  std::erase_if(answers, [](const PageAnswer& one) { return one.answer.empty(); });
+  return answers;
 }
 
 /// What the best changes of different names would leave of the held-out error.
@@ -172,13 +177,14 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& picture
               : others_notes(diagnosis).empty()                        ? Tone::good
                                                                        : Tone::neutral;
   page.facts = facts_on(diagnosis, pictures);
-  page.notes = notes_on(diagnosis, pictures);
+  page.answers = answers_on(diagnosis, pictures);
   page.sections.push_back({"Part by part", {pictures.tables.parts}});
   const NamedModel given{kGiven, pictures.given};
   if (!pictures.effects.empty()) {
-    PageSection missing = effect_section("What is missing", pictures.effects);
-    if (!pictures.tables.rivals.rows.empty()) missing.blocks.emplace_back(pictures.tables.rivals);
-    page.sections.push_back(std::move(missing));
+    page.sections.push_back(effect_section("What is missing", pictures.effects));
+    if (!pictures.tables.rivals.rows.empty()) {
+      page.sections.push_back({"What else it could be", {pictures.tables.rivals}});
+    }
   }
   if (pictures.with) {
     const NamedModel with{with_name(pictures), *pictures.with};
@@ -186,7 +192,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& picture
     if (!diagnosis.held_out.legs.empty())
       gain.blocks.emplace_back(ChartRow{changes_chart(diagnosis)});
     page.sections.push_back(std::move(gain));
-    page.sections.push_back(maps_section(given, with));
+    page.sections.push_back(maps_section("The map, before and after", {given, with}));
   } else {
     page.sections.push_back(fit_section(given));
   }
@@ -194,6 +200,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& picture
                                         pictures.given.comparison, pictures.trends));
   page.sections.push_back(legs_section("Legs, in the model as given", pictures.given.comparison));
   page.sections.push_back(tried_section(diagnosis, pictures.tables));
+  move_tables_last(page);
   return page;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -110,6 +111,13 @@ FindingVerdict verdict_on(const Finding& one, const Diagnosis& diagnosis) {
   return {"cannot tell from these data"};
 }
 
+/// A second effect that is missing shows only when the first is in.
+std::string chance_of(const Finding& one, const Diagnosis& diagnosis) {
+  const bool second = one.status == Status::missing && &one != &diagnosis.findings.front();
+  return second && one.p_adjusted >= kSignificant ? "seen once the first is in"
+                                                  : chance_text(one.p_adjusted);
+}
+
 std::string drop_text(const Diagnosis& diagnosis, const HeldOutFigures& with) {
   if (diagnosis.held_out.legs.empty()) return "-";
   const double drop = diagnosis.held_out.arrival_rms - with.arrival_rms;
@@ -126,7 +134,7 @@ void add_effect_part(PageTable& table, EffectPart part, const Diagnosis& diagnos
     const FindingVerdict verdict = verdict_on(*found, diagnosis);
     table.rows.push_back({name_of(part), verdict.words, name_in_words(effect),
                           what_it_would_be(effect, context), drop_text(diagnosis, found->held_out),
-                          chance_text(found->p_adjusted)});
+                          chance_of(*found, diagnosis)});
     table.tones.push_back(verdict.tone);
     return;
   }
@@ -180,9 +188,12 @@ PageTable parts_table(const Diagnosis& diagnosis, const ShapeContext& context,
     table.caption +=
         fmt::format("; legs now end {} off", distance_text(diagnosis.held_out.arrival_rms));
   }
-  table.headings = {
-      "part",       "verdict", "best change", "what it would be", "legs end closer by [mm]",
-      "p, adjusted"};
+  table.headings = {"part",
+                    "verdict",
+                    "best change",
+                    "what it would be",
+                    "legs would end closer by [mm]",
+                    "chance of luck"};
   table.texts = 4;
   for (const EffectPart part : kEffectParts) {
     add_found(table, part, found);
@@ -238,7 +249,7 @@ PageTable tried_table(const Diagnosis& diagnosis, const ShapeContext& context) {
       const std::string from = seen_from(one, context);
       table.rows.push_back({name_in_words(effect), name_of(part), verdict.words,
                             at_most(effect, context), from.empty() ? "-" : from,
-                            chance_text(one.p_adjusted)});
+                            chance_of(one, diagnosis)});
       table.tones.push_back(verdict.tone);
     }
   }
@@ -340,10 +351,65 @@ SizeText size_text_of(const FittedEffect& effect) {
           text.error.empty() ? "" : text.error + with};
 }
 
+std::string named_with_sizes(const std::vector<FittedEffect>& effects) {
+  if (effects.size() == 1) {
+    const FittedEffect& only = effects.front();
+    return name_in_words(only.estimate.effect) + " \u2013 " +
+           typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
+  }
+  std::vector<std::string> names;
+  for (const FittedEffect& one : effects) {
+    FittedEffect roughly = one;
+    roughly.estimate.sd.clear();
+    names.push_back(
+        fmt::format("{} ({})", name_in_words(one.estimate.effect), size_text_of(roughly).size));
+  }
+  return listed(names);
+}
+
+std::string sized_in_words(const FittedEffect& effect) {
+  constexpr double kClear = 2.0;  // standard errors
+  const SizeText size = size_text_of(effect);
+  std::string text = capitalised(effect_in_words(effect));
+  if (size.error.empty()) return text + ".";
+  text += fmt::format(" ({}, standard error {})", size.size, size.error);
+  const EffectEstimate& fitted = effect.estimate;
+  bool seen = false;
+  for (std::size_t k = 0; k < fitted.sd.size(); ++k) {
+    seen = seen || std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k];
+  }
+  return text + (seen ? "." : "; beside the others it is hardly seen.");
+}
+
+std::string advised_drive(const std::string& advice) {
+  const std::size_t drive = advice.rfind("; ");
+  if (drive == std::string::npos) return "A drive that would show more: " + advice + ".";
+  return fmt::format("A drive that would show more: {} ({}).", advice.substr(drive + 2),
+                     advice.substr(0, drive));
+}
+
+std::string sure_text(double p, std::size_t tests) {
+  const std::string chance = p < 1e-6   ? "less than one in a million"
+                             : p < 0.01 ? fmt::format("one in {:.0f}", 1.0 / p)
+                                        : fmt::format("{:.2g} %", 100.0 * p);
+  return fmt::format(
+      "If nothing were missing, luck alone would show as much with a chance of {} ({} tests "
+      "allowed "
+      "for).",
+      chance, tests);
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  }
+  return text;
+}
+
 std::string cause_note(const Effect& effect) {
   const CatalogueEntry* entry = find_entry(effect.name);
   if (entry == nullptr) return "";
-  return fmt::format("Where {} comes from: {}. What helps for good: {}.", short_name(effect),
+  return fmt::format("{}: {}. What helps for good: {}.", capitalised(short_name(effect)),
                      entry->cause, entry->remedy);
 }
 
@@ -379,7 +445,9 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
 }
 
 std::string seen_from_note(const DiagnosisTables& tables) {
-  return tables.seen_from.empty() ? "" : "Would have been seen: " + listed(tables.seen_from) + ".";
+  return tables.seen_from.empty()
+             ? ""
+             : "Larger effects would have been seen: " + listed(tables.seen_from) + ".";
 }
 
 PageSection tried_section(const Diagnosis& diagnosis, const DiagnosisTables& tables) {

@@ -28,6 +28,37 @@ struct SizeText {
 [[nodiscard]] SizeText size_text_of(const FittedEffect& effect);
 
 /// What makes an effect and what helps; empty beyond the catalogue.
+// The questions of the first screen.
+inline constexpr const char* kHowLarge = "How large?";
+inline constexpr const char* kHowSure = "How sure?";
+inline constexpr const char* kWhatElse = "What else could it be?";
+inline constexpr const char* kNext = "What to do next?";
+inline constexpr const char* kCause = "Where does it come from?";
+inline constexpr const char* kSeen = "What is ruled out?";
+inline constexpr const char* kBeside = "What else is there?";
+
+// Its figures.
+inline constexpr const char* kLegsEnd =
+    "legs (landmark to landmark) that no fit has seen end so far off";
+inline constexpr const char* kLegsEnded =
+    "legs (landmark to landmark) that no fit has seen ended so far off";
+inline constexpr const char* kLegsEndNow = "the same with the model found";
+
+/// One effect: "hard iron – the compass reads up to 2.9° too much or too little"; several: "hard
+/// iron (±2.9°) and wheelbase (2 %)".
+[[nodiscard]] std::string named_with_sizes(const std::vector<FittedEffect>& effects);
+
+/// "Hard iron: the compass reads up to 2.9° too much or too little (±2.91°, standard error 0.03°)."
+[[nodiscard]] std::string sized_in_words(const FittedEffect& effect);
+
+/// Advice, "what is lacking: why it matters; what to drive", with the drive first.
+[[nodiscard]] std::string advised_drive(const std::string& advice);
+
+/// How likely chance is, in a sentence.
+[[nodiscard]] std::string sure_text(double p, std::size_t tests);
+
+[[nodiscard]] std::string capitalised(std::string text);
+
 [[nodiscard]] std::string cause_note(const Effect& effect);
 
 /// "It could also be ...", or that it could not.

@@ -20,18 +20,35 @@ namespace {
 constexpr const char* kModelGiven = "as given";
 constexpr const char* kModelFound = "as found";
 
-std::string step_name(const DiscoveryStep& step) {
-  std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
-  for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
-  return name;
-}
-
 std::vector<LadderStep> ladder_of(const Discovery& discovery) {
   std::vector<LadderStep> steps;
   for (const DiscoveryStep& one : discovery.steps) {
     steps.push_back({step_name(one), one.held_out.arrival_rms, one.chi2, one.dof});
   }
   return steps;
+}
+
+/// The last line of the ladder.
+std::string last_name(const Discovery& discovery) {
+  return step_name(discovery.steps.back());
+}
+
+/// What an addition took away of chi^2, where that says how sure it is.
+std::string gone_text(const Discovery& discovery) {
+  std::vector<std::string> parts;
+  for (std::size_t k = 1; k < discovery.steps.size(); ++k) {
+    const DiscoveryStep& step = discovery.steps[k];
+    const double fell = discovery.steps[k - 1].chi2 - step.chi2;
+    if (!step.added || !(fell > 0.0)) continue;
+    parts.push_back(fmt::format("{} explains {:.2g} % of the squared errors{}",
+                                short_name(*step.added), 100.0 * fell / discovery.steps[k - 1].chi2,
+                                k > 1 ? " that were left" : ""));
+  }
+  if (parts.empty()) return "";
+  return fmt::format(
+      "{}. {} significant with all tests allowed for, and predict{} legs that no fit has seen.",
+      capitalised(listed(parts)), parts.size() == 1 ? "It is" : "All are",
+      parts.size() == 1 ? "s" : "");
 }
 
 PageTable step_table(const Discovery& discovery) {
@@ -71,15 +88,7 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryPictures& p
            (off.empty() ? "" : off + ", as good as this robot's noise allows.");
   }
   std::string text = "Found: ";
-  if (effects.size() == 1) {
-    const FittedEffect& only = effects.front();
-    text += name_in_words(only.estimate.effect) + " \u2013 " +
-            typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
-  } else {
-    std::vector<std::string> names;
-    for (const FittedEffect& one : effects) names.push_back(name_in_words(one.estimate.effect));
-    text += listed(names);
-  }
+  text += named_with_sizes(effects);
   const std::string gain =
       gain_sentence(pictures.given.comparison, now, effects.size() == 1 ? "it" : "them");
   if (!gain.empty()) return text + ". " + gain;
@@ -101,11 +110,9 @@ std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryPic
     const double off = given.held_out.arrival_rms;
     const double now = found.held_out.arrival_rms;
     if (!pictures.effects.empty()) {
-      facts.push_back(
-          {distance_text(off, now), "legs that no fit has seen ended so far off (rms)", Tone::bad});
+      facts.push_back({distance_text(off, now), kLegsEnded, Tone::bad});
     }
-    facts.push_back(
-        {distance_text(now, off), "legs that no fit has seen now end so far off (rms)", tone});
+    facts.push_back({distance_text(now, off), kLegsEndNow, tone});
   }
   facts.push_back({fmt::format("{:.2f}", found.misfit()),
                    "chi\u00b2 per degree of freedom now (1 is right)", tone});
@@ -115,29 +122,52 @@ std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryPic
   return facts;
 }
 
-std::vector<std::string> found_notes(const Discovery& discovery, const DiscoveryPictures& pictures,
-                                     const std::vector<std::vector<LookAlike>>& rivals) {
-  std::vector<std::string> notes;
+std::vector<PageAnswer> found_answers(const Discovery& discovery, const DiscoveryPictures& pictures,
+                                      const std::vector<std::vector<LookAlike>>& rivals) {
+  std::vector<PageAnswer> answers;
+  for (const FittedEffect& one : pictures.effects) {
+    answers.push_back({kHowLarge, sized_in_words(one)});
+  }
+  if (!pictures.effects.empty()) answers.push_back({kHowSure, gone_text(discovery)});
+  for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
+    answers.push_back({kWhatElse, rivals_note(pictures.effects[k].estimate.effect, rivals[k])});
+  }
   for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
     const Effect& effect = pictures.effects[k].estimate.effect;
-    if (pictures.effects.size() > 1) notes.push_back(effect_in_words(pictures.effects[k]));
-    notes.push_back(rivals_note(effect, rivals[k]));
     for (const LookAlike& rival : rivals[k]) {
       const std::string drive = separating_drive(effect, rival.effect);
       if (drive.empty()) continue;
-      notes.push_back("Next drive, to tell: " + drive + ".");
+      answers.push_back(
+          {kNext, fmt::format("To tell {} from its rivals, {}.", short_name(effect), drive)});
       break;
     }
-    notes.push_back(cause_note(effect));
   }
-  if (pictures.effects.empty()) notes.push_back(seen_from_note(pictures.tables));
-  notes.push_back("Stopped there: " + discovery.stopped + ".");
-  for (std::string& note : others_notes(discovery.last)) notes.push_back(std::move(note));
-  std::erase(notes, "");
-  return notes;
+  if (!pictures.effects.empty()) {
+    answers.push_back({kNext,
+                       "Use the model found (trussmap discover --out FILE writes it) with build, "
+                       "compare and the robot's own odometry."});
+  } else if (!discovery.last.advice.empty()) {
+    answers.push_back({kNext, advised_drive(discovery.last.advice.front())});
+  }
+  for (const FittedEffect& one : pictures.effects) {
+    answers.push_back({kCause, cause_note(one.estimate.effect)});
+  }
+  if (pictures.effects.empty()) answers.push_back({kSeen, seen_from_note(pictures.tables)});
+  answers.push_back({"Why it stopped", capitalised(discovery.stopped) + "."});
+  for (std::string& note : others_notes(discovery.last)) {
+    answers.push_back({kBeside, std::move(note)});
+  }
+  std::erase_if(answers, [](const PageAnswer& one) { return one.answer.empty(); });
+  return answers;
 }
 
 }  // namespace
+
+std::string step_name(const DiscoveryStep& step) {
+  std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
+  for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
+  return name;
+}
 
 AddedEffects added_effects(const Discovery& discovery) {
   AddedEffects added;
@@ -162,7 +192,7 @@ Page discovery_page(const Discovery& discovery, const DiscoveryPictures& picture
   page.verdict = found_verdict(discovery, pictures);
   page.tone = discovery.consistent ? Tone::good : Tone::bad;
   page.facts = found_facts(discovery, pictures);
-  page.notes = found_notes(discovery, pictures, added_effects(discovery).rivals);
+  page.answers = found_answers(discovery, pictures, added_effects(discovery).rivals);
   page.sections.push_back({"Part by part", {pictures.tables.parts}});
   const NamedModel given{kModelGiven, pictures.given};
   const NamedModel found{kModelFound, pictures.found};
@@ -173,12 +203,17 @@ Page discovery_page(const Discovery& discovery, const DiscoveryPictures& picture
     gain.blocks.emplace_back(step_table(discovery));
     page.sections.push_back(std::move(gain));
     page.sections.push_back(effect_section("What was found", pictures.effects));
-    page.sections.push_back(maps_section(given, found));
+    std::vector<NamedModel> models{given};
+    for (const FittedStep& step : pictures.between) models.push_back({step.name, step.model});
+    models.push_back(
+        {pictures.between.empty() ? kModelFound : last_name(discovery), pictures.found});
+    page.sections.push_back(maps_section("The map, model by model", models));
   }
   page.sections.push_back(trend_section("What errors go with, in the model found",
                                         pictures.found.comparison, pictures.trends));
   page.sections.push_back(legs_section("Legs, in the model found", pictures.found.comparison));
   page.sections.push_back(tried_section(discovery.last, pictures.tables));
+  move_tables_last(page);
   return page;
 }
 

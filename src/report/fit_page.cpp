@@ -6,6 +6,7 @@
 #include "trussmap/report/fit_charts.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,6 +54,11 @@ std::vector<Effect> drawn_rivals(const std::vector<LookAlike>& rivals, const Sco
 }
 
 }  // namespace
+
+FittedModel fitted_model(const ModelFit& fit, Comparison comparison) {
+  return {std::move(comparison), fitted_map(fit),
+          residuals_by_source(fit.problem, snoop(fit.problem, fit.columns.border, fit.adjustment))};
+}
 
 std::vector<FittedEffect> fitted_effects(const ModelFit& without,
                                          const std::vector<EffectEstimate>& effects,
@@ -103,8 +109,9 @@ Page fit_page(const FittedModel& without, const FittedModel& with,
   const NamedModel fitted{kAfter, with};
   page.sections.push_back(effect_section("The effects", effects));
   page.sections.push_back(gain_section(given, fitted));
-  page.sections.push_back(maps_section(given, fitted));
+  page.sections.push_back(maps_section("The map, before and after", {given, fitted}));
   page.sections.push_back(legs_section("Legs, with the effects", after));
+  move_tables_last(page);
   return page;
 }
 

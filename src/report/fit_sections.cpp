@@ -204,35 +204,76 @@ PageSection gain_section(const NamedModel& before, const NamedModel& after,
     const std::vector<LadderStep> two{
         {before.name, one.held_out.arrival_rms, one.chi2, one.dof},
         {after.name, other.held_out.arrival_rms, other.chi2, other.dof}};
-    section.blocks.emplace_back(ChartRow{
+    ChartRow charts{
         ladder_chart("ladder", ladder.empty() ? two : ladder),
-        held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})});
+        held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})};
+    charts[0].height = std::max(charts[0].height, charts[1].height);
+    section.blocks.emplace_back(std::move(charts));
   }
   section.blocks.emplace_back(
       ChartRow{source_chart("noise", {{before.name, one.sources}, {after.name, other.sources}})});
+  add_quantiles(section, {before, after});
   section.blocks.emplace_back(model_table(before, after));
   return section;
 }
 
-PageSection maps_section(const NamedModel& before, const NamedModel& after) {
-  const auto chart = [](const char* id, const NamedModel& one) {
-    std::string title = one.name;
-    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-    return truss_chart(id, title, one.model.map, one.model.comparison.routes,
-                       one.model.comparison.misfit());
-  };
-  return {"The map, before and after",
-          {ChartRow{chart("map-before", before), chart("map-after", after)}}};
+PageSection maps_section(const std::string& title, const std::vector<NamedModel>& models) {
+  double loudest = 0.0;
+  for (const NamedModel& one : models) {
+    loudest = std::max(loudest, loudest_force(one.model.comparison));
+  }
+  ChartRow maps;
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    const NamedModel& one = models[k];
+    std::string name = one.name;
+    name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+    maps.push_back(truss_chart(fmt::format("map-{}", k + 1), name, one.model.map,
+                               one.model.comparison.routes, loudest));
+    if (k == 0) continue;
+    maps.back().caption =
+        "Colours as in the first map: the greyer, the better the model agrees with what was "
+        "measured.";
+  }
+  return {title, {std::move(maps)}};
+}
+
+void add_quantiles(PageSection& section, const std::vector<NamedModel>& models) {
+  ChartRow charts;
+  for (std::size_t k = 0; k < models.size(); ++k) {
+    const bool alone = models.size() == 1;
+    Chart chart = quantile_chart(alone ? "quantiles" : fmt::format("quantiles-{}", k + 1),
+                                 std::string("Do the errors scatter as stated?") +
+                                     (alone ? "" : " \u2013 " + models[k].name),
+                                 models[k].model.residuals);
+    if (chart.layers.size() > 1) charts.push_back(std::move(chart));
+  }
+  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
+}
+
+void move_tables_last(Page& page) {
+  PageSection last{"Tables", {}};
+  for (PageSection& section : page.sections) {
+    const auto is = [](const PageBlock& block) { return std::holds_alternative<ChartRow>(block); };
+    if (std::none_of(section.blocks.begin(), section.blocks.end(), is)) continue;
+    for (PageBlock& block : section.blocks) {
+      if (std::holds_alternative<PageTable>(block)) last.blocks.push_back(std::move(block));
+    }
+    std::erase_if(section.blocks,
+                  [](const PageBlock& block) { return std::holds_alternative<PageTable>(block); });
+  }
+  if (!last.blocks.empty()) page.sections.push_back(std::move(last));
 }
 
 PageSection fit_section(const NamedModel& model) {
   const Comparison& one = model.model.comparison;
   ChartRow noise{source_chart("noise", {{"", one.sources}})};
   if (!one.held_out.legs.empty()) noise.push_back(held_out_chart("held-out", {{"", one.held_out}}));
-  return {"The map and the noise",
-          {ChartRow{truss_chart("map", "Map with the forces in its bars", model.model.map,
-                                one.routes, one.misfit())},
-           std::move(noise)}};
+  PageSection section{"The map and the noise",
+                      {ChartRow{truss_chart("map", "Map with the forces in its bars",
+                                            model.model.map, one.routes, loudest_force(one))},
+                       std::move(noise)}};
+  add_quantiles(section, {model});
+  return section;
 }
 
 PageSection legs_section(const std::string& title, const Comparison& comparison) {

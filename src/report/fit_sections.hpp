@@ -44,11 +44,18 @@ struct NamedModel {
 [[nodiscard]] PageSection gain_section(const NamedModel& before, const NamedModel& after,
                                        const std::vector<LadderStep>& ladder = {});
 
-/// The map as each of the two has it.
-[[nodiscard]] PageSection maps_section(const NamedModel& before, const NamedModel& after);
+/// The map as each of the models has it, the same force in the same colour.
+[[nodiscard]] PageSection maps_section(const std::string& title,
+                                       const std::vector<NamedModel>& models);
 
 /// One model alone: its map, its noise, its held-out legs.
 [[nodiscard]] PageSection fit_section(const NamedModel& model);
+
+/// Q-Q charts of the models that have errors enough to draw, side by side.
+void add_quantiles(PageSection& section, const std::vector<NamedModel>& models);
+
+/// Pictures first: tables of sections that have charts go to a section of their own at the end.
+void move_tables_last(Page& page);
 
 /// Every leg, and the worst.
 [[nodiscard]] PageSection legs_section(const std::string& title, const Comparison& comparison);

@@ -81,6 +81,17 @@ std::string first_screen(const Page& page) {
     }
     text += "</dl>\n";
   }
+  if (!page.answers.empty()) {
+    text += "<dl class=\"answers\">\n";
+    for (std::size_t k = 0; k < page.answers.size(); ++k) {
+      const PageAnswer& one = page.answers[k];
+      if (k == 0 || (!one.question.empty() && one.question != page.answers[k - 1].question)) {
+        text += element("dt", one.question);
+      }
+      text += element("dd", one.answer);
+    }
+    text += "</dl>\n";
+  }
   if (!page.notes.empty()) {
     text += "<ul class=\"notes\">\n";
     for (const std::string& note : page.notes) text += element("li", note);

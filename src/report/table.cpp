@@ -55,6 +55,19 @@ std::string format_table(const TextTable& table) {
   return text;
 }
 
+std::string shortened(const std::string& text, std::size_t most) {
+  if (width(text) <= most) return text;
+  std::string kept;
+  std::size_t characters = 0;
+  for (const char c : text) {
+    const bool begins = (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+    if (begins && characters + 3 == std::max<std::size_t>(most, 3)) break;
+    characters += begins ? 1 : 0;
+    kept += c;
+  }
+  return kept + "...";
+}
+
 QuantityText quantity_text(double value, double standard_error) {
   if (!std::isfinite(value)) return {"-", ""};
   if (!(standard_error > 0.0) || !std::isfinite(standard_error)) {

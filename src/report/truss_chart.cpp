@@ -38,12 +38,10 @@ ChartLayer net_layer(const char* name, const std::vector<Vector2>& points) {
 using Places = std::map<std::string, Vector2>;
 
 /// The bars that carry most, and all others as one net.
-void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> routes, double misfit) {
+void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> routes, double loudest) {
   std::stable_sort(routes.begin(), routes.end(), [](const RouteMisfit& a, const RouteMisfit& b) {
     return std::abs(a.force) > std::abs(b.force);
   });
-  const double loudest =
-      strongest_force(routes) * std::sqrt(std::max(1.0, kLoud / std::max(1.0, misfit)));
   const Vector2 gap(kAbsent, kAbsent);
   std::vector<Vector2> net;
   ChartLayer bars{LayerKind::segments,
@@ -131,8 +129,13 @@ void add_landmarks(Chart& chart, const FittedMap& map) {
 
 }  // namespace
 
+double loudest_force(const Comparison& comparison) {
+  return strongest_force(comparison.routes) *
+         std::sqrt(std::max(1.0, kLoud / std::max(1.0, comparison.misfit())));
+}
+
 Chart truss_chart(const std::string& id, const std::string& title, const FittedMap& map,
-                  const std::vector<RouteMisfit>& routes, double misfit) {
+                  const std::vector<RouteMisfit>& routes, double loudest) {
   Chart chart;
   chart.id = id;
   chart.title = title;
@@ -158,7 +161,7 @@ Chart truss_chart(const std::string& id, const std::string& title, const FittedM
   if (!path.empty()) chart.layers.push_back(net_layer("path driven", path));
   Places places;
   for (const FittedLandmark& one : map.landmarks) places[one.name] = one.position;
-  add_bars(chart, places, routes, misfit);
+  add_bars(chart, places, routes, loudest);
   add_landmarks(chart, map);
   return chart;
 }

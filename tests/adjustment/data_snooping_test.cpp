@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/adjustment/data_snooping.hpp"
 
+#include "trussmap/adjustment/source_residuals.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -39,6 +41,40 @@ TEST(DataSnooping, RedundanciesAddUpToTheDegreesOfFreedom) {
   double sum = 0.0;
   for (const CheckedMeasurement& checked : snoop(problem, {}, fit)) sum += checked.redundancy;
   EXPECT_NEAR(sum, fit.dof, 1e-5 * fit.dof);
+}
+
+TEST(DataSnooping, ResidualsBySourceAreThriceAsLargeWhereNoiseIsStatedAThird) {
+  const SimulatedRecording one = simulate_recording({true, false, true, 4}, 7);
+  const auto residuals = [&one](double scale) {
+    Model model = one.model;
+    Noise& noise = model.noise;
+    for (double* sd : {&noise.left, &noise.right, &noise.compass, &noise.sighting, &noise.range,
+                       &noise.bearing, &noise.survey, &noise.range_relative, &noise.heading_per_s,
+                       &noise.heading_per_rad, &noise.travel_per_s}) {
+      *sd *= scale;
+    }
+    const RecordingProblem problem = make_problem({one.recording}, model);
+    return residuals_by_source(problem, snoop(problem, {}, adjust(problem)));
+  };
+  const std::vector<SourceResiduals> stated = residuals(1.0);
+  const std::vector<SourceResiduals> understated = residuals(1.0 / 3.0);
+  ASSERT_GE(stated.size(), 3U);
+  // Not exactly three times: noise bends the path, and what is believed of it goes with the square.
+  ASSERT_EQ(stated.size(), understated.size());
+  for (std::size_t k = 0; k < stated.size(); ++k) {
+    EXPECT_EQ(stated[k].source, understated[k].source);
+    ASSERT_EQ(stated[k].standardised.size(), understated[k].standardised.size());
+    EXPECT_TRUE(std::is_sorted(stated[k].standardised.begin(), stated[k].standardised.end()));
+    const double count = static_cast<double>(stated[k].standardised.size());
+    double squares = 0.0;
+    for (std::size_t i = 0; i < stated[k].standardised.size(); ++i) {
+      EXPECT_NEAR(understated[k].standardised[i], 3.0 * stated[k].standardised[i],
+                  0.1 + 0.1 * std::abs(understated[k].standardised[i]));
+      squares += stated[k].standardised[i] * stated[k].standardised[i];
+    }
+    // The variance of a sample of n has the standard deviation sqrt(2/n).
+    EXPECT_NEAR(squares / count, 1.0, 5.0 * std::sqrt(2.0 / count)) << stated[k].source;
+  }
 }
 
 TEST(DataSnooping, StandardisedResidualsAreStandardNormal) {

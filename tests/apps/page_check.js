@@ -39,6 +39,20 @@
     result.svg_plain = !svg.includes('var(') && !svg.includes('<script');
     result.csv_rows = window.trussmap.csv(figure.id).split('\r\n').length - 1;
     figure.querySelector('details').open = true;
+    const [closer, , whole] = figure.querySelectorAll('button.zoom');
+    if (whole) {
+      const places = async () => {
+        await new Promise(done => setTimeout(done, 100));
+        return [...picture.querySelectorAll('.mark-symbol > *, .mark-rule > *')]
+            .filter(mark => !mark.closest('[class*="role-axis"], [class*="role-legend"]'))
+            .map(mark => mark.getAttribute('transform')).join();
+      };
+      const before = await places();
+      closer.click();
+      const near = await places();
+      whole.click();
+      result.zoom = {nearer: near !== before, back: await places() === before};
+    }
     return result;
   }
 

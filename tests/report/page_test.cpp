@@ -5,11 +5,12 @@
 #include <regex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "report/large_comparison.hpp"
+#include "report/large_pages.hpp"
 #include "report/some_charts.hpp"
 
 namespace trussmap {
@@ -93,13 +94,32 @@ TEST(Page, ChartsOfOneNameAreRefused) {
   EXPECT_THROW(static_cast<void>(render_page(page, kRuntime)), std::invalid_argument);
 }
 
+TEST(Page, AnswersStandUnderTheirQuestions) {
+  Page page = page_with("A");
+  page.answers = {{"How sure?", "Very."},
+                  {"What to do next?", "Drive."},
+                  {"What to do next?", "Look."},
+                  {testing::kHostile, testing::kHostile}};
+  const std::string html = render_page(page, kRuntime);
+  EXPECT_NE(html.find("<dt>What to do next?</dt>\n<dd>Drive.</dd>\n<dd>Look.</dd>"),
+            std::string::npos);
+  EXPECT_EQ(html.find("<script>document"), std::string::npos);
+  EXPECT_LT(html.find("<dt>How sure?"), html.find("<h2>"));
+}
+
 TEST(Page, TenThousandLegsStaySmall) {
-  const Page page = testing::large_comparison_page(10000);
-  for (const Chart* chart : charts_of(page)) {
-    EXPECT_LE(mark_count(*chart), kMostMarks) << chart->id;
-    EXPECT_GT(mark_count(*chart), 0U) << chart->id;
+  for (const auto& [name, page] : {std::pair{"compare", testing::large_comparison_page(10000)},
+                                   std::pair{"diagnose", testing::large_diagnosis_page(10000)},
+                                   std::pair{"discover", testing::large_discovery_page(10000)},
+                                   std::pair{"build", testing::large_map_page(10000)}}) {
+    for (const Chart* chart : charts_of(page)) {
+      EXPECT_LE(mark_count(*chart), kMostMarks) << name << ", " << chart->id;
+      EXPECT_GT(mark_count(*chart), 0U) << name << ", " << chart->id;
+    }
+    const std::size_t size = render_page(page, kRuntime).size();
+    RecordProperty(name, static_cast<int>(size));
+    EXPECT_LT(size, 4'000'000U) << name;  // the script has half a megabyte
   }
-  EXPECT_LT(render_page(page, kRuntime).size(), 4'000'000U);  // the script has half a megabyte
 }
 
 }  // namespace

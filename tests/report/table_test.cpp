@@ -21,6 +21,13 @@ TEST(TextTable, AlignsByCharactersAndEndsLinesCleanly) {
             " b\n");
 }
 
+TEST(Shortened, CountsCharacters) {
+  EXPECT_EQ(shortened("four", 4), "four");
+  EXPECT_EQ(shortened("fives", 4), "f...");
+  EXPECT_EQ(shortened("\u00e4\u00e4\u00e4\u00e4", 4), "\u00e4\u00e4\u00e4\u00e4");
+  EXPECT_EQ(shortened("\u00e4\u00e4\u00e4\u00e4\u00e4\u00e4", 5), "\u00e4\u00e4...");
+}
+
 TEST(QuantityText, ValueAndErrorShareTheirLastDigit) {
   const auto both = [](double value, double error) {
     const QuantityText text = quantity_text(value, error);

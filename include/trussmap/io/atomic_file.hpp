@@ -26,4 +26,8 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 /// where a path is a folder or is named twice.
 void write_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files);
 
+/// Deletes the temporary files of a write_files() that is under way in any thread: for the handler
+/// of a signal that ends the program, and safe there.
+void discard_temporaries() noexcept;
+
 }  // namespace trussmap

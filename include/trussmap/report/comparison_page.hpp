@@ -5,8 +5,8 @@
 #pragma once
 
 #include "trussmap/criticism/comparison.hpp"
-#include "trussmap/criticism/fitted_map.hpp"
 #include "trussmap/criticism/response.hpp"
+#include "trussmap/report/fit_page.hpp"
 #include "trussmap/report/page.hpp"
 
 #include <string>
@@ -24,7 +24,7 @@ struct TrendPicture {
 [[nodiscard]] std::vector<TrendPicture> trend_pictures(const Comparison& comparison,
                                                        const ModelFit& fit, const ScoreTest& tests);
 
-[[nodiscard]] Page comparison_page(const Comparison& comparison, const FittedMap& map,
+[[nodiscard]] Page comparison_page(const FittedModel& model,
                                    const std::vector<TrendPicture>& trends,
                                    const std::string& subject);
 

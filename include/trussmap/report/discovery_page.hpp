@@ -12,8 +12,18 @@
 
 namespace trussmap {
 
+/// A model between the one given and the one found, as the ladder names it.
+struct FittedStep {
+  std::string name;
+  FittedModel model;
+};
+
+/// Name of a step's model: "as given", "+ hard iron".
+[[nodiscard]] std::string step_name(const DiscoveryStep& step);
+
 struct DiscoveryPictures {
   FittedModel given;
+  std::vector<FittedStep> between;
   FittedModel found;
   std::vector<FittedEffect> effects;  ///< that were added and stayed
   std::vector<TrendPicture> trends;   ///< of the model found

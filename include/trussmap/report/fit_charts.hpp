@@ -7,11 +7,13 @@
 //   response_chart  the signature: a channel's error along a variable, with curves
 //   ladder_chart    what each step takes off the held-out legs' error
 //   source_chart    is each source of noise as large as stated?
+//   quantile_chart  do its errors scatter as they should?
 //   held_out_chart  how many held-out legs end within which distance
 //   legs_chart      stretch or orientation error of all legs, in time
 //   worst_chart     the legs with most chi^2
 #pragma once
 
+#include "trussmap/adjustment/source_residuals.hpp"
 #include "trussmap/criticism/comparison.hpp"
 #include "trussmap/criticism/fitted_map.hpp"
 #include "trussmap/criticism/response.hpp"
@@ -36,10 +38,13 @@ struct ShownUnit {
 /// What a channel's error is called: "turning", "compass reading" ...
 [[nodiscard]] std::string channel_in_words(const std::string& channel);
 
-/// The strongest bars are drawn one by one (the others as one faint net). `misfit` is chi^2/dof.
+/// The strongest bars are drawn one by one (the others as one faint net). `loudest` is the force
+/// that has the strongest colour.
 [[nodiscard]] Chart truss_chart(const std::string& id, const std::string& title,
                                 const FittedMap& map, const std::vector<RouteMisfit>& routes,
-                                double misfit);
+                                double loudest);
+/// For one map alone: its strongest force, but so that mere noise looks calm.
+[[nodiscard]] double loudest_force(const Comparison& comparison);
 
 /// A curve beside the response's own: a rival's, say.
 struct NamedCurve {
@@ -62,6 +67,10 @@ struct LadderStep {
 
 using NamedSources = std::pair<std::string, std::vector<SourceCalibration>>;
 [[nodiscard]] Chart source_chart(const std::string& id, const std::vector<NamedSources>& models);
+
+/// Standardised residuals against those that a normal distribution would have (Q-Q).
+[[nodiscard]] Chart quantile_chart(const std::string& id, const std::string& title,
+                                   const std::vector<SourceResiduals>& sources);
 
 /// A name for each set: "nominal", "with hard iron".
 using NamedHeldOut = std::pair<std::string, HeldOut>;

@@ -4,6 +4,7 @@
 // The page of a fit: a model with its effects beside the same robot without them.
 #pragma once
 
+#include "trussmap/adjustment/source_residuals.hpp"
 #include "trussmap/criticism/comparison.hpp"
 #include "trussmap/criticism/diagnosis.hpp"
 #include "trussmap/criticism/fitted_map.hpp"
@@ -19,7 +20,11 @@ namespace trussmap {
 struct FittedModel {
   Comparison comparison;
   FittedMap map;
+  std::vector<SourceResiduals> residuals;
 };
+
+/// `comparison` is of this fit.
+[[nodiscard]] FittedModel fitted_model(const ModelFit& fit, Comparison comparison);
 
 /// An effect as fitted, and what the recordings show of it where the model lacks it alone.
 struct FittedEffect {

@@ -5,6 +5,7 @@
 //
 //   verdict   one sentence, with sizes and units
 //   facts     a handful of figures, large
+//   answers   what a reader asks next, each with its question: "What else could it be?"
 //   notes     what to know or to do, a sentence each
 //   sections  texts, rows of charts, tables
 //
@@ -30,6 +31,11 @@ struct PageFact {
   Tone tone = Tone::neutral;
 };
 
+struct PageAnswer {
+  std::string question;  ///< the same as before, or empty: one more answer to the one above
+  std::string answer;
+};
+
 struct PageTable {
   std::string caption;
   std::vector<std::string> headings;
@@ -53,6 +59,7 @@ struct Page {
   Tone tone = Tone::neutral;
   std::string verdict;
   std::vector<PageFact> facts;
+  std::vector<PageAnswer> answers;
   std::vector<std::string> notes;
   std::vector<PageSection> sections;
 };

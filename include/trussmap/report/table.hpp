@@ -22,6 +22,9 @@ struct TextTable {
 /// characters. A row may have fewer cells than there are columns.
 [[nodiscard]] std::string format_table(const TextTable& table);
 
+/// No more characters than `width`: a longer text ends in "...".
+[[nodiscard]] std::string shortened(const std::string& text, std::size_t width);
+
 /// A value and its standard error to the same decimal, that of the error's second digit:
 /// "0.3362" and "0.0015". Without an error (0 or not finite) the value has six digits and the
 /// error is empty.

@@ -5,6 +5,7 @@
 import {notice} from './notice.js';
 import {rowsOf, specOf} from './spec.js';
 import {parse, View} from './vega.js';
+import {addZoom} from './zoom.js';
 
 const MOST_TABLE_ROWS = 500;
 const tip = document.getElementById('tip');
@@ -127,7 +128,8 @@ function addTools(figure, entry) {
       details.append(...chart.layers.filter(layer => layer.kind !== 'labels').map(tableOf));
     }
   });
-  figure.append(make('div', {className: 'tools'}, svg, csv, details));
+  const zoom = chart.equal ? addZoom(entry, make) : [];
+  figure.append(make('div', {className: 'tools'}, ...zoom, svg, csv, details));
 }
 
 function draw(entry) {
@@ -144,7 +146,8 @@ function draw(entry) {
   root.tabIndex = 0;
   root.setAttribute('role', 'img');
   root.setAttribute('aria-label', `${entry.chart.title}. ${entry.chart.caption} ` +
-                    'Arrow keys go through the marks.');
+                    'Arrow keys go through the marks.' +
+                    (entry.chart.equal ? ' Plus, minus and 0 zoom.' : ''));
 }
 
 function begin(figure) {

@@ -211,8 +211,11 @@ export function specOf(chart, width) {
              gridColor: 'var(--grid)', titlePadding: 8},
       legend: {labelFont: text.font, labelFontSize: 12, labelColor: 'var(--ink)',
                labelLimit: 260, symbolStrokeWidth: 0, columnPadding: 16}},
+    // A map's part that is shown: page.js moves it.
+    signals: chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [],
     data: chart.layers.map((layer, k) => ({name: 'd' + k, values: rowsOf(layer)})),
-    scales: [scale('x', chart.x, domains[0]), scale('y', chart.y, domains[1]),
+    scales: [scale('x', chart.x, chart.equal ? {signal: 'xs'} : domains[0]),
+             scale('y', chart.y, chart.equal ? {signal: 'ys'} : domains[1]),
              {name: 'legend', type: 'ordinal', domain: legend.map(e => e[0]),
               range: legend.map(e => e[1])}],
     axes: [axis('bottom', chart.x, 'x'), axis('left', chart.y, 'y')],

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What is printed, where somebody looks: the verdict's word in its colour, heads of tables dim.
+// Anywhere else (a file, a pipe, NO_COLOR, a terminal that is dumb) it is plain text.
+#pragma once
+
+#include "trussmap/report/table.hpp"
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace trussmap::app {
+
+/// Whether lines can be written over: a terminal that is not dumb.
+[[nodiscard]] bool can_rewrite_lines(std::FILE* file);
+/// The same, and colour is not unwanted (NO_COLOR, https://no-color.org).
+[[nodiscard]] bool is_coloured(std::FILE* file);
+
+enum class Mood { good, doubt, bad };
+
+/// A sentence that begins with its verdict, "misfit: ...": the word up to the colon in colour and
+/// bold; all of it where there is no colon.
+[[nodiscard]] std::string verdict_text(Mood mood, std::string_view sentence,
+                                       bool coloured = is_coloured(stdout));
+
+/// format_table, its heading dim.
+[[nodiscard]] std::string table_text(const TextTable& table, bool coloured = is_coloured(stdout));
+
+/// "warning: ..." and an end of line.
+[[nodiscard]] std::string warning_text(std::string_view warning,
+                                       bool coloured = is_coloured(stdout));
+
+}  // namespace trussmap::app

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/report/diagnosis_page.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "report/large_pages.hpp"
+
+namespace trussmap {
+namespace {
+
+/// A diagnosis with two effects missing, of which the second is as unsure as `sd` says.
+Page page_with_second(double sd) {
+  FittedEffect second = testing::large_effect();
+  second.estimate.sd = {sd, sd};
+  const FittedModel model = testing::large_model(50);
+  const DiagnosisPictures pictures{
+      model, model, {testing::large_effect(), second}, testing::large_trends(), {}};
+  return diagnosis_page(testing::large_diagnosis(50), pictures, "a recording");
+}
+
+std::vector<std::string> answers_to(const Page& page, const std::string& question) {
+  std::vector<std::string> answers;
+  for (const PageAnswer& one : page.answers) {
+    if (one.question == question) answers.push_back(one.answer);
+  }
+  return answers;
+}
+
+TEST(DiagnosisPage, SaysHowLargeEachOfSeveralEffectsIs) {
+  const Page page = page_with_second(0.001);
+  EXPECT_NE(page.verdict.find("hard iron (\u00b12.9\u00b0) and hard iron (\u00b12.9\u00b0)"),
+            std::string::npos)
+      << page.verdict;
+  const std::vector<std::string> sizes = answers_to(page, "How large?");
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_NE(sizes[1].find("standard error"), std::string::npos) << sizes[1];
+  EXPECT_EQ(sizes[1].find("hardly seen"), std::string::npos) << sizes[1];
+}
+
+TEST(DiagnosisPage, SaysWhatTheOtherEffectsMakeSuperfluous) {
+  const std::vector<std::string> sizes = answers_to(page_with_second(0.03), "How large?");
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_EQ(sizes[0].find("hardly seen"), std::string::npos) << sizes[0];
+  EXPECT_NE(sizes[1].find("beside the others it is hardly seen"), std::string::npos) << sizes[1];
+}
+
+TEST(DiagnosisPage, PutsPicturesBeforeTables) {
+  const Page page = page_with_second(0.001);
+  bool last = false;
+  for (const PageSection& section : page.sections) {
+    bool charts = false;
+    bool tables = false;
+    for (const PageBlock& block : section.blocks) {
+      charts = charts || std::holds_alternative<ChartRow>(block);
+      tables = tables || std::holds_alternative<PageTable>(block);
+    }
+    EXPECT_FALSE(charts && tables) << section.title;
+    EXPECT_FALSE(charts && last) << section.title;
+    last = section.title == "Tables";
+  }
+  EXPECT_TRUE(last);
+}
+
+}  // namespace
+}  // namespace trussmap

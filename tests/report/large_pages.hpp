@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Pages of recordings of any size, made up: for their size and speed.
+#pragma once
+
+#include "trussmap/report/comparison_page.hpp"
+#include "trussmap/report/diagnosis_page.hpp"
+#include "trussmap/report/discovery_page.hpp"
+#include "trussmap/report/map_page.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace trussmap::testing {
+
+/// So many legs, a fifth as many routes, a tenth as many landmarks.
+inline FittedModel large_model(int legs) {
+  const int across = static_cast<int>(std::ceil(std::sqrt(legs / 10.0)));
+  Comparison result;
+  result.consistent = false;
+  result.chi2 = 9.0 * legs;
+  result.dof = legs;
+  result.legs = static_cast<std::size_t>(legs);
+  FittedMap map;
+  const auto name = [](int k) { return "landmark " + std::to_string(k); };
+  for (int k = 0; k < across * across; ++k) {
+    FittedLandmark one;
+    one.name = name(k);
+    one.position = {5.0 * (k % across) + 0.1 * std::sin(k), 5.0 * (k / across) + 0.1 * std::cos(k)};
+    one.covariance = 0.01 * Matrix2::Identity();
+    map.landmarks.push_back(one);
+    for (const int step : {1, across}) {
+      if (k + step >= across * across || (step == 1 && k % across == across - 1)) continue;
+      result.routes.push_back({name(k), name(k + step), 5, 20.0, 30.0 * std::sin(1.7 * k),
+                               0.01 * std::sin(k), 0.02 * std::cos(k)});
+    }
+  }
+  map.paths.push_back({});
+  for (int k = 0; k < 2000; ++k) {
+    map.paths.front().emplace_back(0.02 * k, 50.0 + 40.0 * std::sin(0.02 * k));
+  }
+  for (int k = 0; k < legs; ++k) {
+    result.worst.push_back({name(k % 97), name(k % 89), 10.0 * k, 100.0 * (legs - k) / legs, 4,
+                            0.02 * std::sin(k), 0.03 * std::cos(k)});
+    LegPrediction leg;
+    leg.arrival_error = {0.02 * std::sin(k), 0.02 * std::cos(0.7 * k)};
+    if (k % 3 == 0) result.held_out.legs.push_back(leg);
+  }
+  result.held_out.arrival_rms = 0.02;
+  result.sources = {{"wheels", 3.0, 0.1, 100.0}, {"compass", 1.0, 0.1, 100.0}};
+  std::vector<SourceResiduals> residuals{{"wheels", {}}, {"compass", {}}};
+  for (int k = 0; k < 4 * legs; ++k) {
+    residuals[k % 4 == 3 ? 1 : 0].standardised.push_back(8.0 * k / (4.0 * legs) - 4.0);
+  }
+  return {result, map, residuals};
+}
+
+inline std::vector<TrendPicture> large_trends() {
+  std::vector<TrendPicture> trends;
+  for (const char* variable : {"heading", "speed", "turn_rate", "t", "distance", "payload_kg"}) {
+    TrendPicture picture;
+    picture.trend.kind = "stretch";
+    picture.trend.against = variable;
+    picture.response.channel = "travel";
+    picture.response.variable = variable;
+    for (int bin = 0; bin < 9; ++bin) {
+      picture.response.bins.push_back({0.1 * bin, 0.1 * bin, 0.1 * bin + 0.1, 0.01 * bin, 0.003});
+      picture.response.curve.emplace_back(0.1 * bin, 0.01 * bin);
+    }
+    trends.push_back(picture);
+  }
+  return trends;
+}
+
+inline Page large_comparison_page(int legs) {
+  FittedModel model = large_model(legs);
+  for (const TrendPicture& one : large_trends()) model.comparison.trends.push_back(one.trend);
+  return comparison_page(model, large_trends(), "a large recording");
+}
+
+inline FittedEffect large_effect() {
+  FittedEffect one;
+  one.estimate = {{"hard iron", "compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03}},
+                  {0.001, 0.001},
+                  {}};
+  one.response = large_trends().front().response;
+  one.range = {-0.05, 0.05};
+  return one;
+}
+
+/// Two effects missing, one of them with a rival.
+inline Diagnosis large_diagnosis(int legs) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Diagnosis::Verdict::missing;
+  diagnosis.missing = "hard iron";
+  diagnosis.p_value = 1e-30;
+  diagnosis.tried = 900;
+  diagnosis.held_out = large_model(legs).comparison.held_out;
+  Finding finding;
+  finding.candidate.effect = large_effect().estimate.effect;
+  finding.status = Status::missing;
+  finding.look_alikes = {{{"body tilt", "compass", {"sin(heading)", "cos(heading)"}, {}}, 0.99}};
+  diagnosis.findings = {finding, finding};
+  return diagnosis;
+}
+
+inline Page large_diagnosis_page(int legs) {
+  DiagnosisPictures pictures{
+      large_model(legs), large_model(legs), {large_effect(), large_effect()}, large_trends(), {}};
+  return diagnosis_page(large_diagnosis(legs), pictures, "a large recording");
+}
+
+/// Five models, one after the other.
+inline Page large_discovery_page(int legs) {
+  Discovery discovery;
+  for (int k = 0; k < 5; ++k) {
+    DiscoveryStep step;
+    if (k > 0) step.added = large_effect().estimate.effect;
+    step.chi2 = 1e5 / (k + 1);
+    step.dof = legs;
+    step.held_out = large_model(legs).comparison.held_out;
+    discovery.steps.push_back(step);
+  }
+  discovery.stopped = "nothing more is significant";
+  discovery.last = large_diagnosis(legs);
+  discovery.fit.effects = {large_effect().estimate};
+  DiscoveryPictures pictures;
+  pictures.given = pictures.found = large_model(legs);
+  for (int k = 0; k < 3; ++k) pictures.between.push_back({"+ an effect", large_model(legs)});
+  pictures.effects = {large_effect()};
+  pictures.trends = large_trends();
+  return discovery_page(discovery, pictures, "a large recording");
+}
+
+inline Page large_map_page(int legs) {
+  BuiltMap built;
+  const FittedModel model = large_model(legs);
+  for (const FittedLandmark& one : model.map.landmarks) {
+    built.picture.map.add_landmark(one.name, one.position);
+    built.picture.before[one.name] = one.position + Vector2(1.0, 0.1 * one.position.x());
+    built.picture.truth[one.name] = one.position;
+  }
+  for (const RouteMisfit& one : model.comparison.routes) {
+    built.picture.map.add_route(*built.picture.map.find(one.from), *built.picture.map.find(one.to));
+  }
+  built.method = "elastic";
+  built.legs = legs;
+  built.survey = compare_with_survey(positions_of(built.picture.map), {});
+  return map_page(built, "a large recording");
+}
+
+}  // namespace trussmap::testing
