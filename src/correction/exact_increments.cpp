@@ -130,7 +130,6 @@ void ExactIncrements::factorise() {
   const SparseMatrix K = assemble(bars, number, places_ - 1);
   cholesky_.analyse(K);
   cholesky_.factorise(K);
-  cholesky_.update(SparseMatrix(K.rows(), 1));  // of nothing: makes it a factor to be changed
   unknown_.assign(idx(places_), -1);
   for (int joint = 1; joint < places_; ++joint) unknown_[idx(joint)] = 2 * number[idx(joint)];
   factored_ = true;

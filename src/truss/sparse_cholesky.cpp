@@ -171,17 +171,18 @@ void SparseCholesky::add_row(int row, const SparseMatrix& column) {
   cholmod_->check("add a row to the factor");
 }
 
-void SparseCholesky::solve_updated(Eigen::VectorXd& x) const {
+void SparseCholesky::solve_updated(Eigen::VectorXd& x) {
   const cholmod_factor& factor = *cholmod_->factor;
+  if (factor.is_super != 0 || factor.is_ll != 0) {
+    cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, cholmod_->factor, &cholmod_->common);
+    cholmod_->check("make the factor one that can be updated");
+  }
   const auto* permutation = static_cast<const int*>(factor.Perm);
   const auto* begin = static_cast<const int*>(factor.p);
   const auto* count = static_cast<const int*>(factor.nz);
   const auto* row = static_cast<const int*>(factor.i);
   const auto* value = static_cast<const double*>(factor.x);
   const auto n = static_cast<Eigen::Index>(factor.n);
-  if (factor.is_super != 0 || factor.is_ll != 0) {
-    throw std::logic_error("the factor has not been updated yet");
-  }
   // Each column: its pivot d_j first, then L below it.
   Eigen::VectorXd y(n);
   for (Eigen::Index k = 0; k < n; ++k) y[k] = x[permutation[k]];

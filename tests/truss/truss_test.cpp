@@ -268,17 +268,5 @@ TEST(SparseCholesky, AFactorThatGrewByRowsEqualsANewOne) {
   EXPECT_LE((x - expected).norm(), 1e-10 * expected.norm());
 }
 
-TEST(SparseCholesky, SolvesWithAnUpdatedFactorOnly) {
-  SparseMatrix A(2, 2);
-  A.setIdentity();
-  SparseCholesky cholesky;
-  cholesky.analyse(A);
-  cholesky.factorise(A);
-  Eigen::VectorXd x = Eigen::VectorXd::Ones(2);
-  cholesky.update(SparseMatrix(2, 1));
-  cholesky.solve_updated(x);
-  EXPECT_EQ(x, Eigen::VectorXd::Ones(2));
-}
-
 }  // namespace
 }  // namespace trussmap

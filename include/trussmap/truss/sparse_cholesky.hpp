@@ -72,9 +72,9 @@ class SparseCholesky {
   /// diagonal entry included), with which A must be positive definite.
   void add_row(int row, const SparseMatrix& column);
 
-  /// A x = b by a factor that was updated, for a b that is mostly zero; `x` holds b before and the
-  /// solution after. Cost: half of solve's. Call after update, downdate or add_row.
-  void solve_updated(Eigen::VectorXd& x) const;
+  /// A x = b for a b that is mostly zero, by the kind of factor that updates leave (which it is
+  /// made if need be); `x` holds b before and the solution after. Cost: half of solve's.
+  void solve_updated(Eigen::VectorXd& x);
 
   /// Natural logarithm of the determinant of A. Call after factorise.
   [[nodiscard]] double log_determinant() const;
