@@ -149,7 +149,7 @@ void grid_part(const std::vector<int>& sides, int repetitions, bool ceres) {
                           return with_bare_cholmod(grid, Ordering::metis, false, s);
                         }});
     }
-    if (ceres) {
+    if (ceres && side < 1000) {
       rivals.push_back({"Ceres", [&](Stages& s) { return fit_with_ceres(grid, s); }});
     }
     const std::vector<Run> runs = race(rivals, rounds);
