@@ -5,12 +5,38 @@
 #include "trussmap/core/error.hpp"
 #include "trussmap/truss/dissection.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include <Eigen/LU>
 
 namespace trussmap {
+namespace {
+
+/// The lowest joint that no chain of bars ties to joint 0; -1 if there is none.
+int find_loose_joint(int joints, const std::vector<NodePair>& pairs) {
+  std::vector<int> root(idx(joints));
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&root](int joint) {
+    while (root[idx(joint)] != joint) {
+      joint = root[idx(joint)] = root[idx(root[idx(joint)])];
+    }
+    return joint;
+  };
+  for (const auto& [i, j] : pairs) {
+    const int a = root_of(i);
+    const int b = root_of(j);
+    root[idx(std::max(a, b))] = std::min(a, b);
+  }
+  for (int joint = 0; joint < joints; ++joint) {
+    if (root_of(joint) != 0) return joint;
+  }
+  return -1;
+}
+
+}  // namespace
 
 int MeasuredTruss::add_joint(const Vector2& about) {
   about_.push_back(about);
@@ -56,6 +82,12 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
   Fit result;
   result.positions = about_;
   if (about_.empty()) return result;
+  // A part that nothing holds is not always noticed by its pivots, which may be rounded to any
+  // sign.
+  if (const int loose = find_loose_joint(joints(), pairs_); loose >= 0) {
+    throw SolveError("joint " + std::to_string(loose) +
+                     " is tied to nothing: no chain of measurements leads to it from joint 0");
+  }
   std::vector<int> sizes(about_.size(), 2);
   sizes[0] = 0;
   BlockSystem& K = system_.emplace(sizes, pairs_, dissection_order(about_, pairs_), kernel);
@@ -71,12 +103,7 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
     if (K.size(i) > 0) u.segment<2>(K.offset(i)) -= force;
     if (K.size(j) > 0) u.segment<2>(K.offset(j)) += force;
   }
-  try {
-    K.factorise();
-  } catch (const NotPositiveDefinite&) {
-    system_.reset();
-    throw SolveError("a joint is tied to nothing: no chain of measurements leads to the first");
-  }
+  K.factorise();
   K.solve_in_place(u);
   for (int joint = 0; joint < joints(); ++joint) {
     if (K.size(joint) > 0) result.positions[idx(joint)] += u.segment<2>(K.offset(joint));
