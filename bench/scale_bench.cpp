@@ -48,9 +48,12 @@ void print_heading() {
 
 int main(int argc, char** argv) {
   using namespace trussmap::bench;
-  // One thread for everybody; BLAS reads this when it is loaded, so the program starts anew.
-  if (std::getenv("OPENBLAS_NUM_THREADS") == nullptr) {
-    setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  // One thread for everybody. BLAS and OpenMP read this when they are loaded, so the program starts
+  // anew. (A pool of threads would not outlive the forks either.)
+  if (std::getenv("TRUSSMAP_ONE_THREAD") == nullptr) {
+    for (const char* name : {"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "TRUSSMAP_ONE_THREAD"}) {
+      setenv(name, "1", 1);
+    }
     execv("/proc/self/exe", argv);
   }
   CLI::App app("Speed and scale of trussmap beside CHOLMOD and Ceres");
