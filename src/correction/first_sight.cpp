@@ -3,7 +3,9 @@
 #include "trussmap/correction/first_sight.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -39,27 +41,34 @@ void OpenChain::append(int a, int b) {
 OpenChain::Closing OpenChain::closing(int a, int b) const {
   const std::vector<int> alone{a};
   const std::vector<int>& chain = chain_.empty() || chain_.back() != a ? alone : chain_;
-  const auto find = [&chain](int landmark) {
-    return std::find(chain.begin(), chain.end(), landmark);
-  };
-  // From b up the loops it hangs on, until one is on the chain.
-  int k = b;
-  auto place = find(k);
-  for (auto up = root_.find(k); place == chain.end() && up != root_.end(); up = root_.find(k)) {
-    k = up->second;
-    place = find(k);
+  // Up the loops that b hangs on. A landmark of the chain other than its first hangs on nothing
+  // yet, so it is met at the top or not at all; in any other case the loop begins with the first.
+  const auto place = std::find(chain.rbegin(), chain.rend(), top_of(b));
+  const auto begin = place == chain.rend() ? chain.begin() : std::prev(place.base());
+  return {std::vector<int>(begin, chain.end()), *begin == b};
+}
+
+int OpenChain::top_of(int landmark) const {
+  for (auto up = root_.find(landmark); up != root_.end(); up = root_.find(landmark)) {
+    landmark = up->second;
   }
-  if (place == chain.end()) place = chain.begin();
-  return {std::vector<int>(place, chain.end()), *place == b};
+  return landmark;
 }
 
 void OpenChain::settle(const Closing& closing, int b) {
   const int k = closing.landmarks.front();
   for (std::size_t n = 1; n < closing.landmarks.size(); ++n) root_[closing.landmarks[n]] = k;
+  // Shortcuts, or the way up would grow with the map.
+  const int top = top_of(b);
+  for (auto up = root_.find(b); up != root_.end();) {
+    const int next = std::exchange(up->second, top);
+    up = next == top ? root_.end() : root_.find(next);
+  }
   if (!closing.closed) {
     chain_ = {b};
-  } else if (const auto place = std::find(chain_.begin(), chain_.end(), k); place != chain_.end()) {
-    chain_.erase(place + 1, chain_.end());
+  } else if (const auto place = std::find(chain_.rbegin(), chain_.rend(), k);
+             place != chain_.rend()) {
+    chain_.erase(place.base(), chain_.end());
   } else {
     chain_ = {k};
   }

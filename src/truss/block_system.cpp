@@ -2,56 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/truss/block_system.hpp"
 
+#include "trussmap/truss/selected_inverse.hpp"
+
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace trussmap {
-namespace {
-
-/// For each node, in elimination order, the later nodes it is paired with, sorted, each once.
-struct Pattern {
-  std::vector<int> begin;  ///< per place, and one past the end
-  std::vector<int> later;  ///< places in the order
-};
-
-Pattern pattern_of(const std::vector<NodePair>& pairs, const std::vector<int>& place, int nodes) {
-  std::vector<int> begin(idx(nodes) + 1, 0);
-  const auto earlier = [&](const NodePair& pair) {
-    return std::min(place[idx(pair[0])], place[idx(pair[1])]);
-  };
-  const auto is_coupling = [&](const NodePair& pair) {
-    return place[idx(pair[0])] >= 0 && place[idx(pair[1])] >= 0 && pair[0] != pair[1];
-  };
-  for (const NodePair& pair : pairs) {
-    if (is_coupling(pair)) ++begin[idx(earlier(pair)) + 1];
-  }
-  for (std::size_t k = 0; k < idx(nodes); ++k) begin[k + 1] += begin[k];
-  std::vector<int> next(begin.begin(), begin.end() - 1);
-  std::vector<int> later(idx(begin.back()));
-  for (const NodePair& pair : pairs) {
-    if (!is_coupling(pair)) continue;
-    const int later_place = std::max(place[idx(pair[0])], place[idx(pair[1])]);
-    later[idx(next[idx(earlier(pair))]++)] = later_place;
-  }
-  Pattern result;
-  result.begin.push_back(0);
-  for (std::size_t k = 0; k < idx(nodes); ++k) {
-    const auto first = later.begin() + begin[k];
-    const auto last = later.begin() + begin[k + 1];
-    std::sort(first, last);
-    result.later.insert(result.later.end(), first, std::unique(first, last));
-    result.begin.push_back(static_cast<int>(result.later.size()));
-  }
-  return result;
-}
-
-}  // namespace
 
 std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs) {
   if (nodes == 0) return {};
   std::vector<int> place(idx(nodes));
   for (int k = 0; k < nodes; ++k) place[idx(k)] = k;
-  const Pattern pattern = pattern_of(pairs, place, nodes);
+  const BlockPattern pattern = pattern_of(pairs, place, nodes);
   SparseMatrix lower(nodes, nodes);
   lower.resizeNonZeros(nodes + static_cast<Eigen::Index>(pattern.later.size()));
   int at = 0;
@@ -70,30 +33,51 @@ std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs
 }
 
 BlockSystem::BlockSystem(const std::vector<int>& sizes, const std::vector<NodePair>& pairs,
-                         const std::vector<int>& order) {
+                         const std::vector<int>& order, Kernel kernel)
+    : kernel_(kernel) {
   if (order.size() != sizes.size()) {
     throw std::invalid_argument("an order of all nodes is needed");
   }
-  nodes_.resize(sizes.size());
   std::vector<int> free_nodes;
+  std::vector<int> free_sizes;
   for (const int node : order) {
     const int size = sizes[idx(node)];
     if (size < 0 || size > kLargestBlock) throw std::invalid_argument("a block of 0 to 4 unknowns");
-    nodes_[idx(node)].size = size;
-    nodes_[idx(node)].offset = unknowns_;
-    unknowns_ += size;
-    if (size > 0) free_nodes.push_back(node);
+    if (size == 0) continue;
+    free_nodes.push_back(node);
+    free_sizes.push_back(size);
   }
-  lay_out(pairs, free_nodes);
+  const auto places = [&] {
+    std::vector<int> place(sizes.size(), -1);
+    for (std::size_t k = 0; k < free_nodes.size(); ++k)
+      place[idx(free_nodes[k])] = static_cast<int>(k);
+    return place;
+  };
+  std::vector<int> place = places();
+  BlockPattern pattern = pattern_of(pairs, place, static_cast<int>(free_nodes.size()));
+  if (kernel_ == Kernel::frontal) {
+    FrontTree tree = plan_fronts(pattern, free_sizes);
+    std::vector<int> front_by_front;
+    for (const int k : tree.order) front_by_front.push_back(free_nodes[idx(k)]);
+    free_nodes = std::move(front_by_front);
+    place = places();
+    pattern = pattern_of(pairs, place, pattern.nodes());
+    for (std::size_t k = 0; k < free_nodes.size(); ++k) free_sizes[k] = sizes[idx(free_nodes[k])];
+    frontal_ = FrontalCholesky(std::move(tree), free_sizes);
+  }
+  nodes_.resize(sizes.size());
+  for (const int node : free_nodes) {
+    nodes_[idx(node)].size = sizes[idx(node)];
+    nodes_[idx(node)].offset = unknowns_;
+    unknowns_ += sizes[idx(node)];
+  }
+  lay_out(pattern, pairs, free_nodes, place);
   clear();
-  if (unknowns_ > 0) cholesky_.analyse(matrix_);
+  if (kernel_ == Kernel::cholmod && unknowns_ > 0) cholmod_.analyse(matrix_);
 }
 
-void BlockSystem::lay_out(const std::vector<NodePair>& pairs, const std::vector<int>& order) {
-  std::vector<int> place(nodes_.size(), -1);
-  for (std::size_t k = 0; k < order.size(); ++k) place[idx(order[k])] = static_cast<int>(k);
-  const Pattern pattern = pattern_of(pairs, place, static_cast<int>(order.size()));
-
+void BlockSystem::lay_out(const BlockPattern& pattern, const std::vector<NodePair>& pairs,
+                          const std::vector<int>& order, const std::vector<int>& place) {
   // Heights of the blocks below each diagonal one, and where each of them begins.
   std::vector<int> row(pattern.later.size());
   std::vector<int> height(order.size(), 0);
@@ -144,6 +128,50 @@ void BlockSystem::lay_out(const std::vector<NodePair>& pairs, const std::vector<
     }
     couplings_.push_back(coupling);
   }
+}
+
+void BlockSystem::factorise() {
+  if (kernel_ == Kernel::frontal) {
+    frontal_.factorise(matrix_);
+  } else {
+    cholmod_.factorise(matrix_);
+  }
+}
+
+void BlockSystem::solve_in_place(Eigen::VectorXd& x) {
+  if (kernel_ == Kernel::frontal) {
+    frontal_.solve_in_place(x);
+  } else {
+    cholmod_.solve_in_place(x);
+  }
+}
+
+Eigen::MatrixXd BlockSystem::solve(const Eigen::MatrixXd& b) const {
+  if (kernel_ == Kernel::cholmod) return cholmod_.solve(b);
+  Eigen::MatrixXd x = b;
+  for (Eigen::Index c = 0; c < x.cols(); ++c) frontal_.solve_in_place(x.col(c));
+  return x;
+}
+
+Eigen::MatrixXd BlockSystem::inverse_blocks() const {
+  if (kernel_ == Kernel::frontal) return frontal_.inverse_blocks();
+  const SelectedInverse inverse(matrix_);
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(kLargestBlock, unknowns_);
+  for (const Node& node : nodes_) {
+    if (node.size == 0) continue;
+    blocks.block(0, node.offset, node.size, node.size) =
+        inverse.block(node.offset, node.size, node.offset, node.size);
+  }
+  return blocks;
+}
+
+double BlockSystem::log_determinant() const {
+  return kernel_ == Kernel::frontal ? frontal_.log_determinant() : cholmod_.log_determinant();
+}
+
+double BlockSystem::reciprocal_condition() const {
+  return kernel_ == Kernel::frontal ? frontal_.reciprocal_condition()
+                                    : cholmod_.reciprocal_condition();
 }
 
 void BlockSystem::clear() {

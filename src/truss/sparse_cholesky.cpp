@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/truss/sparse_cholesky.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <string>
@@ -54,6 +55,7 @@ struct SparseCholesky::Cholmod {
     common.method[0].ordering = ordering == Ordering::amd     ? CHOLMOD_AMD
                                 : ordering == Ordering::metis ? CHOLMOD_METIS
                                                               : CHOLMOD_NATURAL;
+    if (ordering == Ordering::fixed) common.postorder = 0;
   }
   ~Cholmod() {
     cholmod_free_dense(&solution, &common);
@@ -71,6 +73,16 @@ struct SparseCholesky::Cholmod {
       throw std::runtime_error(std::string("CHOLMOD failed to ") + step + " (status " +
                                std::to_string(common.status) + ")");
     }
+  }
+
+  /// CHOLMOD changes a factor by columns whose rows are in the order of the factor.
+  [[nodiscard]] cholmod_sparse* in_factor_order(const SparseMatrix& columns) {
+    cholmod_sparse view = view_of(columns, 0);
+    cholmod_sparse* permuted =
+        cholmod_submatrix(&view, static_cast<int*>(factor->Perm),
+                          static_cast<SuiteSparse_long>(factor->n), nullptr, -1, 1, 1, &common);
+    check("permute an update");
+    return permuted;
   }
 
   mutable cholmod_common common{};
@@ -142,16 +154,58 @@ void SparseCholesky::downdate(const SparseMatrix& w) {
 }
 
 void SparseCholesky::change(bool add, const SparseMatrix& w) {
-  // cholmod_updown wants the rows of W in the order of the factor.
-  cholmod_sparse view = view_of(w, 0);
   auto* factor = cholmod_->factor;
-  cholmod_sparse* permuted = cholmod_submatrix(&view, static_cast<int*>(factor->Perm),
-                                               static_cast<SuiteSparse_long>(factor->n), nullptr,
-                                               -1, 1, 1, &cholmod_->common);
-  cholmod_->check("permute an update");
+  cholmod_sparse* permuted = cholmod_->in_factor_order(w);
   cholmod_updown(add ? 1 : 0, permuted, factor, &cholmod_->common);
   cholmod_free_sparse(&permuted, &cholmod_->common);
   cholmod_->check("update the factor");
+}
+
+void SparseCholesky::add_row(int row, const SparseMatrix& column) {
+  auto* factor = cholmod_->factor;
+  const auto* permutation = static_cast<const int*>(factor->Perm);
+  const auto place = std::find(permutation, permutation + factor->n, row) - permutation;
+  cholmod_sparse* permuted = cholmod_->in_factor_order(column);
+  cholmod_rowadd(static_cast<size_t>(place), permuted, factor, &cholmod_->common);
+  cholmod_free_sparse(&permuted, &cholmod_->common);
+  cholmod_->check("add a row to the factor");
+}
+
+void SparseCholesky::solve_updated(Eigen::VectorXd& x) {
+  const cholmod_factor& factor = *cholmod_->factor;
+  if (factor.is_super != 0 || factor.is_ll != 0) {
+    cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, cholmod_->factor, &cholmod_->common);
+    cholmod_->check("make the factor one that can be updated");
+  }
+  const auto* permutation = static_cast<const int*>(factor.Perm);
+  const auto* begin = static_cast<const int*>(factor.p);
+  const auto* count = static_cast<const int*>(factor.nz);
+  const auto* row = static_cast<const int*>(factor.i);
+  const auto* value = static_cast<const double*>(factor.x);
+  const auto n = static_cast<Eigen::Index>(factor.n);
+  // Each column: its pivot d_j first, then L below it.
+  Eigen::VectorXd y(n);
+  for (Eigen::Index k = 0; k < n; ++k) y[k] = x[permutation[k]];
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double yj = y[j];
+    if (yj == 0.0) continue;
+    const int first = begin[j];
+    for (int k = first + 1; k < first + count[j]; ++k) y[row[k]] -= value[k] * yj;
+    y[j] = yj / value[first];
+  }
+  for (Eigen::Index j = n - 1; j >= 0; --j) {
+    const int first = begin[j];
+    const int last = first + count[j];
+    double sums[2] = {y[j], 0.0};
+    int k = first + 1;
+    for (; k + 2 <= last; k += 2) {
+      sums[0] -= value[k] * y[row[k]];
+      sums[1] -= value[k + 1] * y[row[k + 1]];
+    }
+    if (k < last) sums[0] -= value[k] * y[row[k]];
+    y[j] = sums[0] + sums[1];
+  }
+  for (Eigen::Index k = 0; k < n; ++k) x[permutation[k]] = y[k];
 }
 
 double SparseCholesky::log_determinant() const {

@@ -8,7 +8,9 @@
 #include "trussmap/odometry/heading_reset.hpp"
 #include "trussmap/truss/truss.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -117,6 +119,75 @@ TEST(HeadingReset, DirectionVarianceIsThatOfTheDirection) {
   }
   const double expected = direction_variance(mean, L * L.transpose());
   EXPECT_NEAR(sum / 40000.0, expected, 0.03 * expected);
+}
+
+/// The same by the letter of the definition: step by step up the loops.
+class PlainChain {
+ public:
+  void append(int a, int b) {
+    if (chain_.empty() || chain_.back() != a) chain_ = {a};
+    chain_.push_back(b);
+  }
+  [[nodiscard]] OpenChain::Closing closing(int a, int b) const {
+    const std::vector<int> chain = chain_.empty() || chain_.back() != a ? std::vector{a} : chain_;
+    const auto find = [&chain](int landmark) {
+      return std::find(chain.begin(), chain.end(), landmark);
+    };
+    int k = b;
+    while (find(k) == chain.end() && root_.contains(k)) k = root_.at(k);
+    const auto place = find(k) == chain.end() ? chain.begin() : find(k);
+    return {std::vector<int>(place, chain.end()), *place == b};
+  }
+  void settle(const OpenChain::Closing& closing, int b) {
+    const int k = closing.landmarks.front();
+    for (std::size_t n = 1; n < closing.landmarks.size(); ++n) root_[closing.landmarks[n]] = k;
+    const auto place = std::find(chain_.begin(), chain_.end(), k);
+    if (!closing.closed) {
+      chain_ = {b};
+    } else if (place != chain_.end()) {
+      chain_.erase(place + 1, chain_.end());
+    } else {
+      chain_ = {k};
+    }
+  }
+  void restart(int landmark) { chain_ = {landmark}; }
+
+ private:
+  std::vector<int> chain_;
+  std::map<int, int> root_;
+};
+
+TEST(OpenChain, ShortcutsChangeNothing) {
+  std::mt19937_64 random(1);
+  for (int drive = 0; drive < 200; ++drive) {
+    OpenChain chain;
+    PlainChain plain;
+    chain.restart(0);
+    plain.restart(0);
+    int here = 0;
+    int landmarks = 1;
+    for (int leg = 0; leg < 60; ++leg) {
+      const auto what = random() % 10;
+      const int known = static_cast<int>(random() % static_cast<unsigned>(landmarks));
+      if (what == 0) {
+        here = known;
+        chain.restart(here);
+        plain.restart(here);
+      } else if (what < 6) {
+        chain.append(here, landmarks);
+        plain.append(here, landmarks);
+        here = landmarks++;
+      } else if (known != here) {
+        const OpenChain::Closing closing = chain.closing(here, known);
+        const OpenChain::Closing expected = plain.closing(here, known);
+        ASSERT_EQ(closing.landmarks, expected.landmarks) << "drive " << drive << ", leg " << leg;
+        ASSERT_EQ(closing.closed, expected.closed);
+        chain.settle(closing, known);
+        plain.settle(expected, known);
+        here = known;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -238,5 +238,35 @@ TEST(SparseCholesky, AnUpdatedFactorEqualsANewOne) {
   EXPECT_LE((live.solve(b) - fresh.solve(b)).norm(), 1e-10 * fresh.solve(b).norm());
 }
 
+TEST(SparseCholesky, AFactorThatGrewByRowsEqualsANewOne) {
+  // The last joints wait as identity and come in one by one, each with all its bars to those there.
+  const RandomTruss truss = random_truss(40, 12);
+  std::vector<int> unknown(40);
+  for (int n = 0; n < 40; ++n) unknown[idx(n)] = n - 1;
+  const SparseMatrix K = assemble(truss.bars, unknown, 39);
+  const Eigen::MatrixXd whole = Eigen::MatrixXd(K).selfadjointView<Eigen::Lower>();
+  constexpr int kThere = 60;  // unknowns that are there from the start
+  Eigen::MatrixXd part = Eigen::MatrixXd::Identity(78, 78);
+  part.topLeftCorner(kThere, kThere) = whole.topLeftCorner(kThere, kThere);
+  const Eigen::MatrixXd lower = part.triangularView<Eigen::Lower>();
+  SparseCholesky live(Ordering::fixed);
+  live.analyse(SparseMatrix(lower.sparseView()));
+  live.factorise(SparseMatrix(lower.sparseView()));
+  for (int row = kThere; row < 78; ++row) {
+    Eigen::MatrixXd column = Eigen::MatrixXd::Zero(78, 1);
+    column.topRows(row + 1) = whole.block(0, row, row + 1, 1);
+    live.add_row(row, SparseMatrix(column.sparseView()));
+  }
+  SparseCholesky fresh;
+  fresh.analyse(K);
+  fresh.factorise(K);
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(78, -1.0, 2.0);
+  const Eigen::VectorXd expected = fresh.solve(b);
+  EXPECT_LE((live.solve(b) - expected).norm(), 1e-10 * expected.norm());
+  Eigen::VectorXd x = b;
+  live.solve_updated(x);
+  EXPECT_LE((x - expected).norm(), 1e-10 * expected.norm());
+}
+
 }  // namespace
 }  // namespace trussmap

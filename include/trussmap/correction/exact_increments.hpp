@@ -11,10 +11,14 @@
 // After every traversal p is the least-squares map of all measurements so far. Or *pooled*, with C
 // the mean over the route's t traversals and the bar's stiffness t C^-1: for errors that grow with
 // the measured length, where measurements that came out short would otherwise count for more and
-// shrink the map; least squares to first order. K's factor is kept alive and changed by rank-2
-// updates; only a joint that is new since the last solve makes it be built again.
+// shrink the map; least squares to first order.
+//
+// K's factor is kept alive: a traversal is a rank-2 update, a new joint a row that is added in a
+// place kept free at the end. When these places are used up the factor is built again with new
+// ones, in a new order: a step costs one pass over the factor on average, however the map grows.
 #pragma once
 
+#include "trussmap/core/index.hpp"
 #include "trussmap/core/planar.hpp"
 #include "trussmap/truss/truss.hpp"
 
@@ -44,15 +48,18 @@ class ExactIncrements {
   [[nodiscard]] int joints() const { return joints_; }
 
  private:
-  [[nodiscard]] bool factored() const { return factored_joints_ == joints_; }
   void check(int i, int j) const;
+  [[nodiscard]] int unknown(int joint) const { return unknown_[idx(joint)]; }
   void change_factor(const Bar& change);
+  void add_to_factor(const Bar& tie);
   void factorise();
 
   int joints_ = 1;
-  int factored_joints_ = 0;
+  int places_ = 0;         ///< joints that the factor has room for; 0: there is no factor
+  bool factored_ = false;  ///< the factor is that of all bars
   std::vector<Bar> bars_;
-  SparseCholesky cholesky_{Ordering::amd};
+  std::vector<int> unknown_;  ///< per place: its joint's first unknown; negative: held
+  SparseCholesky cholesky_{Ordering::fixed};
 };
 
 }  // namespace trussmap

@@ -52,8 +52,10 @@ class OpenChain {
   [[nodiscard]] const std::vector<int>& landmarks() const { return chain_; }
 
  private:
+  [[nodiscard]] int top_of(int landmark) const;
+
   std::vector<int> chain_;
-  std::unordered_map<int, int> root_;  ///< settled landmark -> the landmark its loop hangs on
+  std::unordered_map<int, int> root_;  ///< settled landmark -> what its loop hangs on, or above it
 };
 
 }  // namespace trussmap

@@ -14,6 +14,8 @@
 #pragma once
 
 #include "trussmap/core/index.hpp"
+#include "trussmap/truss/front_tree.hpp"
+#include "trussmap/truss/frontal_cholesky.hpp"
 #include "trussmap/truss/sparse_cholesky.hpp"
 
 #include <array>
@@ -21,18 +23,20 @@
 
 namespace trussmap {
 
-using NodePair = std::array<int, 2>;
-
 /// Nodes in an order of elimination with little fill (approximate minimum degree); held ones too.
 [[nodiscard]] std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs);
+
+/// Who factorises: the library's own kernel, or CHOLMOD, against which it is checked.
+enum class Kernel { frontal, cholmod };
 
 class BlockSystem {
  public:
   static constexpr int kLargestBlock = 4;
 
-  /// Lays out the pattern; eliminates nodes in the given order (a permutation of all nodes).
+  /// Lays out the pattern; eliminates nodes in the given order (a permutation of all nodes) or in
+  /// one with the same fill.
   BlockSystem(const std::vector<int>& sizes, const std::vector<NodePair>& pairs,
-              const std::vector<int>& order);
+              const std::vector<int>& order, Kernel kernel = Kernel::frontal);
 
   [[nodiscard]] int unknowns() const { return unknowns_; }
   [[nodiscard]] int size(int node) const { return nodes_[idx(node)].size; }
@@ -53,12 +57,16 @@ class BlockSystem {
   void set_diagonal(const Eigen::VectorXd& values);
 
   /// Throws NotPositiveDefinite; its column is an unknown of this system.
-  void factorise() { cholesky_.factorise(matrix_); }
-  void solve_in_place(Eigen::VectorXd& x) { cholesky_.solve_in_place(x); }
-  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return cholesky_.solve(b); }
+  void factorise();
+  void solve_in_place(Eigen::VectorXd& x);
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
-  [[nodiscard]] double log_determinant() const { return cholesky_.log_determinant(); }
-  [[nodiscard]] double reciprocal_condition() const { return cholesky_.reciprocal_condition(); }
+  /// Diagonal blocks of A^-1, the covariances of all nodes: the node's stands in rows 0 ... size-1
+  /// of columns offset ... offset+size-1. Call after factorise. Cost: about two factorisations.
+  [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
+
+  [[nodiscard]] double log_determinant() const;
+  [[nodiscard]] double reciprocal_condition() const;
 
   /// The lower triangle of A.
   [[nodiscard]] const SparseMatrix& matrix() const { return matrix_; }
@@ -75,14 +83,17 @@ class BlockSystem {
     bool transposed = false;
   };
 
-  void lay_out(const std::vector<NodePair>& pairs, const std::vector<int>& order);
+  void lay_out(const BlockPattern& pattern, const std::vector<NodePair>& pairs,
+               const std::vector<int>& order, const std::vector<int>& place);
 
   std::vector<Node> nodes_;
   std::vector<Coupling> couplings_;
   std::vector<int> diagonal_;
   int unknowns_ = 0;
   SparseMatrix matrix_;
-  SparseCholesky cholesky_{Ordering::natural};
+  Kernel kernel_;
+  FrontalCholesky frontal_;
+  SparseCholesky cholmod_{Ordering::natural};
 };
 
 template <int N>

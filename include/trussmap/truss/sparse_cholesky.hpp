@@ -7,7 +7,7 @@
 //   L   its factor under a fill-reducing permutation
 //
 // analyse once per structure, factorise for every set of values, solve as often as wanted. A live
-// factor can be changed by a low-rank update, A + W W', without factorising anew.
+// factor can be changed by a low-rank update, A + W W', or grow by a row, without factorising anew.
 //
 // Not copyable; one object is used by one thread at a time, different objects by any threads.
 #pragma once
@@ -23,7 +23,9 @@ namespace trussmap {
 /// Column-major, int indices: CHOLMOD's own layout.
 using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 
-enum class Ordering { automatic, amd, metis, natural };
+/// `fixed` is `natural` to the letter: not even columns that could as well change places do, so
+/// that those of rows to be added stay last.
+enum class Ordering { automatic, amd, metis, natural, fixed };
 
 /// Thrown by factorise: the matrix is not positive definite. `column` is that of A at which the
 /// factorisation broke down.
@@ -65,6 +67,14 @@ class SparseCholesky {
 
   /// The same for A - W W', which must be positive definite still.
   void downdate(const SparseMatrix& w);
+
+  /// Row and column `row` of A, until now those of the identity, become `column` (n x 1, its
+  /// diagonal entry included), with which A must be positive definite.
+  void add_row(int row, const SparseMatrix& column);
+
+  /// A x = b for a b that is mostly zero, by the kind of factor that updates leave (which it is
+  /// made if need be); `x` holds b before and the solution after. Cost: half of solve's.
+  void solve_updated(Eigen::VectorXd& x);
 
   /// Natural logarithm of the determinant of A. Call after factorise.
   [[nodiscard]] double log_determinant() const;

@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/adjustment/linear_truss.hpp"
+#include "trussmap/correction/map_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "measure.hpp"
+#include "parts.hpp"
+
+namespace trussmap::bench {
+namespace {
+
+/// Drives on a grid of `side` columns, landmarks named by their number row by row.
+class Driver {
+ public:
+  Driver(const MapBuilderOptions& options, int side) : builder(options), side_(side) {
+    builder.start(name(0));
+  }
+
+  Arrival drive(int to) {
+    const int from = here;
+    here = to;
+    return builder.arrive(name(to), leg(from, to));
+  }
+
+  /// To any landmark of the map, by a session of its own.
+  void put(int landmark) {
+    builder.start(name(landmark));
+    here = landmark;
+  }
+
+  MapBuilder builder;
+  int here = 0;
+
+ private:
+  [[nodiscard]] static std::string name(int landmark) { return std::to_string(landmark); }
+
+  Traversal leg(int from, int to) {
+    const Vector2 along((to % side_) - (from % side_), (to / side_) - (from / side_));
+    const Vector2 sd(0.05, 0.03);
+    const Matrix2 axes = (Matrix2() << along.x(), -along.y(), along.y(), along.x()).finished();
+    const Vector2 error = axes * Vector2(sd.x() * normal_(random_), sd.y() * normal_(random_));
+    return {along + error, axes * sd.cwiseAbs2().asDiagonal() * axes.transpose()};
+  }
+
+  int side_;
+  std::mt19937_64 random_{1};
+  std::normal_distribution<double> normal_;
+};
+
+/// Every route of the grid: row after row, and on the way down to the row before and back.
+void tour(int side, const std::function<void(int)>& drive_to) {
+  for (int y = 0; y < side; ++y) {
+    for (int k = 0; k < side; ++k) {
+      const int x = y % 2 == 0 ? k : side - 1 - k;
+      const int landmark = y * side + x;
+      if (landmark > 0) drive_to(landmark);
+      if (y > 0 && k > 0) {
+        drive_to(landmark - side);
+        drive_to(landmark);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void refinement_part(const std::vector<int>& landmarks, int corrections) {
+  fmt::print("\nRefinement, eta = 50, at random places (us of processor time per correction)\n");
+  double first_median = 0.0;
+  double first_late = 0.0;
+  for (const int count : landmarks) {
+    const int side = static_cast<int>(std::lround(std::sqrt(count)));
+    Driver driver(MapBuilderOptions{}, side);
+    MapBuilderOptions quick;
+    quick.refine = false;  // only to have the map
+    driver.builder.set_options(quick);
+    const double begin = cpu_seconds();
+    tour(side, [&](int landmark) { (void)driver.drive(landmark); });
+    const double built = cpu_seconds() - begin;
+    driver.builder.set_options({});
+    std::mt19937_64 random(2);
+    std::vector<double> times;
+    for (int k = -corrections / 10; k < corrections; ++k) {
+      const int place = static_cast<int>(random() % static_cast<unsigned>(side * side));
+      driver.put(place);
+      const int to = place % side + 1 < side ? place + 1 : place - 1;
+      const double start = cpu_seconds();
+      (void)driver.drive(to);
+      if (k >= 0) times.push_back(1e6 * (cpu_seconds() - start));
+    }
+    const double median = percentile(times, 0.5);
+    const double late = percentile(times, 0.99);
+    fmt::print("  {:>8} landmarks: median {:.1f}, 99th percentile {:.1f}; map built in {:.2f} s\n",
+               side * side, median, late, built);
+    if (first_median == 0.0) {
+      first_median = median;
+      first_late = late;
+    }
+    if (count == landmarks.back()) {
+      verdict("median over the smallest map's", median / first_median, 1.5);
+      verdict("99th percentile over the smallest map's", late / first_late, 1.5);
+    }
+  }
+}
+
+void increments_part(int side) {
+  MapBuilderOptions options;
+  options.method = Method::gauss_markov;
+  Driver driver(options, side);
+  std::vector<double> times;
+  tour(side, [&](int landmark) {
+    const double start = cpu_seconds();
+    (void)driver.drive(landmark);
+    times.push_back(1e3 * (cpu_seconds() - start));
+  });
+  double sum = 0.0;
+  for (const double time : times) sum += time;
+  const double mean = sum / static_cast<double>(times.size());
+
+  const LandmarkGraph map = driver.builder.map();
+  double chi2 = 0.0;
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    const Vector2 off = map.landmark(route.target).position - map.landmark(route.source).position -
+                        route.displacement;
+    chi2 += route.traversals * off.dot(route.covariance.inverse() * off);
+  }
+  const LinearAdjustment batch = adjust_linear(map);
+  fmt::print(
+      "\nExact increments, {0} x {0} toured: {1} legs, mean {2:.3f} ms, median {3:.3f}, "
+      "99th percentile {4:.3f}, longest {5:.1f}\n",
+      side, times.size(), mean, percentile(times, 0.5), percentile(times, 0.99),
+      percentile(times, 1.0));
+  fmt::print("  chi2 {:.12g}, batch {:.12g}\n", chi2, batch.chi2);
+  verdict("mean step, ms", mean, 3.0);
+  verdict("difference of chi2 from the batch, relative, 1e-9",
+          1e9 * std::abs(chi2 - batch.chi2) / batch.chi2, 1.0);
+}
+
+}  // namespace trussmap::bench

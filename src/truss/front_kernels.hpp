@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Dense algebra on one front: own loops where fronts are small, BLAS and LAPACK where they are
+// large enough to be worth a call. All matrices are by columns.
+#pragma once
+
+namespace trussmap {
+
+/// Partial Cholesky factorisation. `panel`: rows x width, of which the triangle on and below the
+/// diagonal is read and becomes L. `update`, (rows - width) square: the lower triangle loses
+/// L21 L21'. Returns the column that is not positive, -1 if all are.
+int eliminate(double* panel, int rows, int width, double* update);
+
+/// x := L11^-1 x for the first `width` of x, and the rest of x minus L21 times it; and transposed:
+/// x_1 := L11^-T (x_1 - L21' x_2).
+void solve_forward(const double* panel, int rows, int width, double* x);
+void solve_backward(const double* panel, int rows, int width, double* x);
+
+/// `inverse`, rows square and symmetric, holds the inverse of the remaining rows at its lower
+/// right; the rest of it is found from the panel (L, which is spoilt). `space`: rows x width.
+void invert_front(double* panel, int rows, int width, double* inverse, double* space);
+
+}  // namespace trussmap
