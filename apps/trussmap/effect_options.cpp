@@ -73,9 +73,8 @@ Effect applicable(const Effect& effect, const std::string& file) {
   if (result.per_session) {
     if (result.coefficients.size() < result.shape.size()) {
       refuse(effect, file,
-             fmt::format("has {} coefficient{}, expected {}, one per shape",
-                         result.coefficients.size(), result.coefficients.size() == 1 ? "" : "s",
-                         result.shape.size()));
+             fmt::format("has {} coefficients, expected {}, one per shape",
+                         result.coefficients.size(), result.shape.size()));
     }
     result.coefficients.resize(result.shape.size());
     result.per_session = false;

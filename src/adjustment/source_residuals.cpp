@@ -6,7 +6,6 @@
 #include <cmath>
 
 namespace trussmap {
-namespace {
 
 const char* noise_source(MeasurementKind kind, Eigen::Index row) {
   switch (kind) {
@@ -25,8 +24,6 @@ const char* noise_source(MeasurementKind kind, Eigen::Index row) {
   }
   return "";
 }
-
-}  // namespace
 
 std::vector<SourceResiduals> residuals_by_source(const RecordingProblem& problem,
                                                  const std::vector<CheckedMeasurement>& checked) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/criticism/comparison.hpp"
 
+#include "trussmap/adjustment/source_residuals.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -103,24 +105,6 @@ void find_misfits(const ModelFit& fit, const ScoreTest& tests, const LegOptions&
   std::stable_sort(result.worst_landmarks.begin(), result.worst_landmarks.end(), worse);
 }
 
-const char* source_of(MeasurementKind kind, int row) {
-  switch (kind) {
-    case MeasurementKind::piece:
-      return row == 3 ? "compass" : "wheels";
-    case MeasurementKind::standing:
-      return "sighting";
-    case MeasurementKind::view:
-      return row == 0 ? "range" : "bearing";
-    case MeasurementKind::near_view:
-      return "range";
-    case MeasurementKind::survey:
-      return "survey";
-    case MeasurementKind::truth:
-      return row == 2 ? "truth_heading" : "truth";
-  }
-  return "";
-}
-
 /// Redundancies by random signs: E[z' R z] over the rows of a source is the trace of R there.
 std::vector<SourceCalibration> calibrate_sources(const ModelFit& fit, const ScoreTest& tests) {
   constexpr Eigen::Index kProbes = 48;
@@ -144,7 +128,7 @@ std::vector<SourceCalibration> calibrate_sources(const ModelFit& fit, const Scor
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     const Measurement& one = fit.problem.measurements[k];
     for (int row = 0; row < one.rows; ++row) {
-      const std::string source = source_of(one.kind, row);
+      const std::string source = noise_source(one.kind, row);
       if (!sums.contains(source)) order.push_back(source);
       auto& [squares, checked] = sums[source];
       const double r = system.residuals()[system.first_row(k) + row];

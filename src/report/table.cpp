@@ -87,7 +87,7 @@ QuantityText quantity_text(double value, double standard_error) {
 std::string probability_text(double p) {
   if (!std::isfinite(p)) return "-";
   if (p >= 0.01) return fmt::format("{:.2f}", p);
-  return fmt::format("{:.1g}", p);
+  return p > 0.0 ? fmt::format("{:.1g}", p) : "< 1e-300";
 }
 
 }  // namespace trussmap

@@ -70,7 +70,7 @@ const Refused kBadModels[] = {
      ":1: effect \"x\" has a channel but no shape, expected both or neither"},
     {"Coefficients",
      "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"1\", \"t\"]\ncoefficients = [1]\n",
-     ":1: effect \"x\" has 1 coefficients, expected 2, one per shape"},
+     ":5: effect \"x\" has 1 coefficients, expected 2, one per shape"},
     {"Per", "[[effect]]\nname = \"x\"\nper = \"day\"\n",
      ":3: per is \"day\", expected \"session\""},
     {"EmptyShape", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\" \"]\n",
@@ -78,7 +78,7 @@ const Refused kBadModels[] = {
     {"SessionCoefficients",
      "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"1\", \"t\"]\n"
      "coefficients = [1, 2, 3]\nper = \"session\"\n",
-     ":1: effect \"x\" has 3 coefficients, expected 2, one per shape, per session"},
+     ":5: effect \"x\" has 3 coefficients, expected 2, one per shape, per session"},
     {"ShapeText", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = \"1\"\n",
      ":4: shape is no list, expected [ ... ]"},
 };

@@ -12,6 +12,9 @@
 
 namespace trussmap {
 
+/// The source of noise of one row of a measurement.
+[[nodiscard]] const char* noise_source(MeasurementKind kind, Eigen::Index row);
+
 /// Standardised residuals of one source of noise ("wheels", "compass", "sighting", "range",
 /// "bearing", "survey", "truth", "truth_heading"): a sample of the standard normal distribution
 /// where the source is as noisy as stated.
