@@ -17,13 +17,13 @@ namespace {
 constexpr double kDegreesTurned = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostTours = 250;  // drawn
 
-struct Look {
+struct MethodLook {
   const char* words;
   const char* colour;
 };
 
-Look look_of(const std::string& method) {
-  static const std::map<std::string, Look> kLooks = {
+MethodLook look_of(const std::string& method) {
+  static const std::map<std::string, MethodLook> kMethodLooks = {
       {"dead_reckoning", {"dead reckoning", "5"}},
       {"raw", {"single measurements", "8"}},
       {"weighted_average", {"weighted average", "3"}},
@@ -31,8 +31,8 @@ Look look_of(const std::string& method) {
       {"elastic", {"elastic", "2"}},
       {"gauss_markov", {"Gauss-Markov", "6"}},
       {"adjustment", {"adjustment", "1"}}};
-  const auto found = kLooks.find(method);
-  return found == kLooks.end() ? Look{method.c_str(), "ink"} : found->second;
+  const auto found = kMethodLooks.find(method);
+  return found == kMethodLooks.end() ? MethodLook{method.c_str(), "ink"} : found->second;
 }
 
 using Pick = std::optional<SeedMean> (*)(const TourFigures&);
