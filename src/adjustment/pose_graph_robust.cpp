@@ -132,15 +132,16 @@ PoseGraph without(const PoseGraph& graph, const std::vector<int>& left_out) {
 }
 
 std::string describe(const PoseGraph& graph, const std::vector<int>& left_out) {
-  constexpr std::size_t kNamed = 8;
+  constexpr std::size_t kClosuresNamed = 8;
   std::string text = fmt::format("{} loop closure{} left out as wrong: ", left_out.size(),
                                  left_out.size() == 1 ? "" : "s");
-  for (std::size_t k = 0; k < std::min(kNamed, left_out.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kClosuresNamed, left_out.size()); ++k) {
     const PoseEdge& edge = graph.pose_edges[idx(left_out[k])];
     text += fmt::format("{}{} to {}", k == 0 ? "" : ", ", graph.vertices[idx(edge.from)].id,
                         graph.vertices[idx(edge.to)].id);
   }
-  if (left_out.size() > kNamed) text += fmt::format(" and {} more", left_out.size() - kNamed);
+  if (left_out.size() > kClosuresNamed)
+    text += fmt::format(" and {} more", left_out.size() - kClosuresNamed);
   return text;
 }
 

@@ -28,12 +28,12 @@ std::string name_of(const RecordingProblem& problem, int node) {
 [[noreturn]] void refuse_loose(const RecordingProblem& problem, std::vector<int> nodes) {
   std::stable_sort(nodes.begin(), nodes.end(),
                    [&](int a, int b) { return problem.is_landmark(a) && !problem.is_landmark(b); });
-  constexpr std::size_t kNamed = 3;
+  constexpr std::size_t kNodesNamed = 3;
   std::string names;
-  for (std::size_t k = 0; k < std::min(nodes.size(), kNamed); ++k) {
+  for (std::size_t k = 0; k < std::min(nodes.size(), kNodesNamed); ++k) {
     names += (k == 0 ? "" : k + 1 == nodes.size() ? " and " : ", ") + name_of(problem, nodes[k]);
   }
-  if (nodes.size() > kNamed) names += fmt::format(" and {} more", nodes.size() - kNamed);
+  if (nodes.size() > kNodesNamed) names += fmt::format(" and {} more", nodes.size() - kNodesNamed);
   throw SolveError(names +
                    " can still move without changing any measurement; sight more landmarks from "
                    "there, or survey one");

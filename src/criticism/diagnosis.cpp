@@ -26,6 +26,7 @@ constexpr std::size_t kChunk = 48;  // candidates
 constexpr double kWorthALook = 0.01;
 constexpr double kMostPlausible = 3.0;
 constexpr double kLawLevel = 0.01;
+constexpr double kStays = 0.001;  // p, with the others there
 constexpr std::size_t kMostEvents = 8;
 
 /// A candidate's test, without its columns.
@@ -334,12 +335,26 @@ class Diagnostician {
     std::stable_sort(missing_.begin(), missing_.end(), [this](std::size_t a, std::size_t b) {
       return tested_[a].evidence > tested_[b].evidence;
     });
-    for (const std::size_t one : missing_) look_alikes_.push_back(look_alikes_of(one));
     estimate_together();
+    drop_what_others_explain();
+    for (const std::size_t one : missing_) look_alikes_.push_back(look_alikes_of(one));
+  }
+
+  /// Of effects that are found one after the other, a later one may be all that there is.
+  void drop_what_others_explain() {
+    while (missing_.size() > 1) {
+      const auto weakest =
+          std::max_element(together_.begin(), together_.end(),
+                           [](const Score& a, const Score& b) { return a.p_value < b.p_value; });
+      if (weakest->p_value < kStays) return;
+      missing_.erase(missing_.begin() + (weakest - together_.begin()));
+      estimate_together();
+    }
   }
 
   /// Sizes of all that is missing, each with the others there.
   void estimate_together() {
+    together_.clear();
     for (const std::size_t one : missing_) {
       ScoreTest others = tests_;
       for (const std::size_t other : missing_) {
