@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <random>
@@ -38,7 +39,8 @@ struct Options {
   std::uint64_t first = 1;
   int recordings = 20;  ///< per effect and size
   int clean = 1000;
-  bool loops = false;  ///< without survey
+  std::vector<double> times = {2.0, 3.0};  ///< of the smallest detectable size
+  bool loops = false;                      ///< without survey
   bool ladder = true;
   bool verbose = false;
 };
@@ -124,7 +126,7 @@ struct Tally {
 
 void identify(const Options& options) {
   const std::size_t count = subjects(draw_world(1)).size();
-  for (const double times : {2.0, 3.0}) {
+  for (const double times : options.times) {
     std::map<std::string, Tally> tallies;
     Tally all;
     for (std::size_t e = 0; e < count; ++e) {
@@ -144,12 +146,10 @@ void identify(const Options& options) {
         const std::vector<Recording> recordings{record_in(world, {truth})};
         Tally& tally = tallies[name];
         ++tally.shown;
-        Diagnosis result;
         Discovery ladder;
-        if (options.ladder) {
-          ladder = discover(recordings, world.model);
-        }
-        result = diagnose(recordings, world.model);
+        if (options.ladder) ladder = discover(recordings, world.model);
+        const Diagnosis result =
+            options.ladder ? std::move(ladder.first) : diagnose(recordings, world.model);
         const bool named = result.verdict == Diagnosis::Verdict::missing;
         const bool right =
             named && cosine(truth, result.findings.front().candidate.effect, tests) >= 0.95;
@@ -394,7 +394,9 @@ void cost() {
     const double testing = seconds([&] {
       for (std::size_t k = 0; k < effects.size(); k += 25) {
         const auto from = effects.begin() + static_cast<std::ptrdiff_t>(k);
-        for (const Score& one : tests->test({from, from + 25})) scores += one.score;
+        for (const Score& one : tests->test({from, from + 25}, Look::screening)) {
+          scores += one.score;
+        }
       }
     });
     const double whole = seconds([&] { scores += diagnose(recordings, *fit, {}).chi2; });
@@ -412,6 +414,7 @@ void cost() {
 
 int main(int argc, char** argv) {
   using namespace trussmap::bench;
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
   CLI::App app("How well diagnose and discover do on simulated recordings");
   Options options;
   app.add_option("parts", options.parts, "What to measure (default: all)")
@@ -420,6 +423,8 @@ int main(int argc, char** argv) {
   app.add_option("--recordings", options.recordings, "Recordings per effect and size")
       ->capture_default_str();
   app.add_option("--clean", options.clean, "Effect-free recordings")->capture_default_str();
+  app.add_option("--times", options.times, "Sizes to identify, times the smallest detectable")
+      ->capture_default_str();
   app.add_flag("--loops", options.loops, "Without a survey throughout");
   app.add_flag("!--no-ladder", options.ladder, "Do not run discover beside diagnose");
   app.add_flag("--verbose", options.verbose, "Name what went wrong");

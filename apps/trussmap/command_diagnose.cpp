@@ -207,9 +207,7 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
 std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
                                  const ModelRecordings& input, const ModelFit& fit,
                                  const DiagnosisOptions& how) {
-  ModelFitOptions more;
-  more.problem = how.problem;
-  more.gate = how.gate;
+  ModelFitOptions more = how_to_fit(how);
   more.near = &fit;
   for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
     Model model = fit.model;
@@ -230,7 +228,7 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   const ComparisonOptions compared = comparison_options(options.input);
   const ScoreTest tests(fit);
   DiagnosisPictures pictures;
-  pictures.given = fitted_model(fit, compare(input.recordings, fit.model, compared, fit, tests));
+  pictures.given = fitted_model(input.recordings, fit, tests, compared);
   pictures.trends = trend_pictures(pictures.given.comparison, fit, tests);
   pictures.tables = diagnosis_tables(result, tests.context());
   const std::vector<const Finding*> missing = found_by(result);
@@ -247,8 +245,7 @@ Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis&
   pictures.effects = fitted_effects(fit, estimates, rivals);
   if (with) {
     const ScoreTest after(*with);
-    pictures.with =
-        fitted_model(*with, compare(input.recordings, with->model, compared, *with, after));
+    pictures.with = fitted_model(input.recordings, *with, after, compared);
   }
   return diagnosis_page(result, pictures,
                         subject_of(options.input.recordings, options.input.model));
@@ -266,11 +263,8 @@ void run_diagnose(const DiagnoseOptions& options) {
   how.legs = options.input.legs;
   how.gate = gate_of(options.input);
   how.level = options.level;
-  ModelFitOptions given;
-  given.problem = how.problem;
-  given.gate = how.gate;
   progress.next();
-  const ModelFit fit = fit_model(input.recordings, input.model, given);
+  const ModelFit fit = fit_model(input.recordings, input.model, how_to_fit(how));
   progress.next();
   Diagnosis result = diagnose(input.recordings, fit, how);
   result.advice = advice_on(input.recordings, input.model, how.problem);

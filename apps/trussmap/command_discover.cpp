@@ -132,8 +132,7 @@ std::vector<FittedStep> models_between(const ModelRecordings& input, const Disco
     });
     const ModelFit fit = fit_model(input.recordings, model, how);
     const ScoreTest tests(fit);
-    models.push_back({step_name(step), fitted_model(fit, compare(input.recordings, fit.model,
-                                                                 compared, fit, tests))});
+    models.push_back({step_name(step), fitted_model(input.recordings, fit, tests, compared)});
   }
   return models;
 }
@@ -141,19 +140,15 @@ std::vector<FittedStep> models_between(const ModelRecordings& input, const Disco
 Page page_of(const ModelRecordings& input, const Discovery& result, const DiagnosisOptions& how,
              const DiscoverOptions& options) {
   const ComparisonOptions compared = comparison_options(options.input);
-  ModelFitOptions given;
-  given.problem = how.problem;
-  given.gate = how.gate;
+  const ModelFitOptions given = how_to_fit(how);
   const ModelFit before = fit_model(input.recordings, input.model, given);
   const ScoreTest tests(before);
   const ScoreTest after(result.fit);
   const AddedEffects added = added_effects(result);
   DiscoveryPictures pictures;
-  pictures.given =
-      fitted_model(before, compare(input.recordings, before.model, compared, before, tests));
+  pictures.given = fitted_model(input.recordings, before, tests, compared);
   pictures.between = models_between(input, result, before, given, compared);
-  pictures.found = fitted_model(
-      result.fit, compare(input.recordings, result.fit.model, compared, result.fit, after));
+  pictures.found = fitted_model(input.recordings, result.fit, after, compared);
   pictures.effects = fitted_effects(before, added.estimates, added.rivals);
   pictures.trends = trend_pictures(pictures.found.comparison, result.fit, after);
   pictures.tables = diagnosis_tables(result.last, after.context(), pictures.effects);

@@ -126,19 +126,13 @@ void print(const FitResult& result) {
   for (const std::string& warning : after.warnings) fmt::print("{}", warning_text(warning));
 }
 
-/// What the page shows of one of the two: its comparison with the recordings, as it was fitted.
-FittedModel shown_model(const ModelRecordings& input, const ModelFit& fit, const ScoreTest& tests,
-                        const FitOptions& options) {
-  return fitted_model(
-      fit, compare(input.recordings, fit.model, comparison_options(options.input), fit, tests));
-}
-
 Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {
   const ScoreTest before(result.before);
   const ScoreTest after(result.after);
-  FittedModel without = shown_model(input, result.before, before, options);
+  const ComparisonOptions compared = comparison_options(options.input);
+  FittedModel without = fitted_model(input.recordings, result.before, before, compared);
   without.comparison.held_out = result.held_out_before;
-  FittedModel with = shown_model(input, result.after, after, options);
+  FittedModel with = fitted_model(input.recordings, result.after, after, compared);
   with.comparison.held_out = result.held_out_after;
   return fit_page(without, with, fitted_effects(result.before, result.after.effects),
                   subject_of(options.input.recordings, options.input.model));

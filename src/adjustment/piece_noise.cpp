@@ -43,37 +43,49 @@ Path lay(const std::vector<PieceRow>& rows, const std::vector<Pose>& steps,
   return path;
 }
 
-}  // namespace
-
-PieceNoise piece_noise(const Drive& drive, const std::vector<PieceRow>& rows, const Robot& robot,
-                       const Noise& noise,
-                       const std::vector<const std::vector<DrivePattern>*>& patterns,
-                       const Eigen::VectorXd& offsets,
-                       const std::vector<Eigen::Vector3d>& missing) {
-  const int readings = readings_of(rows);
+/// What the rows do each by itself, whatever the noise of the others.
+struct RowsAlone {
   std::vector<Pose> steps;
-  std::vector<double> reading_offsets;
-  PieceNoise result;
+  std::vector<double> offsets;  ///< of the readings, of which there are so many
+  int readings = 0;
+  std::vector<Matrix3> Q;
+};
+
+RowsAlone rows_alone(const Drive& drive, const std::vector<PieceRow>& rows, const Robot& robot,
+                     const Noise& noise,
+                     const std::vector<const std::vector<DrivePattern>*>& patterns,
+                     const Eigen::VectorXd& offsets) {
+  RowsAlone alone;
+  alone.readings = readings_of(rows);
   for (const PieceRow& row : rows) {
-    const PieceWithEffects alone = piece_motion({row}, patterns, offsets);
-    steps.push_back(alone.motion.displacement);
-    reading_offsets.push_back(std::isnan(row.reading)
-                                  ? 0.0
-                                  : wrap_angle(row.reading - alone.motion.displacement.heading -
-                                               alone.motion.mean_heading));
+    const PieceMotion motion = piece_motion({row}, patterns, offsets).motion;
+    alone.steps.push_back(motion.displacement);
+    alone.offsets.push_back(
+        std::isnan(row.reading)
+            ? 0.0
+            : wrap_angle(row.reading - motion.displacement.heading - motion.mean_heading));
     const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
-    result.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
+    alone.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
   }
-  result.recorded = lay(rows, steps, reading_offsets).numbers;
+  return alone;
+}
+
+/// All of a piece's noise but Q.
+PieceNoise noise_at(const std::vector<PieceRow>& rows, const RowsAlone& alone, const Noise& noise,
+                    const std::vector<Eigen::Vector3d>& missing) {
+  PieceNoise result;
+  std::vector<Pose> steps = alone.steps;
+  result.recorded = lay(rows, steps, alone.offsets).numbers;
   for (std::size_t k = 0; k < missing.size(); ++k) {
     steps[k].x += missing[k][0];
     steps[k].y += missing[k][1];
     steps[k].heading += missing[k][2];
   }
-  const Path path = lay(rows, steps, reading_offsets);
+  const Path path = lay(rows, steps, alone.offsets);
   result.value = path.numbers;
   result.H.resize(rows.size());
   const Vector2 end = path.poses.back().position();
+  const int readings = alone.readings;
   int after = 0;
   for (std::size_t k = rows.size(); k-- > 0;) {
     if (!std::isnan(rows[k].reading)) ++after;
@@ -83,13 +95,26 @@ PieceNoise piece_noise(const Drive& drive, const std::vector<PieceRow>& rows, co
     H.block<2, 1>(0, 2) = quarter_turn(end - path.poses[k + 1].position());
     H(2, 2) = 1.0;
     if (readings > 0) H(3, 2) = -static_cast<double>(after) / readings;
-    result.covariance += H * result.Q[k] * H.transpose();
+    result.covariance += H * alone.Q[k] * H.transpose();
     if (k < missing.size()) result.value -= H * missing[k];
   }
   result.covariance.diagonal().head<3>().array() += kLeastSd * kLeastSd;
   if (readings > 0) {
     result.covariance(3, 3) += noise.compass * noise.compass / readings + kLeastSd * kLeastSd;
   }
+  return result;
+}
+
+}  // namespace
+
+PieceNoise piece_noise(const Drive& drive, const std::vector<PieceRow>& rows, const Robot& robot,
+                       const Noise& noise,
+                       const std::vector<const std::vector<DrivePattern>*>& patterns,
+                       const Eigen::VectorXd& offsets,
+                       const std::vector<Eigen::Vector3d>& missing) {
+  RowsAlone alone = rows_alone(drive, rows, robot, noise, patterns, offsets);
+  PieceNoise result = noise_at(rows, alone, noise, missing);
+  result.Q = std::move(alone.Q);
   return result;
 }
 
@@ -109,12 +134,10 @@ double relinearise(RecordingProblem& problem, const std::vector<Recording>& reco
     const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
     const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());
     const Vector4 z(chord.x(), chord.y(), to.heading - from.heading, from.heading);
-    const auto noise_at = [&](const std::vector<Eigen::Vector3d>& missing) {
-      return piece_noise(drive, rows, model.robot, model.noise, patterns, offsets, missing);
-    };
+    const RowsAlone alone = rows_alone(drive, rows, model.robot, model.noise, patterns, offsets);
     // From n = 0; the second look takes H where the first found n.
     std::vector<Eigen::Vector3d> missing;
-    PieceNoise at = noise_at(missing);
+    PieceNoise at = noise_at(rows, alone, model.noise, missing);
     for (int look = 0; look < 2; ++look) {
       Vector4 error = z - at.value;
       error[3] = wrap_angle(error[3]);
@@ -122,9 +145,9 @@ double relinearise(RecordingProblem& problem, const std::vector<Recording>& reco
       const Vector4 pull = W.transpose() * (W * error);
       missing.resize(rows.size());
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        missing[k] = at.Q[k] * at.H[k].transpose() * pull;
+        missing[k] = alone.Q[k] * at.H[k].transpose() * pull;
       }
-      at = noise_at(missing);
+      at = noise_at(rows, alone, model.noise, missing);
     }
     Vector4 bend = at.value - at.recorded;
     bend[3] = one.rows == 4 ? wrap_angle(bend[3]) : 0.0;

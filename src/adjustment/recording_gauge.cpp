@@ -2,23 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/adjustment/recording_system.hpp"
 #include "trussmap/core/error.hpp"
+#include "trussmap/truss/connected_parts.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
-
-int root_of(std::vector<int>& parent, int node) {
-  while (parent[idx(node)] != node) {
-    parent[idx(node)] = parent[idx(parent[idx(node)])];
-    node = parent[idx(node)];
-  }
-  return node;
-}
 
 bool in_map(const Measurement& one) {
   return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
@@ -39,19 +31,19 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
 
 std::vector<int> untied_poses(const RecordingProblem& problem) {
   const int map_frame = problem.nodes();  // a node of its own: what is measured in the map
-  std::vector<int> parent(idx(problem.nodes()) + 1);
-  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<NodePair> ties;
   bool absolute = false;
   for (const Measurement& one : problem.measurements) {
     absolute = absolute || in_map(one);
     if (one.to < 0 && !in_map(one)) continue;
-    parent[idx(root_of(parent, one.from))] = root_of(parent, in_map(one) ? map_frame : one.to);
+    ties.push_back({one.from, in_map(one) ? map_frame : one.to});
   }
   std::vector<int> untied;
   if (problem.poses.empty()) return untied;
-  const int home = root_of(parent, absolute ? map_frame : problem.pose_node(0));
+  const std::vector<int> parts = connected_parts(map_frame + 1, ties);
+  const int home = parts[idx(absolute ? map_frame : problem.pose_node(0))];
   for (int pose = 0; pose < static_cast<int>(problem.poses.size()); ++pose) {
-    if (root_of(parent, problem.pose_node(pose)) != home) untied.push_back(pose);
+    if (parts[idx(problem.pose_node(pose))] != home) untied.push_back(pose);
   }
   return untied;
 }

@@ -50,9 +50,8 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
 
 ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
                              const EffectBorder& border, const Eigen::VectorXd& offsets,
-                             const RecordingState& state, const std::vector<double>& weights,
-                             double together)
-    : context_(context), together_(together), middles_(context.recordings().size()) {
+                             const RecordingState& state, const std::vector<double>& weights)
+    : context_(context), piece_rows_(std::make_shared<std::vector<Row>>()) {
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k]) * one.whitener;
@@ -63,12 +62,11 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
       }
       const std::vector<PieceRow>& rows = problem.pieces[one.source];
       const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
-      Piece piece{rows_, one.rows, idx(one.session), stretches_.size(), 0};
-      const std::size_t first = piece_rows_.size();
+      Piece piece{rows_, one.rows, idx(one.session), piece_rows_->size(), 0, 0, 0};
       for (std::size_t row = 0; row < rows.size(); ++row) {
-        piece_rows_.push_back({rows[row].row, -(W * influences[row])});
+        piece_rows_->push_back({rows[row].row, -(W * influences[row])});
       }
-      take_stretches(piece, first);
+      piece.row_end = piece_rows_->size();
       pieces_.push_back(piece);
     } else if (one.session >= 0) {
       const ViewPattern view = view_of(border, offsets, one);
@@ -78,21 +76,41 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     }
     rows_ += one.rows;
   }
+  take_stretches();
 }
 
-void ColumnBuilder::take_stretches(Piece& piece, std::size_t first_row) {
+ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
+  ColumnBuilder result = *this;
+  result.together_ = seconds;
+  result.bases_.clear();
+  result.thinned_.clear();
+  result.values_.clear();
+  result.largest_.clear();
+  result.take_stretches();
+  return result;
+}
+
+void ColumnBuilder::take_stretches() {
+  stretches_.clear();
+  middles_.assign(context_.recordings().size(), {});
+  for (Piece& piece : pieces_) take_stretches(piece);
+}
+
+void ColumnBuilder::take_stretches(Piece& piece) {
+  const std::vector<Row>& rows = *piece_rows_;
   const Drive& drive = context_.recordings()[piece.session].drive;
   std::vector<std::size_t>& middles = middles_[piece.session];
-  for (std::size_t k = first_row; k < piece_rows_.size();) {
-    Stretch stretch{piece_rows_[k].row, k, k + 1};
+  piece.begin = stretches_.size();
+  for (std::size_t k = piece.row_begin; k < piece.row_end;) {
+    Stretch stretch{rows[k].row, k, k + 1};
     if (together_ > 0.0) {
-      double time = duration_of(drive, piece_rows_[k].row);
-      for (; stretch.end < piece_rows_.size(); ++stretch.end) {
-        time += duration_of(drive, piece_rows_[stretch.end].row);
+      double time = duration_of(drive, rows[k].row);
+      for (; stretch.end < piece.row_end; ++stretch.end) {
+        time += duration_of(drive, rows[stretch.end].row);
         if (time > together_) break;
       }
       stretch.place = middles.size();
-      middles.push_back(piece_rows_[(stretch.begin + stretch.end) / 2].row);
+      middles.push_back(rows[(stretch.begin + stretch.end) / 2].row);
     }
     stretches_.push_back(stretch);
     k = stretch.end;
@@ -118,7 +136,7 @@ const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
     const Drive& drive = context_.recordings()[piece.session].drive;
     for (std::size_t k = piece.begin; k < piece.end; ++k) {
       for (std::size_t at = stretches_[k].begin; at < stretches_[k].end; ++at) {
-        const Row& row = piece_rows_[at];
+        const Row& row = (*piece_rows_)[at];
         const DrivePattern unit =
             row_pattern(channel, 1.0, context_.travel(piece.session, row.row),
                         duration_of(drive, row.row), context_.robot().wheelbase);
@@ -135,15 +153,25 @@ const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Ins
   const auto found = values_.find(key);
   if (found != values_.end()) return found->second;
   if (values_.size() * stretches_.size() > kValuesKept) values_.clear();
-  const bool of_rows = at == Instant::middle || at == Instant::end;
-  if (together_ == 0.0 || !of_rows) {
-    return values_.emplace(key, context_.values(shape, at)).first->second;
+  const Values& f = values_.emplace(key, evaluated(shape, at)).first->second;
+  std::vector<double>& largest = largest_[key];
+  largest.clear();
+  for (const std::vector<double>& session : f) {
+    double most = 0.0;
+    for (const double value : session) most = std::max(most, std::abs(value));
+    largest.push_back(most);
   }
+  return f;
+}
+
+ColumnBuilder::Values ColumnBuilder::evaluated(const std::string& shape, Instant at) {
+  const bool of_rows = at == Instant::middle || at == Instant::end;
+  if (together_ == 0.0 || !of_rows) return context_.values(shape, at);
   std::vector<RowVariables>& some = thinned_[at];
   for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
   Values result;
   for (const RowVariables& session : some) result.push_back(evaluate_shape(shape, session));
-  return values_.emplace(key, std::move(result)).first->second;
+  return result;
 }
 
 void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int session,
@@ -164,15 +192,18 @@ void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int se
 
 void ColumnBuilder::add_views(Channel channel, const std::string& shape, int session,
                               Eigen::Ref<Eigen::VectorXd> column) {
-  for (const View& view : views_) {
-    if (session >= 0 && view.session != idx(session)) continue;
-    const Instant at = view.truth ? Instant::truth : Instant::sighting;
-    const RowVariables& variables = context_.variables(view.session, at);
-    const double f = values(shape, at)[view.session][view.source];
-    const ViewPattern unit = view_pattern(channel, f, variables.at("speed")[view.source],
-                                          variables.at("turn_rate")[view.source]);
-    const Vector4 rows = view.influence * unit.vector();
-    for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
+  for (const Instant at : {Instant::sighting, Instant::truth}) {
+    const Values& f = values(shape, at);
+    for (const View& view : views_) {
+      if (view.truth != (at == Instant::truth)) continue;
+      if (session >= 0 && view.session != idx(session)) continue;
+      const RowVariables& variables = context_.variables(view.session, at);
+      const ViewPattern unit =
+          view_pattern(channel, f[view.session][view.source], variables.at("speed")[view.source],
+                       variables.at("turn_rate")[view.source]);
+      const Vector4 rows = view.influence * unit.vector();
+      for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
+    }
   }
 }
 
@@ -195,20 +226,6 @@ Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
   return result;
 }
 
-double ColumnBuilder::largest(const std::string& shape, Instant at, int session) {
-  const auto key = std::make_tuple(shape, at, session);
-  const auto found = largest_.find(key);
-  if (found != largest_.end()) return found->second;
-  const Values& f = values(shape, at);
-  double most = 0.0;
-  for (std::size_t s = 0; s < f.size(); ++s) {
-    if (session >= 0 && s != idx(session)) continue;
-    for (const double value : f[s]) most = std::max(most, std::abs(value));
-  }
-  largest_.emplace(key, most);
-  return most;
-}
-
 std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   const Channel channel = channel_of(effect);
   std::vector<Instant> instants{Instant::middle};
@@ -217,7 +234,14 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
     double most = 0.0;
-    for (const Instant at : instants) most = std::max(most, largest(part.shape, at, part.session));
+    for (const Instant at : instants) {
+      const auto key = std::make_pair(part.shape, at);
+      if (!largest_.contains(key)) static_cast<void>(values(part.shape, at));
+      const std::vector<double>& sessions = largest_.at(key);
+      for (std::size_t s = 0; s < sessions.size(); ++s) {
+        if (part.session < 0 || s == idx(part.session)) most = std::max(most, sessions[s]);
+      }
+    }
     result.push_back(most);
   }
   return result;

@@ -35,6 +35,9 @@ struct Tested {
   Score score;
   Eigen::MatrixXd slopes;  ///< of the held-out legs
   int tried = 1;
+  /// Of the score, what the members tried had found before inner values were refined: all that is
+  /// paid for by their number, and so all that speaks for there being an effect.
+  double share_found = 1.0;
   double dispersion = 1.0;  ///< of the rows that speak for it
   double evidence = 0.0;
   double p_value = 1.0;
@@ -65,10 +68,7 @@ class Diagnostician {
   Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
                 const DiagnosisOptions& options)
       : fit_(fit), options_(options), tests_(fit), dispersion_(fit, tests_) {
-    ModelFitOptions how;
-    how.problem = options.problem;
-    how.gate = options.gate;
-    legs_ = std::make_unique<HeldOutLegs>(recordings, fit, how, options.legs);
+    legs_ = std::make_unique<HeldOutLegs>(recordings, fit, how_to_fit(options), options.legs);
     predictable_ = legs_->alike(fit.problem);
   }
 
@@ -107,7 +107,7 @@ class Diagnostician {
       if (score.score > best.score) best = {k, score.score, best.tried};
     });
     for (const auto& [name, best] : families) tested.push_back(members[best.member]);
-    visit_scores(tests_, tested, Look::exact, [&](std::size_t k, Score& score) {
+    visit_scores(tests_, tested, Look::screening, [&](std::size_t k, Score& score) {
       tested_.emplace_back();
       take(tested_.back(), tested[k], score);
       if (!tested[k].family.empty()) tested_.back().tried = families[tested[k].family].tried;
@@ -151,7 +151,8 @@ class Diagnostician {
       if (one.score.dof == 0) continue;
       const double left =
           std::max(1.0, (chi2 - one.score.score) / std::max(1, dof - one.score.dof));
-      one.p_value = chi2_p_value(one.score.score / std::max(left, one.dispersion), one.score.dof);
+      one.p_value = chi2_p_value(one.share_found * one.score.score / std::max(left, one.dispersion),
+                                 one.score.dof);
       least = std::min(least, left);
     }
     std::vector<std::size_t> order(tested.size());
@@ -197,7 +198,9 @@ class Diagnostician {
     const Candidate better = refined(tests_, tested.candidate);
     if (better.inner == tested.candidate.inner) return;
     Score score = tests_.test({better.effect}).front();
+    const double found = tested.score.score;
     take(tested, better, score);
+    tested.share_found = std::min(1.0, found / std::max(tested.score.score, 1e-300));
   }
 
   /// What would have to be far larger than anything known is none, but for a plain factor: a
@@ -234,7 +237,7 @@ class Diagnostician {
       candidates.push_back(still[k].candidate);
     }
     const LocalDispersion local(fit, left);
-    visit_scores(left, candidates, Look::exact, [&](std::size_t k, Score& score) {
+    visit_scores(left, candidates, Look::screening, [&](std::size_t k, Score& score) {
       Tested& one = still[places[k]];
       one.dispersion = dispersion_of(score, local);
       drop_columns(score);
@@ -564,6 +567,13 @@ std::string_view name_of(Status status) {
   return "cannot tell";
 }
 
+ModelFitOptions how_to_fit(const DiagnosisOptions& options) {
+  ModelFitOptions how;
+  how.problem = options.problem;
+  how.gate = options.gate;
+  return how;
+}
+
 HeldOutFigures figures_of(const HeldOut& held_out) {
   return {held_out.arrival_rms, held_out.stretch_error, held_out.orientation_error};
 }
@@ -575,10 +585,8 @@ Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
                    const DiagnosisOptions& options) {
-  ModelFitOptions how;
-  how.problem = options.problem;
-  how.gate = options.gate;
-  Diagnosis result = diagnose(recordings, fit_model(recordings, model, how), options);
+  const ModelFit fit = fit_model(recordings, model, how_to_fit(options));
+  Diagnosis result = diagnose(recordings, fit, options);
   result.advice = advice_on(recordings, model, options.problem);
   return result;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
@@ -21,9 +22,7 @@ class Discoverer {
  public:
   Discoverer(const std::vector<Recording>& recordings, const Model& model,
              const DiscoveryOptions& options)
-      : recordings_(recordings), options_(options) {
-    how_.problem = options.diagnosis.problem;
-    how_.gate = options.diagnosis.gate;
+      : recordings_(recordings), options_(options), how_(how_to_fit(options.diagnosis)) {
     given_ = model.effects.size();
     tell("fitting the model given");
     result_.fit = fit_model(recordings, model, how_);
@@ -35,6 +34,7 @@ class Discoverer {
     while (true) {
       tell(fmt::format("looking for what is missing, step {}", result_.steps.size()));
       result_.last = diagnose(recordings_, result_.fit, options_.diagnosis);
+      if (result_.steps.size() == 1) result_.first = result_.last;
       result_.steps.back().held_out = result_.last.held_out;
       if (result_.last.verdict != Diagnosis::Verdict::missing) {
         result_.stopped = "nothing more is significant";
@@ -65,10 +65,6 @@ class Discoverer {
     return fit_model(recordings_, model, how);
   }
 
-  [[nodiscard]] double arrival_of(const ModelFit& fit) const {
-    return predict_held_out(recordings_, fit, how_, options_.diagnosis.legs).arrival_rms;
-  }
-
   /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
   DiscoveryStep& record() {
     DiscoveryStep step;
@@ -82,8 +78,19 @@ class Discoverer {
   struct Trial {
     Candidate candidate;
     ModelFit fit;
-    double arrival = 0.0;  ///< of the held-out legs, m
+    std::optional<double> arrival = std::nullopt;  ///< of the held-out legs, m; once asked for
   };
+
+  double arrival_of(Trial& trial) const {
+    if (trial.arrival) return *trial.arrival;
+    try {
+      trial.arrival =
+          predict_held_out(recordings_, trial.fit, how_, options_.diagnosis.legs).arrival_rms;
+    } catch (const SolveError&) {  // what is left without those legs does not tell the effect
+      trial.arrival = std::numeric_limits<double>::infinity();
+    }
+    return *trial.arrival;
+  }
 
   [[nodiscard]] static bool was_fitted(const ModelFit& fit) {
     return fit.effects.empty() || fit.effects.back().not_fitted.empty();
@@ -115,8 +122,7 @@ class Discoverer {
       effects.push_back(one->candidate.effect);
       try {
         ModelFit fit = fitted(effects);
-        const double arrival = arrival_of(fit);
-        if (was_fitted(fit)) trials.push_back({one->candidate, std::move(fit), arrival});
+        if (was_fitted(fit)) trials.push_back({one->candidate, std::move(fit)});
       } catch (const SolveError&) {
         continue;  // nor can it be fitted
       }
@@ -128,7 +134,7 @@ class Discoverer {
     }
     const std::size_t best = best_of(trials);
     const double before = result_.steps.back().held_out.arrival_rms;
-    if (before > 0.0 && trials[best].arrival > kNoWorse * before) {
+    if (before > 0.0 && arrival_of(trials[best]) > kNoWorse * before) {
       stop(fmt::format("\"{}\" fits these legs, but predicts others worse",
                        trials[best].candidate.effect.name));
       return false;
@@ -151,7 +157,7 @@ class Discoverer {
   }
 
   /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
-  [[nodiscard]] static std::size_t best_of(const std::vector<Trial>& trials) {
+  [[nodiscard]] std::size_t best_of(std::vector<Trial>& trials) const {
     const auto cost = [](const Trial& one) {
       return one.fit.adjustment.chi2 - 2.0 * one.candidate.log_prior +
              4.0 * static_cast<double>(one.candidate.effect.shape.size() +
@@ -161,7 +167,9 @@ class Discoverer {
     for (std::size_t k = 1; k < trials.size(); ++k) {
       const double gain = cost(trials[best]) - cost(trials[k]);
       if (gain < -kDecisive) continue;
-      if (gain < kDecisive && !(trials[k].arrival < kBetter * trials[best].arrival)) continue;
+      if (gain < kDecisive && !(arrival_of(trials[k]) < kBetter * arrival_of(trials[best]))) {
+        continue;
+      }
       best = k;
     }
     return best;

@@ -45,10 +45,15 @@ class Fitter {
       build_columns();
       if (round == 0) hold_unobservable();
       adjust_once();
-      if (hold_the_unseen()) continue;
       fit_.settled = settled();
+      const bool last = fit_.settled || round + 1 == options_.max_rounds;
+      if ((round == 0 || last) && hold_the_unseen()) {
+        fit_.settled = false;
+        continue;
+      }
       if (fit_.settled) break;
     }
+    if (fit_.model.effects.empty()) lay_paths();
     report();
     return std::move(fit_);
   }
@@ -129,6 +134,7 @@ class Fitter {
   }
 
   void build_columns() {
+    if (fit_.model.effects.empty()) return;
     const ShapeContext context(fit_.recordings, fit_.model.robot, fit_.paths);
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
@@ -224,23 +230,24 @@ class Fitter {
       const auto at = static_cast<Eigen::Index>(k);
       const double now = fit_.adjustment.coefficients[at];
       const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
-      change_ = std::max(change_, std::abs(now - value) / (1e-9 * std::abs(now) + 1e-6 * sd));
+      change_ =
+          std::max(change_, std::abs(now - value) / (1e-9 * std::abs(now) + options_.still * sd));
       value = now;
     }
     take_paths();
   }
 
   void take_paths() {
+    // Without effects nothing depends on the path but what asks for it afterwards.
     const std::vector<SessionPath> before = std::move(fit_.paths);
-    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
-                              offsets_of(fit_), state_);
+    if (!fit_.model.effects.empty()) lay_paths();
     // What a misfit leaves is no noise to be believed.
     const bool noise = fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
     bent_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
                                 offsets_of(fit_), state_)
                   : 0.0;
     moved_ = 0.0;
-    for (std::size_t s = 0; s < before.size(); ++s) {
+    for (std::size_t s = 0; s < fit_.paths.size(); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
         const Pose& a = before[s].ends[row];
         const Pose& b = fit_.paths[s].ends[row];
@@ -248,6 +255,11 @@ class Fitter {
                            std::abs(wrap_angle(a.heading - b.heading))});
       }
     }
+  }
+
+  void lay_paths() {
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
+                              offsets_of(fit_), state_);
   }
 
   /// The last of those that the data tell too little of gives way, as in give_way.

@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kBatch = 64;  // columns at a time
+constexpr double kQuick = 1.0;       // s of driving at a time
+constexpr double kShows = 0.05;      // p
 
 /// Less what landmarks and poses can take up.
 Eigen::MatrixXd free_of_map(const RecordingSystem& system, const Eigen::MatrixXd& M) {
@@ -42,12 +44,10 @@ ScoreTest::ScoreTest(const ModelFit& fit)
                       fit.adjustment.coefficients);
     system->factorise();
   }
-  const auto builder = [&](double together) {
-    return std::make_shared<ColumnBuilder>(clean_->context, clean_->problem, clean_->border,
-                                           offsets_of(fit), clean_->state, weights, together);
-  };
-  rows_ = builder(0.0);
-  seconds_ = builder(1.0);
+  builders_ = std::make_shared<Builders>(
+      Builders{ColumnBuilder(clean_->context, clean_->problem, clean_->border, offsets_of(fit),
+                             clean_->state, weights),
+               std::nullopt});
   residuals_ = free_of_map(*clean_system_, system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   take_out(clean_system_->border());
@@ -156,8 +156,25 @@ Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
 }
 
 std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates, Look look) const {
+  if (look == Look::exact) return test_with(builders_->exact, candidates);
+  if (!builders_->quick) builders_->quick.emplace(builders_->exact.coarsened(kQuick));
+  std::vector<Score> scores = test_with(*builders_->quick, candidates);
+  if (look == Look::quick) return scores;
+  std::vector<std::size_t> shown;
+  std::vector<Effect> again;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    if (scores[k].dof > 0 && scores[k].p_value >= kShows) continue;
+    shown.push_back(k);
+    again.push_back(candidates[k]);
+  }
+  std::vector<Score> exact = test_with(builders_->exact, again);
+  for (std::size_t k = 0; k < shown.size(); ++k) scores[shown[k]] = std::move(exact[k]);
+  return scores;
+}
+
+std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
+                                        const std::vector<Effect>& candidates) const {
   const RecordingSystem& system = *clean_system_;
-  ColumnBuilder& builder = look == Look::exact ? *rows_ : *seconds_;
   std::vector<Score> scores;
   scores.reserve(candidates.size());
   for (std::size_t first = 0; first < candidates.size();) {

@@ -71,9 +71,8 @@ void check_syntax(const std::string& expression) {
   }
 }
 
-/// A parser that knows our functions and no others, with the expression set.
-mu::Parser parser_of(const std::string& expression) {
-  check_syntax(expression);
+/// A parser that knows our functions and no others.
+mu::Parser make_parser() {
   mu::Parser parser;
   parser.ClearFun();
   parser.ClearConst();
@@ -94,6 +93,15 @@ mu::Parser parser_of(const std::string& expression) {
   };
   define_list("min", [](const double* v, int count) { return *std::min_element(v, v + count); });
   define_list("max", [](const double* v, int count) { return *std::max_element(v, v + count); });
+  return parser;
+}
+
+/// The parser with the expression set and no variables. Making one takes longer than a thousand
+/// rows: each thread has one. What it was given before is forgotten.
+mu::Parser& parser_of(const std::string& expression) {
+  check_syntax(expression);
+  thread_local mu::Parser parser = make_parser();
+  parser.ClearVar();
   parser.SetExpr(with_squares(expression));
   return parser;
 }
@@ -114,7 +122,7 @@ std::string list(const RowVariables& variables) {
 
 std::vector<std::string> variables_of(const std::string& expression) {
   try {
-    mu::Parser parser = parser_of(expression);
+    mu::Parser& parser = parser_of(expression);
     std::vector<std::string> names;
     for (const auto& [name, address] : parser.GetUsedVar()) names.push_back(name);
     return names;
@@ -131,7 +139,7 @@ std::vector<double> evaluate_shape(const std::string& expression, const RowVaria
   std::vector<double> result;
   result.reserve(rows);
   try {
-    mu::Parser parser = parser_of(expression);
+    mu::Parser& parser = parser_of(expression);
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto found = variables.find(names[k]);
       if (found == variables.end()) {

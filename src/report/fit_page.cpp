@@ -60,6 +60,11 @@ FittedModel fitted_model(const ModelFit& fit, Comparison comparison) {
           residuals_by_source(fit.problem, snoop(fit.problem, fit.columns.border, fit.adjustment))};
 }
 
+FittedModel fitted_model(const std::vector<Recording>& recordings, const ModelFit& fit,
+                         const ScoreTest& tests, const ComparisonOptions& options) {
+  return fitted_model(fit, compare(recordings, fit.model, options, fit, tests));
+}
+
 std::vector<FittedEffect> fitted_effects(const ModelFit& without,
                                          const std::vector<EffectEstimate>& effects,
                                          const std::vector<std::vector<LookAlike>>& rivals) {

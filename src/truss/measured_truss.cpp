@@ -3,40 +3,16 @@
 #include "trussmap/truss/measured_truss.hpp"
 
 #include "trussmap/core/error.hpp"
+#include "trussmap/truss/connected_parts.hpp"
 #include "trussmap/truss/dissection.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include <Eigen/LU>
 
 namespace trussmap {
-namespace {
-
-/// The lowest joint that no chain of bars ties to joint 0; -1 if there is none.
-int find_loose_joint(int joints, const std::vector<NodePair>& pairs) {
-  std::vector<int> root(idx(joints));
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&root](int joint) {
-    while (root[idx(joint)] != joint) {
-      joint = root[idx(joint)] = root[idx(root[idx(joint)])];
-    }
-    return joint;
-  };
-  for (const auto& [i, j] : pairs) {
-    const int a = root_of(i);
-    const int b = root_of(j);
-    root[idx(std::max(a, b))] = std::min(a, b);
-  }
-  for (int joint = 0; joint < joints; ++joint) {
-    if (root_of(joint) != 0) return joint;
-  }
-  return -1;
-}
-
-}  // namespace
 
 int MeasuredTruss::add_joint(const Vector2& about) {
   about_.push_back(about);
@@ -84,8 +60,10 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
   if (about_.empty()) return result;
   // A part that nothing holds is not always noticed by its pivots, which may be rounded to any
   // sign.
-  if (const int loose = find_loose_joint(joints(), pairs_); loose >= 0) {
-    throw SolveError("joint " + std::to_string(loose) +
+  const std::vector<int> parts = connected_parts(joints(), pairs_);
+  const auto loose = std::find_if(parts.begin(), parts.end(), [](int part) { return part != 0; });
+  if (loose != parts.end()) {
+    throw SolveError("joint " + std::to_string(loose - parts.begin()) +
                      " is tied to nothing: no chain of measurements leads to it from joint 0");
   }
   std::vector<int> sizes(about_.size(), 2);

@@ -3,10 +3,10 @@
 #include "trussmap/truss/truss.hpp"
 
 #include "trussmap/core/index.hpp"
+#include "trussmap/truss/connected_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace trussmap {
@@ -29,25 +29,11 @@ void check_bars(int joints, const std::vector<Bar>& bars) {
   }
 }
 
-/// The connected part of each joint, named by its lowest joint.
 std::vector<int> connected_parts(int joints, const std::vector<Bar>& bars) {
-  std::vector<int> part(idx(joints));
-  std::iota(part.begin(), part.end(), 0);
-  const auto root = [&part](int joint) {
-    while (part[idx(joint)] != joint) {
-      int& up = part[idx(joint)];
-      up = part[idx(up)];
-      joint = up;
-    }
-    return joint;
-  };
-  for (const Bar& bar : bars) {
-    const int a = root(bar.i);
-    const int b = root(bar.j);
-    part[idx(std::max(a, b))] = std::min(a, b);
-  }
-  for (int joint = 0; joint < joints; ++joint) part[idx(joint)] = root(joint);
-  return part;
+  std::vector<NodePair> pairs;
+  pairs.reserve(bars.size());
+  for (const Bar& bar : bars) pairs.push_back({bar.i, bar.j});
+  return trussmap::connected_parts(joints, pairs);
 }
 
 void require_supports(int joints, const std::vector<Bar>& bars,

@@ -15,8 +15,8 @@
 #include "trussmap/criticism/effect_columns.hpp"
 
 #include <map>
+#include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,12 +25,14 @@ namespace trussmap {
 class ColumnBuilder {
  public:
   /// Keeps references to context, problem and border. `weights` of the measurements (information);
-  /// `offsets` of the border's coefficients from their references. `together`: s of driving that
-  /// count as one row, with the variables of its middle, for a quick look; 0: every row by itself.
+  /// `offsets` of the border's coefficients from their references.
   ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
                 const EffectBorder& border, const Eigen::VectorXd& offsets,
-                const RecordingState& state, const std::vector<double>& weights,
-                double together = 0.0);
+                const RecordingState& state, const std::vector<double>& weights);
+
+  /// The same for a quick look: so many seconds of driving count as one row, with the variables of
+  /// its middle. Shares what it can with this one.
+  [[nodiscard]] ColumnBuilder coarsened(double seconds) const;
 
   /// One column per coefficient of the effect (resolved), its rows in the order of the problem's
   /// measurements. Throws std::invalid_argument like effect_columns.
@@ -48,13 +50,15 @@ class ColumnBuilder {
   /// Rows of a piece that share a shape's value.
   struct Stretch {
     std::size_t place = 0;  ///< of the value, in its session
-    std::size_t begin = 0;  ///< of piece_rows_
+    std::size_t begin = 0;  ///< of the rows
     std::size_t end = 0;
   };
   struct Piece {
     Eigen::Index first_row = 0;
     int rows = 0;
     std::size_t session = 0;
+    std::size_t row_begin = 0;  ///< of the rows
+    std::size_t row_end = 0;
     std::size_t begin = 0;  ///< of stretches_
     std::size_t end = 0;
   };
@@ -68,11 +72,13 @@ class ColumnBuilder {
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
 
-  void take_stretches(Piece& piece, std::size_t first_row);
+  /// Of rows together_ long at most; no longer than a piece.
+  void take_stretches();
+  void take_stretches(Piece& piece);
   [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
   const Eigen::Matrix4Xd& basis(Channel channel);
   const Values& values(const std::string& shape, ShapeContext::Instant at);
-  double largest(const std::string& shape, ShapeContext::Instant at, int session);
+  [[nodiscard]] Values evaluated(const std::string& shape, ShapeContext::Instant at);
   void add_drives(Channel channel, const std::string& shape, int session,
                   Eigen::Ref<Eigen::VectorXd> column);
   void add_views(Channel channel, const std::string& shape, int session,
@@ -81,7 +87,7 @@ class ColumnBuilder {
   const ShapeContext& context_;
   double together_ = 0.0;
   Eigen::Index rows_ = 0;
-  std::vector<Row> piece_rows_;
+  std::shared_ptr<std::vector<Row>> piece_rows_;
   std::vector<Stretch> stretches_;
   std::vector<std::vector<std::size_t>> middles_;  ///< per session, rows that stand for a stretch
   std::vector<Piece> pieces_;
@@ -89,7 +95,8 @@ class ColumnBuilder {
   std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
   std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
-  std::map<std::tuple<std::string, ShapeContext::Instant, int>, double> largest_;
+  /// |f| at most, per session; outlives the values.
+  std::map<std::pair<std::string, ShapeContext::Instant>, std::vector<double>> largest_;
 };
 
 }  // namespace trussmap

@@ -98,6 +98,9 @@ struct DiagnosisOptions {
   std::size_t most_missing = 4;
 };
 
+/// How a diagnosis fits a model.
+[[nodiscard]] ModelFitOptions how_to_fit(const DiagnosisOptions& options);
+
 /// Throws like fit_model.
 [[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
                                  const DiagnosisOptions& options = {});

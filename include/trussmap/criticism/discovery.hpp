@@ -38,7 +38,8 @@ struct Discovery {
   ModelFit fit;                      ///< of the model found
   std::string stopped;               ///< why
   bool consistent = true;
-  Diagnosis last;  ///< of the model found
+  Diagnosis first;  ///< of the model given
+  Diagnosis last;   ///< of the model found
 };
 
 struct DiscoveryOptions {

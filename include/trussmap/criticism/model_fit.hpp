@@ -32,6 +32,7 @@ struct ModelFitOptions {
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
   int max_rounds = 30;
+  double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
   /// Start from this fit of the same recordings (to more or fewer of their measurements).
   const ModelFit* near = nullptr;
 };

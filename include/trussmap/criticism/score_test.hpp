@@ -28,6 +28,7 @@
 #include "trussmap/criticism/noise_free.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -49,9 +50,9 @@ struct Score {
   Eigen::MatrixXd landmarks;  ///< what one unit of each moves the landmarks by, two rows each, m
 };
 
-/// Every row by itself, or a second of driving at a time: a tenth of the work, enough to find the
-/// best of many places or thresholds.
-enum class Look { exact, quick };
+/// Every row by itself; or a second of driving at a time, a tenth of the work, enough to find the
+/// best of many places or thresholds; or quick, and exact for what shows something (p < 0.05).
+enum class Look { exact, quick, screening };
 
 class ScoreTest {
  public:
@@ -68,7 +69,7 @@ class ScoreTest {
 
   /// Whitened columns of an effect (resolved), M.
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
-    return rows_->columns(effect);
+    return builders_->exact.columns(effect);
   }
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
@@ -90,6 +91,8 @@ class ScoreTest {
   [[nodiscard]] const ShapeContext& context() const { return clean_->context; }
 
  private:
+  [[nodiscard]] std::vector<Score> test_with(ColumnBuilder& builder,
+                                             const std::vector<Effect>& candidates) const;
   [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
                                Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
 
@@ -100,8 +103,11 @@ class ScoreTest {
   std::shared_ptr<const NoiseFree> clean_;
   std::shared_ptr<RecordingSystem> system_;
   std::shared_ptr<RecordingSystem> clean_system_;
-  std::shared_ptr<ColumnBuilder> rows_;
-  std::shared_ptr<ColumnBuilder> seconds_;  ///< for a quick look
+  struct Builders {
+    ColumnBuilder exact;
+    std::optional<ColumnBuilder> quick;  ///< made when first asked for
+  };
+  std::shared_ptr<Builders> builders_;
   Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
   Eigen::VectorXd residuals_;
   double dispersion_ = 1.0;

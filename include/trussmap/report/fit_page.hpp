@@ -26,6 +26,11 @@ struct FittedModel {
 /// `comparison` is of this fit.
 [[nodiscard]] FittedModel fitted_model(const ModelFit& fit, Comparison comparison);
 
+/// Compared here, as it was fitted; `tests` is of the fit.
+[[nodiscard]] FittedModel fitted_model(const std::vector<Recording>& recordings,
+                                       const ModelFit& fit, const ScoreTest& tests,
+                                       const ComparisonOptions& options);
+
 /// An effect as fitted, and what the recordings show of it where the model lacks it alone.
 struct FittedEffect {
   EffectEstimate estimate;
