@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/criticism/score_test.hpp"
 
+#include "trussmap/effects/shape.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -26,6 +29,17 @@ Eigen::MatrixXd free_of_map(const RecordingSystem& system, const Eigen::MatrixXd
 Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
   if (present.cols() > 0) M -= present * (present.transpose() * M);
   return M;
+}
+
+/// Whether its shapes speak of what a second's middle says nothing about.
+bool changes_within_a_second(const Effect& effect) {
+  static const std::set<std::string> brief{"starts", "spins", "reverses_left", "reverses_right",
+                                           "acceleration"};
+  return std::any_of(effect.shape.begin(), effect.shape.end(), [](const std::string& shape) {
+    const std::vector<std::string> names = variables_of(shape);
+    return std::any_of(names.begin(), names.end(),
+                       [](const std::string& name) { return brief.contains(name); });
+  });
 }
 
 }  // namespace
@@ -163,7 +177,8 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates, Look l
   std::vector<std::size_t> shown;
   std::vector<Effect> again;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (scores[k].dof > 0 && scores[k].p_value >= kShows) continue;
+    const bool shows = scores[k].dof == 0 || scores[k].p_value < kShows;
+    if (!shows && !changes_within_a_second(candidates[k])) continue;
     shown.push_back(k);
     again.push_back(candidates[k]);
   }

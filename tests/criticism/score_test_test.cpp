@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "adjustment/simulated_recordings.hpp"
+#include "criticism/noisy_recordings.hpp"
 
 namespace trussmap {
 namespace {
@@ -81,6 +82,39 @@ TEST(ScoreTest, AQuickLookIsNearTheExactOne) {
         << effects[k].channel;
     EXPECT_EQ(exact[k].dof, quick[k].dof);
   }
+}
+
+// What shows something is asked exactly, and so is what goes with events, of which a second's
+// middle says nothing.
+TEST(ScoreTest, ScreeningIsExactWhereItMatters) {
+  testing::NoisyDrive world = testing::simulate_world({}, 4);  // seed 4
+  widen(world.recordings.front(), world.model.robot.wheelbase, -0.02);
+  const ModelFit fit = fit_model(world.recordings, world.model);
+  const ScoreTest tests(fit);
+  const std::vector<Effect> effects{effect_of("turn", {"abs(turn_rate)"}),
+                                    effect_of("rotate", {"spins"}),
+                                    effect_of("advance", {"starts"}),
+                                    effect_of("difference", {"acceleration"}),
+                                    effect_of("travel", {"t"}),
+                                    effect_of("creep", {"speed"})};
+  const std::vector<Score> exact = tests.test(effects);
+  const std::vector<Score> quick = tests.test(effects, Look::quick);
+  const std::vector<Score> screened = tests.test(effects, Look::screening);
+  int left_quick = 0;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    EXPECT_EQ(screened[k].dof, exact[k].dof) << effects[k].channel;
+    if (k < 4 || exact[k].p_value < 0.01) {
+      EXPECT_DOUBLE_EQ(screened[k].score, exact[k].score) << effects[k].channel;
+    } else if (quick[k].p_value >= 0.05) {
+      EXPECT_DOUBLE_EQ(screened[k].score, quick[k].score) << effects[k].channel;
+      EXPECT_GE(exact[k].p_value, 0.01) << effects[k].channel;
+      ++left_quick;
+    }
+  }
+  EXPECT_LT(exact[0].p_value, 1e-6);
+  EXPECT_GT(left_quick, 0);
+  // A quick look cannot see a spin's first row.
+  EXPECT_GT((exact[1].columns - quick[1].columns).norm(), 0.5 * exact[1].columns.norm());
 }
 
 TEST(ScoreTest, ManyAtOnceAreTheSameAsOneByOne) {

@@ -51,7 +51,8 @@ struct Score {
 };
 
 /// Every row by itself; or a second of driving at a time, a tenth of the work, enough to find the
-/// best of many places or thresholds; or quick, and exact for what shows something (p < 0.05).
+/// best of many places or thresholds; or quick, and exact for what shows something (p < 0.05) or
+/// goes with events and accelerations, which a second's middle says nothing about.
 enum class Look { exact, quick, screening };
 
 class ScoreTest {
