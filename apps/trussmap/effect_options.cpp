@@ -58,22 +58,17 @@ Effect named_effect(const std::string& option) {
   return effect;
 }
 
-[[noreturn]] void refuse(const Effect& effect, const std::string& file, const std::string& what) {
-  const std::string text = fmt::format("effect \"{}\" {}", effect.name, what);
-  if (effect.line > 0) throw InputError(file, effect.line, text);
-  throw UsageError(text);
-}
-
-Effect applicable(const Effect& effect, const std::string& file) {
+/// Throws std::invalid_argument.
+Effect applicable(const Effect& effect) {
   Effect result = resolved(effect);
-  if (result.coefficients.empty()) {
-    refuse(effect, file, "has no coefficients, expected one per shape");
-  }
+  const auto refuse = [&result](const std::string& what) {
+    throw std::invalid_argument(fmt::format("effect \"{}\" {}", result.name, what));
+  };
+  if (result.coefficients.empty()) refuse("has no coefficients, expected one per shape");
   // A simulated recording is one session, the first.
   if (result.per_session) {
     if (result.coefficients.size() < result.shape.size()) {
-      refuse(effect, file,
-             fmt::format("has {} coefficients, expected {}, one per shape",
+      refuse(fmt::format("has {} coefficients, expected {}, one per shape",
                          result.coefficients.size(), result.shape.size()));
     }
     result.coefficients.resize(result.shape.size());
@@ -101,7 +96,7 @@ std::vector<Effect> effects_of(const EffectOptions& options) {
   for (const std::string& option : options.named) effects.push_back(named_effect(option));
   for (Effect& effect : effects) {
     try {
-      effect = applicable(effect, options.model);
+      effect = applicable(effect);
     } catch (const std::invalid_argument& error) {
       if (effect.line > 0) throw InputError(options.model, effect.line, error.what());
       throw UsageError(error.what());

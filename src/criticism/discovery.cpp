@@ -13,10 +13,10 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kMostRivals = 4;
-constexpr double kDecisive = 6.0;  // of chi^2
-constexpr double kStays = 15.0;    // Wald statistic per coefficient that keeps an effect
-constexpr double kNoWorse = 1.05;  // of the arrival error
-constexpr double kBetter = 0.98;   // of the arrival error, to be preferred
+constexpr double kDecisive = 6.0;       // of chi^2
+constexpr double kWorthKeeping = 15.0;  // Wald statistic per coefficient that keeps an effect
+constexpr double kNoWorse = 1.05;       // of the arrival error
+constexpr double kBetter = 0.98;        // of the arrival error, to be preferred
 
 class Discoverer {
  public:
@@ -201,7 +201,7 @@ class Discoverer {
       double least = 1.0;
       for (std::size_t k = given_; k < found_.size(); ++k) {
         const double strength =
-            wald(k) / (kStays * static_cast<double>(found_[k].effect.shape.size()));
+            wald(k) / (kWorthKeeping * static_cast<double>(found_[k].effect.shape.size()));
         if (strength < least) {
           least = strength;
           weakest = k;

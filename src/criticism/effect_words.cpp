@@ -180,8 +180,8 @@ std::optional<double> number_after(const std::string& shape, const std::string& 
   return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
 }
 
-std::string at_place(const Vector2& place) {
-  return fmt::format(" at x {:.1f} m, y {:.1f} m", place.x(), place.y());
+std::string place_text(const Vector2& place) {
+  return fmt::format("x {:.1f} m, y {:.1f} m", place.x(), place.y());
 }
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -218,7 +218,7 @@ std::string event_of(const std::string& shape) {
   return "each event";
 }
 
-/// ", per m/s of speed": what a coefficient's size is the size of, by its shape.
+/// " per m/s": what a coefficient's size is the size of, by its shape.
 std::string per_shape(const std::string& shape) {
   if (shape == "1") return "";
   if (shape == "speed") return " per m/s";
@@ -231,6 +231,13 @@ std::string per_shape(const std::string& shape) {
   if (shape == "distance") return " per m driven";
   if (shape == "t") return " per s";
   return " per unit of " + shape;
+}
+
+/// "each event turns ..." with the event named, where the shape is one.
+std::string with_event_named(std::string sentence, const std::string& shape) {
+  constexpr std::string_view kEvent = "each event";
+  if (sentence.starts_with(kEvent)) sentence.replace(0, kEvent.size(), event_of(shape));
+  return sentence;
 }
 
 bool is_event(const std::string& shape) {
@@ -282,7 +289,8 @@ std::string name_in_words(const Effect& effect) {
     const std::optional<double> y = number_after(rest, "y=");
     const std::optional<double> r = number_after(rest, "r=");
     if (x && y && r) {
-      return fmt::format("{}{}, radius {} m", entry->name, at_place({*x, *y}), two_digits(*r));
+      return fmt::format("{} at {}, radius {} m", entry->name, place_text({*x, *y}),
+                         two_digits(*r));
     }
     return name;
   }
@@ -291,7 +299,7 @@ std::string name_in_words(const Effect& effect) {
   const std::string rest = name.substr(effect.channel.size());
   const std::optional<Vector2> place = place_of(effect);
   if ((rest == " at a place" || rest == " within a circle") && place) {
-    return noun_of(*channel) + at_place(*place);
+    return fmt::format("{} at {}", noun_of(*channel), place_text(*place));
   }
   if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
   return noun_of(*channel) + variables_in_words(rest);
@@ -312,8 +320,8 @@ std::string size_in_words(const Effect& effect, double least, double most) {
   const Phrase phrase = phrase_of(*channel);
   std::string subject = phrase.subject;
   const bool event = *channel == Channel::advance || *channel == Channel::rotate;
-  if (event && effect.shape.size() == 1) {
-    subject.replace(0, std::string("each event").size(), event_of(effect.shape.front()));
+  if (effect.shape.size() == 1) {
+    subject = with_event_named(std::move(subject), effect.shape.front());
   }
   return fmt::format("{} {}{}{} {}", subject, is_plain_factor(effect) || event ? "" : "up to ",
                      two_digits(scale.factor * std::abs(extreme)), scale.unit,
@@ -361,9 +369,9 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
     }
     std::string one = sentence(*channel, effect.coefficients[k], sd[k]);
     if (is_event(shape) && one.starts_with("each event")) {
-      one.replace(0, std::string("each event").size(), event_of(shape));
+      one = with_event_named(std::move(one), shape);
     } else if (place) {
-      one += " around" + at_place(*place).substr(3);
+      one += " around " + place_text(*place);
     } else {
       one += per_shape(shape);
     }

@@ -36,10 +36,6 @@ constexpr int kBlock = 4;  // columns at a time
 
 using Four = double __attribute__((vector_size(32)));
 
-std::ptrdiff_t at(int row, int column, int leading) {
-  return row + static_cast<std::ptrdiff_t>(column) * leading;
-}
-
 /// C (m x N) -= A (m x k) B (k x N), with B[q, c] at b[q * step + c * across].
 template <int N>
 TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int lda, const double* b,

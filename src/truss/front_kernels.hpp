@@ -5,7 +5,14 @@
 // large enough to be worth a call. All matrices are by columns.
 #pragma once
 
+#include <cstddef>
+
 namespace trussmap {
+
+/// Place of an entry in a matrix by columns.
+inline std::ptrdiff_t at(int row, int column, int leading) {
+  return row + static_cast<std::ptrdiff_t>(column) * leading;
+}
 
 /// Partial Cholesky factorisation. `panel`: rows x width, of which the triangle on and below the
 /// diagonal is read and becomes L. `update`, (rows - width) square: the lower triangle loses

@@ -13,10 +13,6 @@
 namespace trussmap {
 namespace {
 
-std::ptrdiff_t at(int row, int column, int leading) {
-  return row + static_cast<std::ptrdiff_t>(column) * leading;
-}
-
 std::size_t area(int rows, int columns) {
   return idx(rows) * idx(columns);
 }
