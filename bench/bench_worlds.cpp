@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "bench_worlds.hpp"
 
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/simulation/random_stream.hpp"
-#include "trussmap/simulation/tours.hpp"
+#include "simulation/tours.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,11 @@
 // Worlds, robots and effects for the criticism's figures: all drawn from a seed.
 #pragma once
 
-#include "trussmap/effects/model.hpp"
-#include "trussmap/recording/recording.hpp"
-#include "trussmap/simulation/mesh_world.hpp"
-#include "trussmap/simulation/true_motion.hpp"
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "simulation/mesh_world.hpp"
+#include "simulation/true_motion.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
 
 #include <cstdint>
 #include <string>

@@ -14,7 +14,9 @@
 //                  first of the four? And an effect named for it?
 //   cost           time of a diagnosis and of 200 of its candidates against one fit of the same
 //                  recording, 180 to 10 000 legs
-#include "trussmap/criticism/discovery.hpp"
+#include "bench_worlds.hpp"
+#include "criticism/discovery.hpp"
+#include "criticism/known_events.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -27,9 +29,6 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/QR>
 #include <fmt/format.h>
-
-#include "bench_worlds.hpp"
-#include "criticism/known_events.hpp"
 
 namespace trussmap::bench {
 namespace {
@@ -65,9 +64,9 @@ std::vector<double> sized(const Subject& subject, const World& world, const Scor
   if (!(size > 0.0)) return {};
   direction *= times * std::sqrt(kDetectableScore) / size;
   // What would have to be implausibly large counts as not shown.
-  const double plausible = facts_of(*parse_channel(subject.effect.channel)).plausible;
+  const double prior_sd = facts_of(*parse_channel(subject.effect.channel)).prior_sd;
   for (Eigen::Index k = 0; k < direction.size(); ++k) {
-    if (std::abs(direction[k]) * score.largest[static_cast<std::size_t>(k)] > plausible) return {};
+    if (std::abs(direction[k]) * score.largest[static_cast<std::size_t>(k)] > prior_sd) return {};
   }
   return {direction.begin(), direction.end()};
 }
@@ -176,9 +175,9 @@ void identify(const Options& options) {
           const DiscoveryStep& before = ladder.steps[0];
           const DiscoveryStep& after = ladder.steps[1];
           const double fell = before.chi2 - after.chi2;
-          const bool score_kept = std::abs(after.promised_chi2 - fell) <= 0.1 * fell;
+          const bool score_kept = std::abs(after.predicted_chi2 - fell) <= 0.1 * fell;
           const bool error_kept =
-              std::abs(after.promised.arrival_rms - after.held_out.arrival_rms) <=
+              std::abs(after.predicted.arrival_rms - after.held_out.arrival_rms) <=
               0.2 * after.held_out.arrival_rms;
           tally.promise += score_kept && error_kept ? 1 : 0;
         }
@@ -394,7 +393,7 @@ void cost() {
     const double testing = seconds([&] {
       for (std::size_t k = 0; k < effects.size(); k += 25) {
         const auto from = effects.begin() + static_cast<std::ptrdiff_t>(k);
-        for (const Score& one : tests->test({from, from + 25}, Look::screening)) {
+        for (const Score& one : tests->test({from, from + 25}, Resolution::screening)) {
           scores += one.score;
         }
       }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adjusted_map.hpp"
 
-#include "trussmap/adjustment/recording_adjustment.hpp"
-#include "trussmap/adjustment/recording_robust.hpp"
+#include "estimation/recording_adjustment.hpp"
+#include "estimation/recording_robust.hpp"
 
 #include <algorithm>
 #include <cmath>

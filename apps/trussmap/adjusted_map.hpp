@@ -10,7 +10,7 @@
 // them, gives the routes. Survey and truth have no part in either.
 #pragma once
 
-#include "trussmap/correction/recording_map.hpp"
+#include "build_map/recording_map.hpp"
 
 #include <string>
 #include <vector>

@@ -2,19 +2,18 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap add: an effect into a model.
-#include "trussmap/core/error.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/shape.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
+#include "commands.hpp"
+#include "effects/shape.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap adjust: the best fit of a plain pose graph.
-#include "trussmap/adjustment/pose_graph_robust.hpp"
-#include "trussmap/core/index.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/g2o.hpp"
+#include "commands.hpp"
+#include "geometry/index.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "terminal.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/pose_graph.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -15,11 +19,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

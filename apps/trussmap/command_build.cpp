@@ -2,15 +2,22 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap build: a landmark map from recordings.
-#include "trussmap/core/error.hpp"
-#include "trussmap/correction/recording_map.hpp"
-#include "trussmap/graph/survey_comparison.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
-#include "trussmap/odometry/effect_correction.hpp"
-#include "trussmap/report/map_page.hpp"
-#include "trussmap/report/map_picture.hpp"
+#include "adjusted_map.hpp"
+#include "build_map/recording_map.hpp"
+#include "commands.hpp"
+#include "map_files.hpp"
+#include "odometry/effect_correction.hpp"
+#include "option_checks.hpp"
+#include "page_runtime.hpp"
+#include "plot/map_picture.hpp"
+#include "progress.hpp"
+#include "report/map_page.hpp"
+#include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/survey_comparison.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -24,14 +31,6 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "adjusted_map.hpp"
-#include "commands.hpp"
-#include "map_files.hpp"
-#include "option_checks.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

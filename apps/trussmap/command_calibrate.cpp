@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth or survey.
-#include "trussmap/adjustment/truth_holdout.hpp"
-#include "trussmap/adjustment/wheel_calibration.hpp"
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
-#include "trussmap/report/calibration_pages.hpp"
-#include "trussmap/report/table.hpp"
+#include "calibration/truth_holdout.hpp"
+#include "calibration/wheel_calibration.hpp"
+#include "commands.hpp"
+#include "option_checks.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "report/calibration_pages.hpp"
+#include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -21,12 +26,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "option_checks.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -76,15 +75,15 @@ HeldOut held_out(const std::vector<Recording>& recordings, const Model& model,
   WheelCalibrationOptions how = calibration_options(options);
   if (!how.problem.truth || !(options.holdout > 0.0)) return result;
   const std::vector<TruthLeg> legs = truth_legs(recordings, options.holdout, options.leg);
-  const Stretches stretches = without_held_out(recordings, legs);
-  if (stretches.recordings.empty() ||
+  const TrainingSegments training_segments = without_held_out(recordings, legs);
+  if (training_segments.recordings.empty() ||
       std::none_of(legs.begin(), legs.end(), [](const TruthLeg& leg) { return leg.held_out; })) {
     return result;
   }
   how.noise = false;
-  how.sessions = stretches.sessions;
+  how.sessions = training_segments.sessions;
   try {
-    const WheelCalibration other = calibrate_wheels(stretches.recordings, model, how);
+    const WheelCalibration other = calibrate_wheels(training_segments.recordings, model, how);
     const std::vector<Recording> straight = aligned(recordings, other.truth, model.robot);
     result.nominal = arrival_errors(straight, legs, model);
     result.calibrated = arrival_errors(straight, legs, other.model);

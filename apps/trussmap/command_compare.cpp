@@ -2,22 +2,21 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap compare: how far a model is from measurements, and where.
-#include "trussmap/criticism/comparison.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/report/comparison_page.hpp"
-#include "trussmap/report/table.hpp"
+#include "commands.hpp"
+#include "criticism/comparison.hpp"
+#include "model_recordings.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "report/comparison_page.hpp"
+#include "terminal.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
 #include <numbers>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
-#include "model_recordings.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,20 +2,17 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap convert: maps between formats, and foreign recordings to recordings.
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/mrclam.hpp"
-#include "trussmap/io/optiodom.hpp"
-#include "trussmap/io/recording_csv.hpp"
+#include "commands.hpp"
+#include "map_files.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
-#include "map_files.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,22 +2,21 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap diagnose: which physical effect is missing from a model.
-#include "trussmap/criticism/diagnosis.hpp"
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/report/diagnosis_page.hpp"
-#include "trussmap/report/table.hpp"
-
-#include <memory>
-
-#include <fmt/format.h>
-
 #include "commands.hpp"
+#include "criticism/diagnosis.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "report/diagnosis_page.hpp"
 #include "terminal.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/write_files.hpp"
+#include "wording/effect_words.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
 
 namespace trussmap::app {
 namespace {
@@ -31,7 +30,7 @@ struct DiagnoseOptions {
   PageOptions page;
 };
 
-ordered_json json(const HeldOutFigures& figures) {
+ordered_json json(const HeldOutMetrics& figures) {
   return {{"arrival_rms_m", figures.arrival_rms},
           {"stretch_error", figures.stretch_error},
           {"orientation_error_rad", figures.orientation_error}};
@@ -47,7 +46,7 @@ ordered_json json(const Finding& finding) {
   one["status"] = name_of(finding.status);
   one["coefficients"] = numbers_or_null(effect.coefficients);
   one["sd"] = numbers_or_null(finding.sd);
-  one["smallest_detectable"] = numbers_or_null(finding.smallest_detectable);
+  one["smallest_detectable"] = numbers_or_null(finding.minimal_detectable);
   one["heldout"] = json(finding.held_out);
   one["log_evidence"] = finding.evidence;
   one["tried"] = finding.tried;
@@ -127,18 +126,18 @@ void print_verdict(const Diagnosis& result) {
   for (const Finding& one : result.findings) {
     if (one.status != Status::missing && one.status != Status::negligible) continue;
     Effect effect = one.candidate.effect;
-    effect.coefficients = one.together;
+    effect.coefficients = one.joint;
     const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
     fmt::print("{}\n",
                verdict_text(mood, fmt::format("{}: {}; {}", name_of(one.status), effect.name,
-                                              in_words(effect, one.together_sd))));
+                                              in_words(effect, one.joint_sd))));
     for (const LookAlike& rival : one.look_alikes) {
       fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
                  rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
     }
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
-    const bool several = result.findings.size() > 1 && !result.findings[1].together.empty();
+    const bool several = result.findings.size() > 1 && !result.findings[1].joint.empty();
     const char* what = several ? "them" : "it";
     fmt::print("  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n",
                what, length(result.held_out.arrival_rms), what,
@@ -207,7 +206,7 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
 std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
                                  const ModelRecordings& input, const ModelFit& fit,
                                  const DiagnosisOptions& how) {
-  ModelFitOptions more = how_to_fit(how);
+  ModelFitOptions more = fit_options(how);
   more.near = &fit;
   for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
     Model model = fit.model;
@@ -264,7 +263,7 @@ void run_diagnose(const DiagnoseOptions& options) {
   how.gate = gate_of(options.input);
   how.level = options.level;
   progress.next();
-  const ModelFit fit = fit_model(input.recordings, input.model, how_to_fit(how));
+  const ModelFit fit = fit_model(input.recordings, input.model, fit_options(how));
   progress.next();
   Diagnosis result = diagnose(input.recordings, fit, how);
   result.advice = advice_on(input.recordings, input.model, how.problem);

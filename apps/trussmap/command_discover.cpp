@@ -2,24 +2,23 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap discover: diagnose, add and fit for as long as that is justified.
-#include "trussmap/criticism/discovery.hpp"
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/report/discovery_page.hpp"
-#include "trussmap/report/table.hpp"
+#include "commands.hpp"
+#include "criticism/discovery.hpp"
+#include "json_values.hpp"
+#include "model_recordings.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "report/discovery_page.hpp"
+#include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/write_files.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
-#include "json_values.hpp"
-#include "model_recordings.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -43,8 +42,8 @@ ordered_json json(const DiscoveryStep& step) {
     one["added"] = effect_json(*step.added);
     one["added"]["coefficients"] = step.added->coefficients;
     one["dropped"] = step.dropped;
-    one["promised"] = {{"chi2_decrease", step.promised_chi2},
-                       {"arrival_rms_m", step.promised.arrival_rms}};
+    one["promised"] = {{"chi2_decrease", step.predicted_chi2},
+                       {"arrival_rms_m", step.predicted.arrival_rms}};
     ordered_json rivals = ordered_json::array();
     for (const LookAlike& rival : step.look_alikes) {
       rivals.push_back(effect_json(rival.effect));
@@ -95,12 +94,12 @@ void print(const Discovery& result) {
     std::string name = step.added ? "+ " + step.added->name : "as given";
     for (const std::string& dropped : step.dropped) name += ", - " + dropped;
     const double before =
-        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.promised_chi2;
+        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.predicted_chi2;
     table.rows.push_back(
         {name, fmt::format("{:.1f}", step.chi2), fmt::format("{}", step.dof),
          step.added ? fmt::format("{:.1f}", before) : "-",
          step.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * step.held_out.arrival_rms),
-         step.added ? fmt::format("{:.1f}", 1e3 * step.promised.arrival_rms) : "-",
+         step.added ? fmt::format("{:.1f}", 1e3 * step.predicted.arrival_rms) : "-",
          fmt::format("{}", step.held_out.legs.size())});
   }
   fmt::print("\n{}", table_text(table));
@@ -140,7 +139,7 @@ std::vector<FittedStep> models_between(const ModelRecordings& input, const Disco
 Page page_of(const ModelRecordings& input, const Discovery& result, const DiagnosisOptions& how,
              const DiscoverOptions& options) {
   const ComparisonOptions compared = comparison_options(options.input);
-  const ModelFitOptions given = how_to_fit(how);
+  const ModelFitOptions given = fit_options(how);
   const ModelFit before = fit_model(input.recordings, input.model, given);
   const ScoreTest tests(before);
   const ScoreTest after(result.fit);

@@ -2,25 +2,24 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap fit: the coefficients of a model's effects.
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/criticism/held_out.hpp"
-#include "trussmap/criticism/score_test.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/report/fit_page.hpp"
-#include "trussmap/report/table.hpp"
+#include "commands.hpp"
+#include "criticism/score_test.hpp"
+#include "json_values.hpp"
+#include "model_recordings.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "report/fit_page.hpp"
+#include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/write_files.hpp"
+#include "validation/held_out.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
-#include "json_values.hpp"
-#include "model_recordings.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,17 +2,21 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap noise: how noisy each wheel is, from one path driven many times.
-#include "trussmap/calibration/geometry_errors.hpp"
-#include "trussmap/calibration/noise_checks.hpp"
-#include "trussmap/calibration/path.hpp"
-#include "trussmap/calibration/wheel_noise.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/runs_csv.hpp"
-#include "trussmap/report/calibration_figures.hpp"
-#include "trussmap/report/calibration_pages.hpp"
-#include "trussmap/report/table.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "commands.hpp"
+#include "json_values.hpp"
+#include "option_checks.hpp"
+#include "plot/calibration_figures.hpp"
+#include "report/calibration_pages.hpp"
+#include "tape_options.hpp"
+#include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/random_stream.hpp"
+#include "trussmap/runs_files.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/test_path.hpp"
+#include "trussmap/umbmark.hpp"
+#include "trussmap/wheel_noise.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -22,12 +26,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "json_values.hpp"
-#include "option_checks.hpp"
-#include "tape_options.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -72,8 +70,8 @@ NoiseExperiment make_experiment(const NoiseOptions& options, const Model& model)
 /// How far off a run can end: the path, and half the wheelbase times what it turns besides.
 double longest_error(const NoiseExperiment& experiment) {
   double longest = 0.0;
-  for (const PathPiece& piece : experiment.path) {
-    longest += std::abs(piece.distance) + 0.5 * experiment.wheelbase * std::abs(piece.turn);
+  for (const PathSegment& segment : experiment.path) {
+    longest += std::abs(segment.distance) + 0.5 * experiment.wheelbase * std::abs(segment.turn);
   }
   return longest;
 }
@@ -98,7 +96,7 @@ Result analyse(const NoiseOptions& options, const Model& model) {
   result.experiment.order = NoiseOrder::exact;
   result.exact = estimate_wheel_noise(result.errors, result.experiment);
   result.estimate = result.exact;
-  if (!check_noise(result.errors, result.experiment, result.exact).bends) {
+  if (!check_noise(result.errors, result.experiment, result.exact).nonlinear) {
     result.estimate = result.first_order;
     result.experiment.order = NoiseOrder::first;
   }
@@ -141,7 +139,7 @@ ordered_json json(const Result& result, const NoiseOptions& options) {
               {"mean_subtracted", result.experiment.subtract_mean},
               {"fit",
                {{"good", result.fit.good},
-                {"bends", result.fit.bends},
+                {"bends", result.fit.nonlinear},
                 {"distance_p_value", number_or_null(result.fit.distance_p_value)},
                 {"shape_p_value", number_or_null(result.fit.shape_p_value)},
                 {"ellipses", ellipses}}},
@@ -163,7 +161,7 @@ std::string constants_text(const Result& result) {
   };
   row("left wheel, k", result.estimate.left);
   row("right wheel, k", result.estimate.right);
-  if (result.fit.bends) {
+  if (result.fit.nonlinear) {
     row("  left, first order", result.first_order.left);
     row("  right, first order", result.first_order.right);
   }

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap reveal: what simulate --hide has hidden.
-#include "trussmap/io/atomic_file.hpp"
+#include "commands.hpp"
+#include "effect_options.hpp"
+#include "sealed_answer.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <memory>
 #include <string>
@@ -10,10 +13,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "effect_options.hpp"
-#include "sealed_answer.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap simulate: a recording of a wheeled robot on a mesh, with its nominal model.
-#include "trussmap/core/error.hpp"
-#include "trussmap/effects/model.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
-#include "trussmap/simulation/hidden_effects.hpp"
-#include "trussmap/simulation/random_stream.hpp"
-#include "trussmap/simulation/tours.hpp"
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "commands.hpp"
+#include "effect_options.hpp"
+#include "option_checks.hpp"
+#include "sealed_answer.hpp"
+#include "simulation/hidden_effects.hpp"
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/random_stream.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -23,11 +27,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "effect_options.hpp"
-#include "option_checks.hpp"
-#include "sealed_answer.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap tour: the elastic paper's experiment.
-#include "trussmap/experiment/tour_experiment.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/report/tour_page.hpp"
+#include "commands.hpp"
+#include "experiment/tour_experiment.hpp"
+#include "option_checks.hpp"
+#include "page_runtime.hpp"
+#include "progress.hpp"
+#include "report/tour_page.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -13,11 +17,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "option_checks.hpp"
-#include "page_runtime.hpp"
-#include "progress.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -62,7 +61,7 @@ TourOptions experiment_options(const CommandOptions& options) {
   return result;
 }
 
-json figures_json(const TourFigures& figures) {
+json metrics_json(const TourMetrics& figures) {
   json result = {{"stretch_error", figures.stretch_error.mean},
                  {"stretch_error_se", figures.stretch_error.standard_error},
                  {"orientation_error_rad", figures.orientation_error.mean},
@@ -78,13 +77,13 @@ json result_json(const TourResult& result) {
   json tours = json::array();
   for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
     json methods;
-    for (const auto& [name, figures] : result.tours[tour]) methods[name] = figures_json(figures);
+    for (const auto& [name, figures] : result.tours[tour]) methods[name] = metrics_json(figures);
     tours.push_back({{"tour", tour + 1}, {"methods", methods}});
   }
   return {{"tours", tours},
           {"first_sight",
-           {{"before", figures_json(result.first_sight_before)},
-            {"after", figures_json(result.first_sight_after)}}}};
+           {{"before", metrics_json(result.first_sight_before)},
+            {"after", metrics_json(result.first_sight_after)}}}};
 }
 
 /// Which tours a table shows: the first few, then fewer and fewer, and the last.
@@ -116,7 +115,7 @@ void print_block(const TourResult& result, const char* title, int digits, const 
 }
 
 void print_result(const TourResult& result, const CommandOptions& options) {
-  const MethodFigures& last = result.tours.back();
+  const MethodMetrics& last = result.tours.back();
   const double raw = last.at("raw").stretch_error.mean;
   fmt::print(
       "after {} tours the elastic map's routes are {:.2f} % too long or short and {:.4f} rad "
@@ -128,11 +127,11 @@ void print_result(const TourResult& result, const CommandOptions& options) {
       100.0 * last.at("adjustment").stretch_error.mean,
       last.at("adjustment").orientation_error.mean, options.seeds);
   print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
-              [](const TourFigures& f) { return std::optional<SeedMean>(f.stretch_error); });
+              [](const TourMetrics& f) { return std::optional<SeedMean>(f.stretch_error); });
   print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
-              [](const TourFigures& f) { return std::optional<SeedMean>(f.orientation_error); });
+              [](const TourMetrics& f) { return std::optional<SeedMean>(f.orientation_error); });
   print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
-              [](const TourFigures& f) { return f.position_error; });
+              [](const TourMetrics& f) { return f.position_error; });
   fmt::print(
       "\nfirst sight, tour 1: before {:.3f} / {:.3f} rad, after {:.3f} / {:.3f} rad "
       "(the paper's Table I, one map: 0.049 / 0.033, then 0.046 / 0.032)\n",

@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap umbmark: wheel diameters and wheelbase from squares driven both ways.
-#include "trussmap/calibration/square_checks.hpp"
-#include "trussmap/calibration/umbmark.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/runs_csv.hpp"
-#include "trussmap/report/calibration_figures.hpp"
-#include "trussmap/report/calibration_pages.hpp"
-#include "trussmap/report/table.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "commands.hpp"
+#include "json_values.hpp"
+#include "option_checks.hpp"
+#include "plot/calibration_figures.hpp"
+#include "report/calibration_pages.hpp"
+#include "tape_options.hpp"
+#include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/random_stream.hpp"
+#include "trussmap/runs_files.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/umbmark.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -19,12 +23,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "commands.hpp"
-#include "json_values.hpp"
-#include "option_checks.hpp"
-#include "tape_options.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

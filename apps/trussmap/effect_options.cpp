@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "effect_options.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/report/table.hpp"
+#include "commands.hpp"
+#include "terminal.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/table.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -13,9 +15,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-
-#include "commands.hpp"
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {
@@ -112,7 +111,7 @@ std::string catalogue_text() {
     if (entry.of_covariate()) name = name_of(entry, "COLUMN");
     if (entry.has_parameters()) {
       std::string inner;
-      for (const InnerParameter& one : entry.parameters) {
+      for (const ShapeParameter& one : entry.parameters) {
         inner += fmt::format("{}{}=..", inner.empty() ? "" : ", ", one.name);
       }
       name = name_of(entry, inner);

@@ -5,7 +5,7 @@
 // effects of a model file.
 #pragma once
 
-#include "trussmap/effects/model.hpp"
+#include "trussmap/model.hpp"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "json_values.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
+#include "wording/effect_words.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 // What several commands write into their JSON.
 #pragma once
 
-#include "trussmap/criticism/model_fit.hpp"
+#include "fit/model_fit.hpp"
 
 #include <vector>
 

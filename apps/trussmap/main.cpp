@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
+#include "commands.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <csignal>
 #include <cstdio>
@@ -10,8 +11,6 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-
-#include "commands.hpp"
 
 namespace {
 

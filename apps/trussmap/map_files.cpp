@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "map_files.hpp"
 
-#include "trussmap/adjustment/landmark_conversion.hpp"
-#include "trussmap/io/g2o.hpp"
-#include "trussmap/io/map_formats.hpp"
-#include "trussmap/io/map_graphml.hpp"
-
 #include "commands.hpp"
+#include "pose_graph/landmark_conversion.hpp"
+#include "trussmap/map_files.hpp"
 
 namespace trussmap::app {
 

@@ -4,7 +4,7 @@
 // Maps in whatever format the file's name says.
 #pragma once
 
-#include "trussmap/graph/landmark_graph.hpp"
+#include "trussmap/landmark_map.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "model_recordings.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
-#include "trussmap/odometry/effect_correction.hpp"
+#include "odometry/effect_correction.hpp"
+#include "option_checks.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
-
-#include "option_checks.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -4,7 +4,7 @@
 // What compare, fit and their like have in common: a model, recordings, and what of them to use.
 #pragma once
 
-#include "trussmap/criticism/comparison.hpp"
+#include "criticism/comparison.hpp"
 
 #include <string>
 #include <vector>

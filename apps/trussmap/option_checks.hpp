@@ -4,7 +4,7 @@
 // Checks of option values that complain in plain words.
 #pragma once
 
-#include "trussmap/correction/map_builder.hpp"
+#include "trussmap/map_builder.hpp"
 
 #include <charconv>
 #include <cmath>

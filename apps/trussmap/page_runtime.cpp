@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "page_runtime.hpp"
 
-#include "trussmap/report/chart_svg.hpp"
+#include "plot/chart_svg.hpp"
 
 // Both files as they are, each between two names.
 #define TRUSSMAP_EMBED(name, file)                                               \

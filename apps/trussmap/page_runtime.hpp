@@ -4,7 +4,7 @@
 // --html: style sheet and script are part of the executable.
 #pragma once
 
-#include "trussmap/report/page.hpp"
+#include "report/page.hpp"
 
 #include <filesystem>
 #include <string>

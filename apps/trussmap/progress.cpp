@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "progress.hpp"
 
-#include "trussmap/report/table.hpp"
+#include "terminal.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "terminal.hpp"
 
 namespace trussmap::app {
 namespace {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "sealed_answer.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "tape_options.hpp"
 
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/report/table.hpp"
-
-#include <charconv>
-
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/table.hpp"
+
+#include <charconv>
 
 namespace trussmap::app {
 

@@ -5,9 +5,10 @@
 // that rehearses them, and files written together.
 #pragma once
 
-#include "trussmap/calibration/estimate.hpp"
-#include "trussmap/effects/model.hpp"
-#include "trussmap/simulation/tape_robot.hpp"
+#include "page_runtime.hpp"
+#include "trussmap/estimate.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/tape_robot.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -15,8 +16,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-
-#include "page_runtime.hpp"
 
 namespace trussmap::app {
 

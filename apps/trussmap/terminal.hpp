@@ -5,7 +5,7 @@
 // Anywhere else (a file, a pipe, NO_COLOR, a terminal that is dumb) it is plain text.
 #pragma once
 
-#include "trussmap/report/table.hpp"
+#include "trussmap/table.hpp"
 
 #include <cstdio>
 #include <string>

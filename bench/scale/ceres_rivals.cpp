@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "ceres_rivals.hpp"
 
-#include "trussmap/core/index.hpp"
+#include "geometry/index.hpp"
 
 #include <ceres/ceres.h>
 #include <cmath>

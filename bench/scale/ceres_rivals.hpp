@@ -5,10 +5,9 @@
 // thread.
 #pragma once
 
-#include "trussmap/adjustment/pose_graph.hpp"
-
 #include "grid_input.hpp"
 #include "measure.hpp"
+#include "trussmap/pose_graph.hpp"
 
 namespace trussmap::bench {
 

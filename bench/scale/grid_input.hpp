@@ -4,7 +4,7 @@
 // Raw measurements of square grids: n x n landmarks 1 m apart, routes between neighbours.
 #pragma once
 
-#include "trussmap/core/planar.hpp"
+#include "trussmap/planar.hpp"
 
 #include <vector>
 

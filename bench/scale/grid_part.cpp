@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/core/index.hpp"
-#include "trussmap/truss/dissection.hpp"
-#include "trussmap/truss/measured_truss.hpp"
+#include "ceres_rivals.hpp"
+#include "geometry/index.hpp"
+#include "grid_input.hpp"
+#include "linalg/dissection.hpp"
+#include "measure.hpp"
+#include "parts.hpp"
+#include "truss/measured_truss.hpp"
 
 #include <numeric>
 
 #include <fmt/format.h>
-
-#include "ceres_rivals.hpp"
-#include "grid_input.hpp"
-#include "measure.hpp"
-#include "parts.hpp"
 
 namespace trussmap::bench {
 namespace {

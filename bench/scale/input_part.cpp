@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/recording_csv.hpp"
+#include "measure.hpp"
+#include "parts.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -9,9 +11,6 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
-
-#include "measure.hpp"
-#include "parts.hpp"
 
 namespace trussmap::bench {
 namespace {

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/adjustment/pose_graph_adjustment.hpp"
-#include "trussmap/io/g2o.hpp"
+#include "ceres_rivals.hpp"
+#include "measure.hpp"
+#include "parts.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/pose_graph.hpp"
 
 #include <string>
 
 #include <fmt/format.h>
-
-#include "ceres_rivals.hpp"
-#include "measure.hpp"
-#include "parts.hpp"
 
 namespace trussmap::bench {
 namespace {

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/adjustment/linear_truss.hpp"
-#include "trussmap/correction/map_builder.hpp"
+#include "map/linear_truss.hpp"
+#include "measure.hpp"
+#include "parts.hpp"
+#include "trussmap/map_builder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +13,6 @@
 
 #include <Eigen/LU>
 #include <fmt/format.h>
-
-#include "measure.hpp"
-#include "parts.hpp"
 
 namespace trussmap::bench {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/end_moments.hpp"
+#include "calibration/end_moments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ constexpr Complex kI{0.0, 1.0};
 enum Moment { lag, zw, zu, zcu, z2, zcz, moments };
 using State = Eigen::Array<Complex, moments, 1>;
 
-/// A piece of the path, per unit of its parameter from 0 to 1.
-struct Piece {
+/// A segment of the path, per unit of its parameter from 0 to 1.
+struct Segment {
   double distance;         // m
   double turn;             // rad
   double travel_variance;  // of xi, m^2
@@ -27,7 +27,7 @@ struct Piece {
   double covariance;       // of both, m rad
 };
 
-Piece piece_of(const PathPiece& path, double wheelbase, const Vector2& squared) {
+Segment segment_of(const PathSegment& path, double wheelbase, const Vector2& squared) {
   const double half = 0.5 * wheelbase * path.turn;
   const double left = squared[0] * std::abs(path.distance - half);
   const double right = squared[1] * std::abs(path.distance + half);
@@ -36,31 +36,32 @@ Piece piece_of(const PathPiece& path, double wheelbase, const Vector2& squared) 
 }
 
 /// `heading` and `variance` of its error, so far: they give the moments of u in closed form.
-State slope(const State& at, const Piece& piece, double heading, double variance) {
+State slope(const State& at, const Segment& segment, double heading, double variance) {
   const Complex ahead = std::polar(1.0, heading);  // noise-free u
   const Complex mean_u = ahead * std::exp(-0.5 * variance);
   const Complex mean_u2 = ahead * ahead * std::exp(-2.0 * variance);
   const double variance_u = -std::expm1(-variance);                  // E |u|^2
   const Complex pseudo_u = mean_u * mean_u * std::expm1(-variance);  // E u^2, about means
-  const Complex turning = kI * piece.turn - 0.5 * piece.turn_variance;
-  const Complex along = piece.distance + 0.5 * kI * piece.covariance;
+  const Complex turning = kI * segment.turn - 0.5 * segment.turn_variance;
+  const Complex along = segment.distance + 0.5 * kI * segment.covariance;
   State rate;
-  rate[lag] =
-      piece.distance * ahead * std::expm1(-0.5 * variance) + 0.5 * kI * piece.covariance * mean_u;
-  rate[zw] = along * kI * variance * mean_u + piece.covariance * mean_u;
-  rate[zu] = turning * at[zu] + along * pseudo_u + kI * piece.covariance * mean_u2;
-  rate[zcu] = std::conj(turning) * at[zcu] + along * variance_u - kI * piece.covariance;
-  rate[z2] = 2.0 * along * at[zu] + piece.travel_variance * mean_u2;
-  rate[zcz] = 2.0 * (std::conj(along) * at[zcu]).real() + piece.travel_variance;
+  rate[lag] = segment.distance * ahead * std::expm1(-0.5 * variance) +
+              0.5 * kI * segment.covariance * mean_u;
+  rate[zw] = along * kI * variance * mean_u + segment.covariance * mean_u;
+  rate[zu] = turning * at[zu] + along * pseudo_u + kI * segment.covariance * mean_u2;
+  rate[zcu] = std::conj(turning) * at[zcu] + along * variance_u - kI * segment.covariance;
+  rate[z2] = 2.0 * along * at[zu] + segment.travel_variance * mean_u2;
+  rate[zcz] = 2.0 * (std::conj(along) * at[zcu]).real() + segment.travel_variance;
   return rate;
 }
 
-void drive(State& state, const Piece& piece, double heading, double variance) {
+void drive(State& state, const Segment& segment, double heading, double variance) {
   constexpr double kLongestStep = 0.02;  // rad
-  const int steps = 16 + static_cast<int>(std::ceil(std::abs(piece.turn) / kLongestStep));
+  const int steps = 16 + static_cast<int>(std::ceil(std::abs(segment.turn) / kLongestStep));
   const double h = 1.0 / steps;
   const auto rate = [&](const State& at, double part) {
-    return slope(at, piece, heading + part * piece.turn, variance + part * piece.turn_variance);
+    return slope(at, segment, heading + part * segment.turn,
+                 variance + part * segment.turn_variance);
   };
   for (int k = 0; k < steps; ++k) {
     const double part = k * h;
@@ -79,11 +80,11 @@ EndMoments end_moments(const TestPath& path, double wheelbase, const Vector2& sq
   State state = State::Zero();
   double heading = 0.0;
   double variance = 0.0;
-  for (const PathPiece& part : path) {
-    const Piece piece = piece_of(part, wheelbase, squared);
-    drive(state, piece, heading, variance);
-    heading += piece.turn;
-    variance += piece.turn_variance;
+  for (const PathSegment& part : path) {
+    const Segment segment = segment_of(part, wheelbase, squared);
+    drive(state, segment, heading, variance);
+    heading += segment.turn;
+    variance += segment.turn_variance;
   }
   EndMoments result;
   result.mean = {state[lag].real(), state[lag].imag(), 0.0};

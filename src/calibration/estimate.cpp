@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/estimate.hpp"
+#include "trussmap/estimate.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/geometry_errors.hpp"
-
-#include "trussmap/odometry/arc.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -102,9 +101,9 @@ PathError path_error(const TestPath& path, double wheelbase, const GeometryError
   Row2 dx = Row2::Zero();
   Row2 dy = Row2::Zero();
   Row2 dheading = Row2::Zero();
-  for (const PathPiece& piece : path) {
-    const double left = piece.distance - 0.5 * wheelbase * piece.turn;
-    const double right = piece.distance + 0.5 * wheelbase * piece.turn;
+  for (const PathSegment& segment : path) {
+    const double left = segment.distance - 0.5 * wheelbase * segment.turn;
+    const double right = segment.distance + 0.5 * wheelbase * segment.turn;
     calculated = compose(calculated, arc_displacement({left, right}, wheelbase));
 
     const double distance = 0.5 * (c_left * left + c_right * right);

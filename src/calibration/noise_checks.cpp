@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/noise_checks.hpp"
-
-#include "trussmap/calibration/end_moments.hpp"
-#include "trussmap/core/error.hpp"
+#include "calibration/end_moments.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -109,7 +108,7 @@ double ellipse95_scale(int dimensions) {
                                          kConfidence));
 }
 
-double bend_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate) {
+double nonlinear_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate) {
   const Vector2 squared(std::pow(estimate.left.k, 2), std::pow(estimate.right.k, 2));
   const EndMoments exact = end_moments(experiment.path, experiment.wheelbase, squared);
   const NoiseShape shape = noise_shape(experiment.path, experiment.wheelbase);
@@ -132,8 +131,8 @@ NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
   fit.distance_p_value = distance_p(squared_distances(errors, estimate, {0, 1, 2}));
   const double count = estimate.runs - (experiment.subtract_mean ? 1 : 0);
   fit.shape_p_value = shape_p(estimate, count);
-  fit.bends = bend_share(experiment, estimate) > kBends;
-  if (fit.bends) {
+  fit.nonlinear = nonlinear_share(experiment, estimate) > kBends;
+  if (fit.nonlinear) {
     fit.distance_p_value = fit.shape_p_value = std::numeric_limits<double>::quiet_NaN();
   }
   double smallest = std::isnan(fit.distance_p_value) ? 1.0 : fit.distance_p_value;
@@ -165,7 +164,7 @@ std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperi
   }
   const bool misfit = fit.shape_p_value < kSureMisfit;
   const bool degrees =
-      (misfit || fit.bends) && shape_p_scaled(errors, experiment, kDegree) > kBadFit;
+      (misfit || fit.nonlinear) && shape_p_scaled(errors, experiment, kDegree) > kBadFit;
   if (degrees) {
     doubts.push_back("the headings fit if they are degrees, not as the radians expected");
   } else if (misfit) {
@@ -174,7 +173,7 @@ std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperi
         "the path, the wheelbase, the units (m, rad) and the sensor's own noise (--sensor-sd)",
         fit.shape_p_value));
   }
-  if (fit.bends && !degrees) {
+  if (fit.nonlinear && !degrees) {
     doubts.push_back(fmt::format(
         "noise this large bends the path: its end lags by {:.2g} m on average, and the papers' "
         "first-order figures are off; the exact ones hold, with standard errors that are some 10 % "

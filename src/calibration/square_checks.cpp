@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/square_checks.hpp"
-
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/umbmark.hpp"
+#include "trussmap/umbmark.hpp"
 
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
 
 #include <cmath>
 #include <numbers>

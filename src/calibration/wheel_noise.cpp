@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/wheel_noise.hpp"
+#include "trussmap/wheel_noise.hpp"
 
-#include "trussmap/calibration/end_moments.hpp"
-#include "trussmap/core/error.hpp"
-#include "trussmap/odometry/arc.hpp"
+#include "calibration/end_moments.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/error.hpp"
 
 #include <array>
 #include <cmath>
@@ -236,9 +236,9 @@ NoiseShape noise_shape(const TestPath& path, double wheelbase) {
   if (!(wheelbase > 0.0)) throw std::invalid_argument("the wheelbase must be above 0");
   Motion left;
   Motion right;
-  for (const PathPiece& piece : path) {
-    const double half = 0.5 * wheelbase * piece.turn;
-    const WheelTravel travel{piece.distance - half, piece.distance + half};
+  for (const PathSegment& segment : path) {
+    const double half = 0.5 * wheelbase * segment.turn;
+    const WheelTravel travel{segment.distance - half, segment.distance + half};
     left = then(left, arc_motion(travel, wheelbase, {1.0, 0.0}));
     right = then(right, arc_motion(travel, wheelbase, {0.0, 1.0}));
   }
@@ -285,7 +285,7 @@ NoiseEstimate estimate_wheel_noise(const EndErrors& errors, const NoiseExperimen
   result.left = constant(weights[0], std::sqrt(covariance(0, 0)));
   result.right = constant(weights[1], std::sqrt(covariance(1, 1)));
   const Law found = problem.law(weights);
-  result.bend = found.mean;
+  result.linearization_offset = found.mean;
   result.centre = experiment.subtract_mean ? problem.mean : found.mean;
   result.observed = problem.observed(found);
   result.modelled = found.sigma;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/candidates.hpp"
+#include "criticism/candidates.hpp"
 
-#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -157,8 +157,9 @@ class Gatherer {
   Gatherer(const ModelFit& fit, const ShapeContext& context)
       : fit_(fit), context_(context), area_(driven_area(fit)) {
     for (const Measurement& one : fit.problem.measurements) {
-      has_compass_ |= one.kind == MeasurementKind::piece && one.rows == 4;
-      has_views_ |= one.kind == MeasurementKind::view || one.kind == MeasurementKind::near_view;
+      has_compass_ |= one.kind == MeasurementKind::segment && one.rows == 4;
+      has_views_ |=
+          one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
     }
     for (const std::string name :
          {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
@@ -256,7 +257,7 @@ class Gatherer {
     one.effect.channel = facts_of(entry.channel).name;
     one.family = std::string(entry.name);
     one.pattern = entry.shape;
-    for (const InnerParameter& parameter : entry.parameters) {
+    for (const ShapeParameter& parameter : entry.parameters) {
       one.inner_names.emplace_back(parameter.name);
       one.inner_least.push_back(parameter.smallest);
       one.inner_most.push_back(parameter.largest);
@@ -470,9 +471,9 @@ namespace {
 
 /// Goes to better inner values, `step` apart, and halves the step where there are none.
 Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vector<double> step,
-                  int rounds, Look look) {
+                  int rounds, Resolution resolution) {
   Candidate best = candidate;
-  double score = tests.test({candidate.effect}, look).front().score;
+  double score = tests.test({candidate.effect}, resolution).front().score;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Candidate> around;
     std::vector<Effect> effects;
@@ -486,7 +487,7 @@ Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vecto
       }
     }
     bool better = false;
-    const std::vector<Score> scores = tests.test(effects, look);
+    const std::vector<Score> scores = tests.test(effects, resolution);
     for (std::size_t k = 0; k < scores.size(); ++k) {
       if (scores[k].score <= score * (1.0 + 1e-9)) continue;
       score = scores[k].score;
@@ -509,8 +510,8 @@ std::vector<double> times(double factor, std::vector<double> steps) {
 Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
   if (candidate.inner.empty()) return candidate;
   const Candidate near =
-      climbed(tests, candidate, times(0.5, candidate.inner_step), kQuickRounds, Look::quick);
-  return climbed(tests, near, times(0.0625, candidate.inner_step), kExactRounds, Look::exact);
+      climbed(tests, candidate, times(0.5, candidate.inner_step), kQuickRounds, Resolution::quick);
+  return climbed(tests, near, times(0.0625, candidate.inner_step), kExactRounds, Resolution::exact);
 }
 
 }  // namespace trussmap

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/comparison.hpp"
+#include "criticism/comparison.hpp"
 
-#include "trussmap/adjustment/source_residuals.hpp"
+#include "estimation/source_residuals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,10 @@ void find_misfits(const ModelFit& fit, const ScoreTest& tests, const LegOptions&
                   Comparison& result) {
   const RecordingProblem& problem = fit.problem;
   const std::vector<LegSpan> legs = leg_spans(fit.recordings, problem, options);
-  std::map<int, std::size_t> piece_from;  // node -> measurement
+  std::map<int, std::size_t> segment_from;  // node -> measurement
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    if (problem.measurements[k].kind == MeasurementKind::piece) {
-      piece_from[problem.measurements[k].from] = k;
+    if (problem.measurements[k].kind == MeasurementKind::segment) {
+      segment_from[problem.measurements[k].from] = k;
     }
   }
   const auto pose = [&](int node) -> const Pose& {
@@ -41,24 +41,24 @@ void find_misfits(const ModelFit& fit, const ScoreTest& tests, const LegOptions&
     one.to = to.to < 0 ? std::string() : problem.landmarks[idx(to.to)];
     one.t = leg.time.to;
     Pose reckoned = pose(from.from);
-    Vector2 pull = Vector2::Zero();  // of the last piece on the leg's end
+    Vector2 pull = Vector2::Zero();  // of the last segment on the leg's end
     for (int node = from.from; node != to.from;) {
-      const auto found = piece_from.find(node);
-      if (found == piece_from.end()) break;
-      const Measurement& piece = problem.measurements[found->second];
-      one.dof += squared_values(tests.system(), piece, found->second, one.chi2);
-      const Pose& a = pose(piece.from);
-      const Pose& b = pose(piece.to);
+      const auto found = segment_from.find(node);
+      if (found == segment_from.end()) break;
+      const Measurement& segment = problem.measurements[found->second];
+      one.dof += squared_values(tests.system(), segment, found->second, one.chi2);
+      const Pose& a = pose(segment.from);
+      const Pose& b = pose(segment.to);
       const auto error =
-          tests.system().residuals().segment(tests.system().first_row(found->second), piece.rows);
-      const Eigen::MatrixXd W = piece.whitener.topLeftCorner(piece.rows, piece.rows);
+          tests.system().residuals().segment(tests.system().first_row(found->second), segment.rows);
+      const Eigen::MatrixXd W = segment.whitener.topLeftCorner(segment.rows, segment.rows);
       const Eigen::VectorXd raw = W.triangularView<Eigen::Lower>().solve(error);
       const Pose measured = relative(a, b);
       reckoned =
           compose(reckoned, {measured.x - raw[0], measured.y - raw[1], measured.heading - raw[2]});
       const Eigen::VectorXd force = W.transpose() * error;
       pull = rotation(a.heading) * force.head<2>();
-      node = piece.to;
+      node = segment.to;
     }
     const Vector2 begin = pose(from.from).position();
     const Vector2 chord = pose(to.from).position() - begin;
@@ -166,7 +166,7 @@ std::vector<Outlier> find_outliers(const ModelFit& fit, double dispersion) {
   return result;
 }
 
-ModelFitOptions how_to_fit(const ComparisonOptions& options) {
+ModelFitOptions fit_options(const ComparisonOptions& options) {
   ModelFitOptions how;
   how.fit_effects = false;
   how.problem = options.problem;
@@ -184,7 +184,7 @@ Comparison compare(const std::vector<Recording>& recordings, const Model& model,
 
 ModelFit fit_to_compare(const std::vector<Recording>& recordings, const Model& model,
                         const ComparisonOptions& options) {
-  return fit_model(recordings, model, how_to_fit(options));
+  return fit_model(recordings, model, fit_options(options));
 }
 
 Comparison compare(const std::vector<Recording>& recordings, const Model& model,
@@ -201,7 +201,7 @@ Comparison compare(const std::vector<Recording>& recordings, const Model& model,
   result.sources = calibrate_sources(fit, tests);
   result.outliers = find_outliers(fit, tests.dispersion());
   result.advice = advice_on(recordings, model, options.problem);
-  result.held_out = predict_held_out(recordings, fit, how_to_fit(options), options.legs);
+  result.held_out = predict_held_out(recordings, fit, fit_options(options), options.legs);
   return result;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/diagnosis.hpp"
+#include "criticism/diagnosis.hpp"
+
+#include "criticism/local_dispersion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +12,6 @@
 #include <numeric>
 
 #include <Eigen/QR>
-
-#include "local_dispersion.hpp"
 
 namespace trussmap {
 namespace {
@@ -24,7 +24,7 @@ constexpr std::size_t kMostLookAlikes = 12;
 constexpr std::size_t kFamiliesRefined = 3;
 constexpr std::size_t kChunk = 48;  // candidates
 constexpr double kWorthALook = 0.01;
-constexpr double kMostPlausible = 3.0;
+constexpr double kLargestPriorSd = 3.0;
 constexpr double kLawLevel = 0.01;
 constexpr double kStays = 0.001;  // p, with the others there
 constexpr std::size_t kMostEvents = 8;
@@ -46,13 +46,13 @@ struct Tested {
 
 /// Runs score tests chunk by chunk, so that no more than a chunk's columns are held.
 template <typename Visit>
-void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates, Look look,
-                  const Visit& visit) {
+void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
+                  Resolution resolution, const Visit& visit) {
   for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
     const std::size_t end = std::min(candidates.size(), first + kChunk);
     std::vector<Effect> effects;
     for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
-    std::vector<Score> scores = tests.test(effects, look);
+    std::vector<Score> scores = tests.test(effects, resolution);
     for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
   }
 }
@@ -68,22 +68,22 @@ class Diagnostician {
   Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
                 const DiagnosisOptions& options)
       : fit_(fit), options_(options), tests_(fit), dispersion_(fit, tests_) {
-    legs_ = std::make_unique<HeldOutLegs>(recordings, fit, how_to_fit(options), options.legs);
-    predictable_ = legs_->alike(fit.problem);
+    legs_ = std::make_unique<HeldOutLegs>(recordings, fit, fit_options(options), options.legs);
+    predictable_ = legs_->same_layout(fit.problem);
   }
 
   Diagnosis run() {
     result_.chi2 = fit_.adjustment.chi2;
     result_.dof = fit_.adjustment.dof;
     result_.warnings = fit_.adjustment.warnings;
-    result_.held_out = legs_->figures();
+    result_.held_out = legs_->metrics();
     test_all();
     judge(tested_, result_.chi2, result_.dof);
     refine_families();
     judge(tested_, result_.chi2, result_.dof);
     find_missing();
-    result_.events = test_events(fit_, tests_, aside_);
-    result_.noise = test_noise_laws(fit_, tests_, aside_);
+    result_.events = test_events(fit_, tests_, nuisance_);
+    result_.noise = test_noise_laws(fit_, tests_, nuisance_);
     report();
     return std::move(result_);
   }
@@ -101,13 +101,13 @@ class Diagnostician {
       int tried = 0;
     };
     std::map<std::string, Best> families;
-    visit_scores(tests_, members, Look::quick, [&](std::size_t k, const Score& score) {
+    visit_scores(tests_, members, Resolution::quick, [&](std::size_t k, const Score& score) {
       Best& best = families[members[k].family];
       ++best.tried;
       if (score.score > best.score) best = {k, score.score, best.tried};
     });
     for (const auto& [name, best] : families) tested.push_back(members[best.member]);
-    visit_scores(tests_, tested, Look::screening, [&](std::size_t k, Score& score) {
+    visit_scores(tests_, tested, Resolution::screening, [&](std::size_t k, Score& score) {
       tested_.emplace_back();
       take(tested_.back(), tested[k], score);
       if (!tested[k].family.empty()) tested_.back().tried = families[tested[k].family].tried;
@@ -207,9 +207,9 @@ class Diagnostician {
   /// wheelbase may be given quite wrong.
   [[nodiscard]] static bool implausible(const Tested& one) {
     if (one.candidate.effect.shape == std::vector<std::string>{"1"}) return false;
-    const double plausible = facts_of(*parse_channel(one.candidate.effect.channel)).plausible;
+    const double prior_sd = facts_of(*parse_channel(one.candidate.effect.channel)).prior_sd;
     for (std::size_t k = 0; k < one.score.coefficients.size(); ++k) {
-      if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kMostPlausible * plausible) {
+      if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kLargestPriorSd * prior_sd) {
         return true;
       }
     }
@@ -237,7 +237,7 @@ class Diagnostician {
       candidates.push_back(still[k].candidate);
     }
     const LocalDispersion local(fit, left);
-    visit_scores(left, candidates, Look::screening, [&](std::size_t k, Score& score) {
+    visit_scores(left, candidates, Resolution::screening, [&](std::size_t k, Score& score) {
       Tested& one = still[places[k]];
       one.dispersion = dispersion_of(score, local);
       drop_columns(score);
@@ -270,20 +270,20 @@ class Diagnostician {
       ask_again(ground, left, still, [](const Tested&) { return true; });
       judge(still, left.residuals().squaredNorm(), dof);
     }
-    Eigen::MatrixXd aside(left.residuals().size(), 0);
+    Eigen::MatrixXd nuisance(left.residuals().size(), 0);
     for (std::size_t k = 0; k < kMostEvents; ++k) {
       if (best_of(still, options_.level) == nullptr) return;
       double p = 1.0;
       for (const Tested& one : still) {
         if (one.score.dof > 0 && !implausible(one)) p = std::min(p, one.p_adjusted);
       }
-      const std::vector<EventTest> events = test_events(ground, left, aside);
+      const std::vector<EventTest> events = test_events(ground, left, nuisance);
       const auto event = std::find_if(events.begin(), events.end(), [](const EventTest& one) {
         return one.kind != "session" && one.projected.cols() > 0;
       });
       if (event == events.end() || event->p_adjusted >= p) return;
-      left.take_out(event->projected);
-      append(aside, event->projected);
+      left.condition_on(event->projected);
+      append(nuisance, event->projected);
       dof -= event->dof;
       std::vector<double> p_before;
       for (const Tested& one : still) p_before.push_back(one.p_adjusted);
@@ -328,8 +328,8 @@ class Diagnostician {
       const auto at = static_cast<std::size_t>(best - still.data());
       missing_.push_back(at);
       const Score whole = tests_.test({tested_[at].candidate.effect}).front();
-      left.take_out(left.columns(tested_[at].candidate.effect));
-      append(aside_, whole.projected);
+      left.condition_on(left.columns(tested_[at].candidate.effect));
+      append(nuisance_, whole.projected);
       dof -= whole.dof;
       if (missing_.size() == options_.most_missing) break;
       ask_again(ground, left, still, [](const Tested&) { return true; });
@@ -338,7 +338,7 @@ class Diagnostician {
     std::stable_sort(missing_.begin(), missing_.end(), [this](std::size_t a, std::size_t b) {
       return tested_[a].evidence > tested_[b].evidence;
     });
-    estimate_together();
+    estimate_jointly();
     drop_what_others_explain();
     for (const std::size_t one : missing_) look_alikes_.push_back(look_alikes_of(one));
   }
@@ -347,26 +347,26 @@ class Diagnostician {
   void drop_what_others_explain() {
     while (missing_.size() > 1) {
       const auto weakest =
-          std::max_element(together_.begin(), together_.end(),
+          std::max_element(joint_.begin(), joint_.end(),
                            [](const Score& a, const Score& b) { return a.p_value < b.p_value; });
       if (weakest->p_value < kStays) return;
-      missing_.erase(missing_.begin() + (weakest - together_.begin()));
-      estimate_together();
+      missing_.erase(missing_.begin() + (weakest - joint_.begin()));
+      estimate_jointly();
     }
   }
 
   /// Sizes of all that is missing, each with the others there.
-  void estimate_together() {
-    together_.clear();
+  void estimate_jointly() {
+    joint_.clear();
     for (const std::size_t one : missing_) {
       ScoreTest others = tests_;
       for (const std::size_t other : missing_) {
-        if (other != one) others.take_out(tests_.columns(tested_[other].candidate.effect));
+        if (other != one) others.condition_on(tests_.columns(tested_[other].candidate.effect));
       }
       Score score = others.test({tested_[one].candidate.effect}).front();
       if (score.dof == 0) score = tested_[one].score;
       drop_columns(score);
-      together_.push_back(std::move(score));
+      joint_.push_back(std::move(score));
     }
   }
 
@@ -377,29 +377,29 @@ class Diagnostician {
   }
 
   [[nodiscard]] std::vector<LookAlike> look_alikes_of(std::size_t at) const {
-    std::vector<LookAlike> alike;
+    std::vector<LookAlike> same_layout;
     const Score winner = tests_.test({tested_[at].candidate.effect}).front();
     Eigen::VectorXd trace = Eigen::VectorXd::Zero(winner.projected.rows());
     for (std::size_t k = 0; k < winner.coefficients.size(); ++k) {
       trace += winner.coefficients[k] * winner.projected.col(static_cast<Eigen::Index>(k));
     }
     const double length = trace.norm();
-    if (length == 0.0) return alike;
+    if (length == 0.0) return same_layout;
     std::vector<Candidate> rivals;
     for (std::size_t k = 0; k < tested_.size(); ++k) {
       const Candidate& one = tested_[k].candidate;
       if (k != at && is_rival(one, tested_[at].candidate)) rivals.push_back(one);
     }
-    visit_scores(tests_, rivals, Look::exact, [&](std::size_t k, const Score& score) {
+    visit_scores(tests_, rivals, Resolution::exact, [&](std::size_t k, const Score& score) {
       if (score.dof == 0) return;
       const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
       const double cosine = (score.projected * factor.solve(trace)).norm() / length;
-      if (cosine >= kLookAlike) alike.push_back({rivals[k].effect, std::min(1.0, cosine)});
+      if (cosine >= kLookAlike) same_layout.push_back({rivals[k].effect, std::min(1.0, cosine)});
     });
-    std::stable_sort(alike.begin(), alike.end(),
+    std::stable_sort(same_layout.begin(), same_layout.end(),
                      [](const LookAlike& a, const LookAlike& b) { return a.cosine > b.cosine; });
-    if (alike.size() > kMostLookAlikes) alike.resize(kMostLookAlikes);
-    return alike;
+    if (same_layout.size() > kMostLookAlikes) same_layout.resize(kMostLookAlikes);
+    return same_layout;
   }
 
   /// What the effect of such coefficients moves the held-out legs by; empty where not known.
@@ -409,18 +409,18 @@ class Diagnostician {
     return one.slopes * Eigen::Map<const Eigen::VectorXd>(coefficients.data(), one.slopes.cols());
   }
 
-  [[nodiscard]] HeldOutFigures predicted(const Eigen::VectorXd& moved) const {
-    return moved.size() == 0 ? figures_of(result_.held_out) : figures_of(legs_->moved(moved));
+  [[nodiscard]] HeldOutMetrics predicted(const Eigen::VectorXd& moved) const {
+    return moved.size() == 0 ? metrics_of(result_.held_out) : metrics_of(legs_->moved(moved));
   }
 
-  [[nodiscard]] HeldOutFigures predicted(const Tested& one) const {
+  [[nodiscard]] HeldOutMetrics predicted(const Tested& one) const {
     return predicted(moves(one, one.score.coefficients));
   }
 
-  [[nodiscard]] HeldOutFigures predicted_with_missing() const {
+  [[nodiscard]] HeldOutMetrics predicted_with_missing() const {
     Eigen::VectorXd moved;
     for (std::size_t k = 0; k < missing_.size(); ++k) {
-      const Eigen::VectorXd own = moves(tested_[missing_[k]], together_[k].coefficients);
+      const Eigen::VectorXd own = moves(tested_[missing_[k]], joint_[k].coefficients);
       if (own.size() == 0) continue;
       moved = moved.size() == 0 ? own : Eigen::VectorXd(moved + own);
     }
@@ -432,7 +432,7 @@ class Diagnostician {
   [[nodiscard]] double detectable_rise(const Tested& one, double floor) const {
     double most = 0.0;
     for (Eigen::Index k = 0; k < one.slopes.cols(); ++k) {
-      const double size = one.score.smallest_detectable[static_cast<std::size_t>(k)];
+      const double size = one.score.minimal_detectable[static_cast<std::size_t>(k)];
       if (!std::isfinite(size)) return size;
       double squares = 0.0;
       const Eigen::Index legs = one.slopes.rows() / 6;
@@ -446,7 +446,7 @@ class Diagnostician {
     return one.slopes.cols() > 0 ? most : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] Status status_of(std::size_t k, const HeldOutFigures& with_it, double floor) const {
+  [[nodiscard]] Status status_of(std::size_t k, const HeldOutMetrics& with_it, double floor) const {
     const Tested& one = tested_[k];
     if (std::find(missing_.begin(), missing_.end(), k) != missing_.end()) {
       const bool changes_nothing =
@@ -468,11 +468,11 @@ class Diagnostician {
 
   /// Not seen, but would be where the model explained the rest.
   [[nodiscard]] static bool hidden_by_misfit(const Tested& one) {
-    const double plausible =
-        facts_of(*parse_channel(one.candidate.effect.channel)).plausible * kLargestUncertainty;
+    const double prior_sd =
+        facts_of(*parse_channel(one.candidate.effect.channel)).prior_sd * kLargestUncertainty;
     for (std::size_t k = 0; k < one.score.share.size(); ++k) {
       if (one.score.largest[k] > 0.0 && one.score.share[k] > kLeastShare &&
-          one.score.largest[k] < plausible * std::sqrt(one.score.information[k])) {
+          one.score.largest[k] < prior_sd * std::sqrt(one.score.information[k])) {
         return true;
       }
     }
@@ -511,14 +511,14 @@ class Diagnostician {
       finding.p_adjusted = one.p_adjusted;
       finding.evidence = one.evidence;
       finding.sd = one.score.sd;
-      finding.smallest_detectable = one.score.smallest_detectable;
+      finding.minimal_detectable = one.score.minimal_detectable;
       finding.tried = one.tried;
       finding.held_out = predicted(one);
       finding.status = status_of(k, finding.held_out, floor);
       if (rank(k) < missing_.size()) {
         finding.look_alikes = look_alikes_[rank(k)];
-        finding.together = together_[rank(k)].coefficients;
-        finding.together_sd = together_[rank(k)].sd;
+        finding.joint = joint_[rank(k)].coefficients;
+        finding.joint_sd = joint_[rank(k)].sd;
       }
       result_.findings.push_back(std::move(finding));
     }
@@ -546,8 +546,8 @@ class Diagnostician {
   std::vector<Tested> tested_;
   std::vector<std::size_t> missing_;                 ///< of tested_, best first
   std::vector<std::vector<LookAlike>> look_alikes_;  ///< of each that is missing
-  std::vector<Score> together_;                      ///< of each that is missing
-  Eigen::MatrixXd aside_;                            ///< projected columns of what is missing
+  std::vector<Score> joint_;                         ///< of each that is missing
+  Eigen::MatrixXd nuisance_;                         ///< projected columns of what is missing
   Diagnosis result_;
 };
 
@@ -567,14 +567,14 @@ std::string_view name_of(Status status) {
   return "cannot tell";
 }
 
-ModelFitOptions how_to_fit(const DiagnosisOptions& options) {
+ModelFitOptions fit_options(const DiagnosisOptions& options) {
   ModelFitOptions how;
   how.problem = options.problem;
   how.gate = options.gate;
   return how;
 }
 
-HeldOutFigures figures_of(const HeldOut& held_out) {
+HeldOutMetrics metrics_of(const HeldOut& held_out) {
   return {held_out.arrival_rms, held_out.stretch_error, held_out.orientation_error};
 }
 
@@ -585,7 +585,7 @@ Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
                    const DiagnosisOptions& options) {
-  const ModelFit fit = fit_model(recordings, model, how_to_fit(options));
+  const ModelFit fit = fit_model(recordings, model, fit_options(options));
   Diagnosis result = diagnose(recordings, fit, options);
   result.advice = advice_on(recordings, model, options.problem);
   return result;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/discovery.hpp"
+#include "criticism/discovery.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ class Discoverer {
  public:
   Discoverer(const std::vector<Recording>& recordings, const Model& model,
              const DiscoveryOptions& options)
-      : recordings_(recordings), options_(options), how_(how_to_fit(options.diagnosis)) {
+      : recordings_(recordings), options_(options), how_(fit_options(options.diagnosis)) {
     given_ = model.effects.size();
     tell("fitting the model given");
     result_.fit = fit_model(recordings, model, how_);
@@ -110,11 +110,11 @@ class Discoverer {
     std::vector<const Finding*> chosen{&winner};
     for (const Finding& one : result_.last.findings) {
       if (&one == &winner || chosen.size() > kMostRivals) continue;
-      const bool alike = std::any_of(
+      const bool same_layout = std::any_of(
           winner.look_alikes.begin(), winner.look_alikes.end(), [&](const LookAlike& other) {
             return other.effect.name == one.candidate.effect.name && other.cosine < 0.9999;
           });
-      if (alike && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(&one);
+      if (same_layout && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(&one);
     }
     for (const Finding* one : chosen) {
       tell(fmt::format("fitting \"{}\"", one->candidate.effect.name));
@@ -142,12 +142,12 @@ class Discoverer {
     found_.push_back(trials[best].candidate);
     result_.fit = std::move(trials[best].fit);
     seek_inner_anew();
-    std::vector<std::string> dropped = drop_what_fell();
+    std::vector<std::string> dropped = eliminate_backward();
     DiscoveryStep& step = record();
     step.added = result_.fit.model.effects.back();
     step.dropped = std::move(dropped);
-    step.promised_chi2 = winner.score;
-    step.promised = winner.held_out;
+    step.predicted_chi2 = winner.score;
+    step.predicted = winner.held_out;
     step.look_alikes = winner.look_alikes;
     return true;
   }
@@ -194,7 +194,7 @@ class Discoverer {
   }
 
   /// Effects that the others have made superfluous, the weakest first.
-  std::vector<std::string> drop_what_fell() {
+  std::vector<std::string> eliminate_backward() {
     std::vector<std::string> dropped;
     while (true) {
       std::size_t weakest = found_.size();

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "event_scores.hpp"
+#include "criticism/event_scores.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,16 +23,16 @@ double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
   for (Eigen::Index k = 0; k < count; ++k) {
     size[k] = std::sqrt(S.block(k * width, k * width, width, width).norm());
   }
-  Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXd same_layout = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < count; ++j) {
       const double both = size[i] * size[j];
       if (both > 0.0) {
-        alike(i, j) = S.block(i * width, j * width, width, width).norm() / both;
+        same_layout(i, j) = S.block(i * width, j * width, width, width).norm() / both;
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(alike);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(same_layout);
   const Eigen::ArrayXd l = axes.eigenvalues().array().max(0.0);
   return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
 }
@@ -78,7 +78,7 @@ class Scorer {
       while (next < event.places.size() && event.places[next].group == event.places[first].group) {
         const Eigen::MatrixXd& M = event.places[next].parts.front().rows;
         result.places.push_back(judge(M.transpose() * here, M.transpose() * own * M,
-                                      M.colwise().squaredNorm(), event.places[next].plausible));
+                                      M.colwise().squaredNorm(), event.places[next].prior_sd));
         ++next;
       }
       const Eigen::Index count = event.places[first].parts.front().rows.cols();
@@ -97,7 +97,7 @@ class Scorer {
              Eigen::Index& columns, std::vector<Scored>& result) const {
     const BlockSystem& normal = system_.normal_equations();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(normal.unknowns(), columns);
-    Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
+    Eigen::MatrixXd nuisance = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
     Eigen::VectorXd whole = Eigen::VectorXd::Zero(columns);
     Eigen::Index at = 0;
@@ -117,7 +117,8 @@ class Scorer {
           add(one.to, P_.rows_of(k).to);
           g.segment(at, count) += M.transpose() * r_.segment(first, M.rows());
           whole.segment(at, count) += M.colwise().squaredNorm();
-          aside.middleCols(at, count) += P_.set_aside().middleRows(first, M.rows()).transpose() * M;
+          nuisance.middleCols(at, count) +=
+              P_.set_aside().middleRows(first, M.rows()).transpose() * M;
         }
         at += count;
       }
@@ -128,7 +129,7 @@ class Scorer {
       const SingleEvent& event = events[e];
       const Eigen::Index count = width(event);
       const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
-      const auto Q = aside.middleCols(at, all);
+      const auto Q = nuisance.middleCols(at, all);
       const Eigen::MatrixXd S = gram(event) -
                                 right.middleCols(at, all).transpose() * x.middleCols(at, all) -
                                 Q.transpose() * Q;
@@ -136,7 +137,7 @@ class Scorer {
         result[e].places.push_back(
             judge(g.segment(at + own, count), S.block(own, own, count, count),
                   whole.segment(at + own, count),
-                  event.places[static_cast<std::size_t>(own / count)].plausible));
+                  event.places[static_cast<std::size_t>(own / count)].prior_sd));
       }
       result[e].tried = effective_tries(S, count);
       at += all;
@@ -168,8 +169,8 @@ class Scorer {
 
   /// Of what can be seen, g' S^-1 g; with a prior, as ScoreTest has it.
   [[nodiscard]] Found judge(const Eigen::VectorXd& g, const Eigen::MatrixXd& S,
-                            const Eigen::VectorXd& whole, const Eigen::VectorXd& plausible) const {
-    const bool prior = plausible.size() > 0;
+                            const Eigen::VectorXd& whole, const Eigen::VectorXd& prior_sd) const {
+    const bool prior = prior_sd.size() > 0;
     const double chi2 = fit_.adjustment.chi2;
     const int dof = fit_.adjustment.dof;
     const double dispersion = dof > 0 ? std::max(1.0, chi2 / dof) : 1.0;
@@ -179,7 +180,7 @@ class Scorer {
     for (Eigen::Index k = 0; k < g.size(); ++k) {
       bool counts = S(k, k) > (prior ? kLeastShare : kUnchecked) * whole[k] && S(k, k) > 0.0;
       if (prior) {
-        counts = counts && std::sqrt(dispersion / S(k, k)) < kLargestUncertainty * plausible[k];
+        counts = counts && std::sqrt(dispersion / S(k, k)) < kLargestUncertainty * prior_sd[k];
       }
       if (counts) seen.push_back(k);
     }
@@ -187,7 +188,7 @@ class Scorer {
     const Eigen::VectorXd scale = S(seen, seen).diagonal().cwiseSqrt().cwiseInverse();
     Eigen::MatrixXd scaled = scale.asDiagonal() * S(seen, seen) * scale.asDiagonal();
     if (prior) {
-      const Eigen::VectorXd sds = plausible(seen);
+      const Eigen::VectorXd sds = prior_sd(seen);
       scaled.diagonal() += dispersion * scale.cwiseAbs2().cwiseQuotient(sds.cwiseAbs2());
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scaled);

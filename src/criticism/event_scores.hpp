@@ -5,10 +5,10 @@
 // the others by solves that are shared.
 #pragma once
 
-#include <vector>
+#include "criticism/single_events.hpp"
+#include "fit/fit_projection.hpp"
 
-#include "fit_projection.hpp"
-#include "single_events.hpp"
+#include <vector>
 
 namespace trussmap {
 

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/event_tests.hpp"
+#include "criticism/event_tests.hpp"
 
-#include "trussmap/criticism/comparison.hpp"
+#include "criticism/comparison.hpp"
+#include "criticism/event_scores.hpp"
+#include "criticism/single_events.hpp"
+#include "fit/fit_projection.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
-
-#include "event_scores.hpp"
-#include "fit_projection.hpp"
-#include "single_events.hpp"
 
 namespace trussmap {
 namespace {
@@ -62,9 +61,9 @@ Eigen::MatrixXd dense(const Dummies& dummies, const RecordingSystem& system) {
 }  // namespace
 
 std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
-                                   const Eigen::MatrixXd& aside) {
+                                   const Eigen::MatrixXd& nuisance) {
   const RecordingSystem& system = tests.system();
-  const Eigen::MatrixXd apart = aside.cols() > 0 ? aside : Eigen::MatrixXd(system.rows(), 0);
+  const Eigen::MatrixXd apart = nuisance.cols() > 0 ? nuisance : Eigen::MatrixXd(system.rows(), 0);
   const FitProjection P(fit, fit.problem, system, apart);
   const std::vector<SingleEvent> events = single_events(fit, tests, P);
   const std::vector<Scored> scored = score_events(fit, system, P, events);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "local_dispersion.hpp"
+#include "criticism/local_dispersion.hpp"
+
+#include "fit/fit_projection.hpp"
 
 #include <cmath>
 
 #include <boost/math/special_functions/gamma.hpp>
-
-#include "fit_projection.hpp"
 
 namespace trussmap {
 namespace {

@@ -15,7 +15,7 @@
 // no power, lambda counts only where p < 0.001.
 #pragma once
 
-#include "trussmap/criticism/score_test.hpp"
+#include "criticism/score_test.hpp"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "noise_laws.hpp"
+#include "criticism/noise_laws.hpp"
 
-#include "trussmap/adjustment/piece_noise.hpp"
-#include "trussmap/odometry/dead_reckoning.hpp"
+#include "estimation/segment_noise.hpp"
+#include "trussmap/dead_reckoning.hpp"
 
 #include <cmath>
 #include <functional>
@@ -34,7 +34,7 @@ struct DriveLaw {
   std::string name;
   std::string unit;
   double margin;
-  std::function<Matrix3(std::size_t session, const PieceRow&)> row;
+  std::function<Matrix3(std::size_t session, const SegmentRow&)> row;
 };
 
 double mean_wheel_noise(const Noise& noise) {
@@ -44,7 +44,7 @@ double mean_wheel_noise(const Noise& noise) {
 std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& context) {
   std::vector<DriveLaw> laws;
   const auto add = [&](const char* name, const char* unit, double margin, const Noise& noise) {
-    laws.push_back({name, unit, margin, [&fit, noise](std::size_t session, const PieceRow& row) {
+    laws.push_back({name, unit, margin, [&fit, noise](std::size_t session, const SegmentRow& row) {
                       const Drive& drive = fit.recordings[session].drive;
                       const WheelTravel travel{row.part * drive.left[row.row],
                                                row.part * drive.right[row.row]};
@@ -76,14 +76,15 @@ std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& contex
   noise.heading_per_rad = 1.0;
   add("per radian turned", "rad/sqrt(rad)", kRare, noise);
   const auto add_event = [&](const char* name, const char* unit, const char* event, int value) {
-    laws.push_back({name, unit, 0.0,
-                    [&context, event, value](std::size_t session, const PieceRow& row) -> Matrix3 {
-                      const RowVariables& variables =
-                          context.variables(session, ShapeContext::Instant::middle);
-                      Matrix3 Q = Matrix3::Zero();
-                      Q(value, value) = row.part * variables.find(event)->second[row.row];
-                      return Q;
-                    }});
+    laws.push_back(
+        {name, unit, 0.0,
+         [&context, event, value](std::size_t session, const SegmentRow& row) -> Matrix3 {
+           const RowVariables& variables =
+               context.variables(session, ShapeContext::Instant::middle);
+           Matrix3 Q = Matrix3::Zero();
+           Q(value, value) = row.part * variables.find(event)->second[row.row];
+           return Q;
+         }});
   };
   add_event("per start", "m per start", "starts", 0);
   add_event("per spin", "rad per spin", "spins", 2);
@@ -101,20 +102,20 @@ std::vector<NoiseLaw> of_drives(const ModelFit& fit, const ShapeContext& context
   const Eigen::VectorXd offsets = offsets_of(fit);
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::piece) continue;
+    if (one.kind != MeasurementKind::segment) continue;
     const std::size_t session = idx(one.session);
     std::vector<const std::vector<DrivePattern>*> patterns;
     for (const EffectPattern& effect : fit.columns.border) {
       patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[session]);
     }
-    const std::vector<PieceRow>& rows = problem.pieces[one.source];
-    const PieceNoise piece = piece_noise(fit.recordings[session].drive, rows, fit.model.robot,
-                                         fit.model.noise, patterns, offsets, {});
+    const std::vector<SegmentRow>& rows = problem.segments[one.source];
+    const SegmentNoise segment = segment_noise(fit.recordings[session].drive, rows, fit.model.robot,
+                                               fit.model.noise, patterns, offsets, {});
     for (std::size_t row = 0; row < rows.size(); ++row) {
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const Matrix3 Q = laws[law].row(session, rows[row]);
         if (Q.isZero(0.0)) continue;
-        result[law].added[k] += piece.H[row] * Q * piece.H[row].transpose();
+        result[law].added[k] += segment.H[row] * Q * segment.H[row].transpose();
       }
     }
   }
@@ -141,14 +142,14 @@ std::vector<NoiseLaw> noise_laws(const ModelFit& fit, const ShapeContext& contex
     laws.push_back(of_readings(fit, name, unit, variance));
   };
   add("compass", "rad", [&](const Measurement& one, int row) {
-    if (one.kind != MeasurementKind::piece || row != 3) return 0.0;
-    return 1.0 / readings_of(fit.problem.pieces[one.source]);
+    if (one.kind != MeasurementKind::segment || row != 3) return 0.0;
+    return 1.0 / readings_of(fit.problem.segments[one.source]);
   });
   add("sighting", "m", [](const Measurement& one, int) {
     return one.kind == MeasurementKind::standing ? 1.0 : 0.0;
   });
   add("range", "m", [](const Measurement& one, int row) {
-    const bool near = one.kind == MeasurementKind::near_view;
+    const bool near = one.kind == MeasurementKind::cartesian_view;
     return near || (one.kind == MeasurementKind::view && row == 0) ? 1.0 : 0.0;
   });
   add("bearing", "rad", [](const Measurement& one, int row) {

@@ -4,8 +4,8 @@
 // What each law of noise adds to the covariance of each measurement.
 #pragma once
 
-#include "trussmap/criticism/effect_columns.hpp"
-#include "trussmap/criticism/model_fit.hpp"
+#include "fit/effect_columns.hpp"
+#include "fit/model_fit.hpp"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "noise_likelihood.hpp"
+#include "criticism/noise_likelihood.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace trussmap {
 
-NoiseLikelihood::NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& aside)
+NoiseLikelihood::NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& nuisance)
     : fit_(fit),
-      aside_stated_(aside),
+      nuisance_stated_(nuisance),
       problem_(fit.problem),
       system_(problem_, fit.columns.border),
       left_out_(fit.problem.measurements.size(), false) {
-  if (aside_stated_.cols() == 0) aside_stated_.resize(system_.rows(), 0);
-  aside_ = aside_stated_;
+  if (nuisance_stated_.cols() == 0) nuisance_stated_.resize(system_.rows(), 0);
+  nuisance_ = nuisance_stated_;
   std::vector<double> weights(problem_.measurements.size(), 1.0);
   for (const int k : fit.adjustment.left_out) {
     left_out_[idx(k)] = true;
@@ -43,17 +43,18 @@ double NoiseLikelihood::minus_two_log() {
   }
   const double chi2 = system_.linearise(fit_.adjustment.state, fit_.adjustment.coefficients);
   const RecordingSystem::Step step = system_.solve_step();
-  sum += system_.log_determinant() + chi2 - step.promised;
-  if (aside_.cols() == 0) return sum;
+  sum += system_.log_determinant() + chi2 - step.predicted;
+  if (nuisance_.cols() == 0) return sum;
   const Eigen::MatrixXd& M = system_.border();
   const Eigen::Index nodes = step.nodes.size();
-  Eigen::MatrixXd right(nodes + M.cols(), aside_.cols());
-  right.topRows(nodes) = system_.transposed_times(aside_);
-  right.bottomRows(M.cols()) = M.transpose() * aside_;
-  const Eigen::MatrixXd S = aside_.transpose() * aside_ - right.transpose() * system_.solve(right);
+  Eigen::MatrixXd right(nodes + M.cols(), nuisance_.cols());
+  right.topRows(nodes) = system_.transposed_times(nuisance_);
+  right.bottomRows(M.cols()) = M.transpose() * nuisance_;
+  const Eigen::MatrixXd S =
+      nuisance_.transpose() * nuisance_ - right.transpose() * system_.solve(right);
   Eigen::VectorXd left = system_.residuals() + system_.times(step.nodes);
   if (M.cols() > 0) left += M * step.coefficients;
-  const Eigen::VectorXd g = aside_.transpose() * left;
+  const Eigen::VectorXd g = nuisance_.transpose() * left;
   const Eigen::LDLT<Eigen::MatrixXd> factor(S);
   return sum + factor.vectorD().array().abs().log().sum() - g.dot(factor.solve(g));
 }
@@ -67,11 +68,11 @@ double NoiseLikelihood::deviance(const NoiseLaw& law, double variance) {
         noisier
             ? whitener_of(colour_[k] * colour_[k].transpose() + variance * law.added[k], one.rows)
             : stated;
-    if (aside_.cols() == 0) continue;
+    if (nuisance_.cols() == 0) continue;
     const int at = system_.first_row(k);
-    aside_.middleRows(at, one.rows) =
+    nuisance_.middleRows(at, one.rows) =
         (one.whitener * colour_[k]).topLeftCorner(one.rows, one.rows) *
-        aside_stated_.middleRows(at, one.rows);
+        nuisance_stated_.middleRows(at, one.rows);
   }
   return minus_two_log() - stated_;
 }
@@ -96,7 +97,7 @@ NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
     value = {value[1], value[2], deviance(law, std::exp(at + step))};
   }
   // Twice, the second time with a third of the step: the curve is no parabola far from its bottom.
-  for (int look = 0; look < 2; ++look) {
+  for (int resolution = 0; resolution < 2; ++resolution) {
     const double bend = value[0] - 2.0 * value[1] + value[2];
     if (bend > 0.0) {
       const double vertex = at + std::clamp(0.5 * (value[0] - value[2]) / bend, -1.0, 1.0) * step;
@@ -106,7 +107,7 @@ NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
         value[1] = there;
       }
     }
-    if (look > 0) break;
+    if (resolution > 0) break;
     step /= 3.0;
     value[0] = deviance(law, std::exp(at - step));
     value[2] = deviance(law, std::exp(at + step));

@@ -8,16 +8,15 @@
 // The least chi^2 is that of the linearised problem: one step of Gauss-Newton.
 #pragma once
 
-#include "trussmap/adjustment/recording_system.hpp"
-
-#include "noise_laws.hpp"
+#include "criticism/noise_laws.hpp"
+#include "estimation/recording_system.hpp"
 
 namespace trussmap {
 
 class NoiseLikelihood {
  public:
   /// `aside`: whitened columns of further unknowns. Keeps a reference to the fit.
-  NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& aside);
+  NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& nuisance);
 
   /// -2 log R under the law with this variance, less that of the stated noise. Afterwards problem
   /// and system are those under the law.
@@ -33,14 +32,14 @@ class NoiseLikelihood {
   [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
   [[nodiscard]] const RecordingSystem& system() const { return system_; }
   /// The further columns, whitened as the problem is.
-  [[nodiscard]] const Eigen::MatrixXd& aside() const { return aside_; }
+  [[nodiscard]] const Eigen::MatrixXd& nuisance() const { return nuisance_; }
 
  private:
   [[nodiscard]] double minus_two_log();
 
   const ModelFit& fit_;
-  Eigen::MatrixXd aside_stated_;
-  Eigen::MatrixXd aside_;
+  Eigen::MatrixXd nuisance_stated_;
+  Eigen::MatrixXd nuisance_;
   RecordingProblem problem_;
   RecordingSystem system_;
   std::vector<Matrix4> colour_;  ///< inverse of the stated whitener

@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/noise_tests.hpp"
+#include "criticism/noise_tests.hpp"
 
-#include "trussmap/criticism/comparison.hpp"
+#include "criticism/comparison.hpp"
+#include "criticism/noise_laws.hpp"
+#include "criticism/noise_likelihood.hpp"
+#include "fit/fit_projection.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +15,6 @@
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/special_functions/gamma.hpp>
-
-#include "fit_projection.hpp"
-#include "noise_laws.hpp"
-#include "noise_likelihood.hpp"
 
 namespace trussmap {
 namespace {
@@ -107,9 +106,9 @@ class ShapeStatistics {
     for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
       const Measurement& one = problem.measurements[k];
       add_measurement(k, one, P);
-      if (one.kind != MeasurementKind::piece || P.left_out(k)) continue;
+      if (one.kind != MeasurementKind::segment || P.left_out(k)) continue;
       double path = 0.0;
-      for (const PieceRow& row : problem.pieces[one.source]) path += std::abs(row.path);
+      for (const SegmentRow& row : problem.segments[one.source]) path += std::abs(row.path);
       if (path < kLeastDrive) continue;
       const bool follows =
           last < problem.measurements.size() && problem.measurements[last].session == one.session;
@@ -193,7 +192,7 @@ NoiseTest shape_test(const char* name, const char* words, double found,
 
 /// Against residuals drawn under the same fit.
 void test_shapes(const ModelFit& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
-  const FitProjection P(fit, under.problem(), under.system(), under.aside());
+  const FitProjection P(fit, under.problem(), under.system(), under.nuisance());
   const ShapeStatistics statistics(under.problem(), under.system(), P);
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
@@ -219,11 +218,11 @@ void test_shapes(const ModelFit& fit, const NoiseLikelihood& under, std::vector<
 }  // namespace
 
 std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tests,
-                                       const Eigen::MatrixXd& aside) {
+                                       const Eigen::MatrixXd& nuisance) {
   const RecordingProblem& problem = fit.problem;
   const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart =
-      aside.cols() > 0 ? orthonormal(aside) : Eigen::MatrixXd(system.rows(), 0);
+      nuisance.cols() > 0 ? orthonormal(nuisance) : Eigen::MatrixXd(system.rows(), 0);
   const FitProjection P(fit, problem, system, apart);
   std::vector<Eigen::MatrixXd> own;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));

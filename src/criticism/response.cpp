@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/response.hpp"
+#include "criticism/response.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
+#include "trussmap/catalogue.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -130,14 +130,14 @@ Bins bins_of(const std::string& variable, const std::vector<double>& values) {
 
 /// Least squares by the modes that the data show; bins that no measurement sees are dropped.
 /// `traces`: what rivals leave in the measurements, estimated alike.
-void estimate(Response& response, const Score& score, double plausible, const ModelFit& fit,
+void estimate(Response& response, const Score& score, double prior_sd, const ModelFit& fit,
               const ScoreTest& tests, const Eigen::MatrixXd& traces) {
   std::vector<ResponseBin>& bins = response.bins;
   const Eigen::MatrixXd& M = score.projected;
   const Eigen::MatrixXd S = M.transpose() * M;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(S);
   const double least =
-      9.0 * tests.dispersion() / (plausible * plausible * static_cast<double>(bins.size()));
+      9.0 * tests.dispersion() / (prior_sd * prior_sd * static_cast<double>(bins.size()));
   const Eigen::VectorXd g = modes.eigenvectors().transpose() * (M.transpose() * tests.residuals());
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(S.rows());
   double explained = 0.0;
@@ -299,7 +299,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   result.bins = std::move(bins.bins);
   std::vector<Effect> traced = rivals;
   traced.push_back(effect);
-  estimate(result, scores.front(), facts.plausible, fit, tests, traces_of(traced, tests));
+  estimate(result, scores.front(), facts.prior_sd, fit, tests, traces_of(traced, tests));
   const std::vector<Vector2> told = std::move(result.rivals.back());
   result.rivals.pop_back();
   if (result.bins.empty()) return result;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/score_test.hpp"
+#include "criticism/score_test.hpp"
 
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ ScoreTest::ScoreTest(const ModelFit& fit)
                std::nullopt});
   residuals_ = free_of_map(*clean_system_, system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
-  take_out(clean_system_->border());
+  condition_on(clean_system_->border());
   if (fit.adjustment.dof > 0) {
     dispersion_ = std::max(1.0, residuals_.squaredNorm() / fit.adjustment.dof);
   }
@@ -81,7 +81,7 @@ bool ScoreTest::is_present(const Effect& effect) const {
          free_of(present_, left).squaredNorm() <= kLeastShare * left.squaredNorm();
 }
 
-void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
+void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return;
   Eigen::MatrixXd left = projected(columns);
   // Columns of any unit: only their directions count, and those that have none left go.
@@ -103,11 +103,11 @@ void ScoreTest::take_out(const Eigen::MatrixXd& columns) {
 Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& largest,
                           Eigen::MatrixXd columns, Eigen::MatrixXd projected) const {
   const Eigen::Index count = projected.cols();
-  const double plausible = facts_of(*parse_channel(effect.channel)).plausible;
+  const double prior_sd = facts_of(*parse_channel(effect.channel)).prior_sd;
   Score result;
   result.coefficients.assign(static_cast<std::size_t>(count), 0.0);
   result.sd.assign(static_cast<std::size_t>(count), kInfinity);
-  result.smallest_detectable.assign(static_cast<std::size_t>(count), kInfinity);
+  result.minimal_detectable.assign(static_cast<std::size_t>(count), kInfinity);
   result.largest = largest;
   std::vector<Eigen::Index> seen;
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -118,7 +118,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     // What the data tell must not be less than what was believed before.
     const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
     if (most > 0.0 && result.share.back() > kLeastShare &&
-        uncertainty < kLargestUncertainty * plausible) {
+        uncertainty < kLargestUncertainty * prior_sd) {
       seen.push_back(k);
     } else {
       projected.col(k).setZero();
@@ -134,7 +134,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     const Eigen::Index column = seen[static_cast<std::size_t>(k)];
     M.col(k) = result.projected.col(column);
     const double most = largest[static_cast<std::size_t>(column)];
-    prior[k] = dispersion_ * most * most / (plausible * plausible);
+    prior[k] = dispersion_ * most * most / (prior_sd * prior_sd);
   }
   const Eigen::MatrixXd S = M.transpose() * M;
   const Eigen::VectorXd g = M.transpose() * residuals_;
@@ -154,7 +154,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     const auto place = static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]);
     result.coefficients[place] = estimate[k];
     result.sd[place] = std::sqrt(std::max(0.0, covariance(k, k)));
-    result.smallest_detectable[place] = std::sqrt(kDetectableScore / S(k, k));
+    result.minimal_detectable[place] = std::sqrt(kDetectableScore / S(k, k));
   }
   return result;
 }
@@ -169,11 +169,12 @@ Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
   return rows;
 }
 
-std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates, Look look) const {
-  if (look == Look::exact) return test_with(builders_->exact, candidates);
+std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates,
+                                   Resolution resolution) const {
+  if (resolution == Resolution::exact) return test_with(builders_->exact, candidates);
   if (!builders_->quick) builders_->quick.emplace(builders_->exact.coarsened(kQuick));
   std::vector<Score> scores = test_with(*builders_->quick, candidates);
-  if (look == Look::quick) return scores;
+  if (resolution == Resolution::quick) return scores;
   std::vector<std::size_t> shown;
   std::vector<Effect> again;
   for (std::size_t k = 0; k < candidates.size(); ++k) {

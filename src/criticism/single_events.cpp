@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "single_events.hpp"
+#include "criticism/single_events.hpp"
 
-#include "trussmap/criticism/held_out.hpp"
+#include "validation/held_out.hpp"
 
 #include <cmath>
 #include <map>
@@ -46,11 +46,11 @@ class Collector {
     return {k, -at(k).whitener.topLeftCorner(rows, rows) * change};
   }
 
-  /// A leg's bump, in each of its pieces.
+  /// A leg's bump, in each of its segments.
   void add_legs() {
-    std::map<int, std::size_t> piece_from;
+    std::map<int, std::size_t> segment_from;
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      if (at(k).kind == MeasurementKind::piece) piece_from[at(k).from] = k;
+      if (at(k).kind == MeasurementKind::segment) segment_from[at(k).from] = k;
     }
     for (const LegSpan& leg : leg_spans(fit_.recordings, problem_)) {
       const Measurement& from = at(leg.from);
@@ -66,10 +66,10 @@ class Collector {
                         {}};
       std::vector<std::string> bumped;  // the wheel, per place
       for (int node = from.from; node != to.from;) {
-        const auto found = piece_from.find(node);
-        if (found == piece_from.end()) break;
-        const Measurement& piece = at(found->second);
-        node = piece.to;
+        const auto found = segment_from.find(node);
+        if (found == segment_from.end()) break;
+        const Measurement& segment = at(found->second);
+        node = segment.to;
         if (projection_.left_out(found->second)) continue;
         add_bumps(found->second, event.places, bumped);
       }
@@ -88,16 +88,16 @@ class Collector {
     }
   }
 
-  /// Motion beyond the record after some of a piece's rows: of one wheel, or any.
+  /// Motion beyond the record after some of a segment's rows: of one wheel, or any.
   void add_bumps(std::size_t k, std::vector<Dummies>& places,
                  std::vector<std::string>& bumped) const {
-    const Measurement& piece = at(k);
-    const std::vector<PieceRow>& rows = problem_.pieces[piece.source];
+    const Measurement& segment = at(k);
+    const std::vector<SegmentRow>& rows = problem_.segments[segment.source];
     std::vector<Pose> ends;
     std::vector<int> readings;
     Pose end;
     int count = 0;
-    for (const PieceRow& row : rows) {
+    for (const SegmentRow& row : rows) {
       const double half = 0.5 * row.turn;
       end = compose(end, {row.path * std::cos(half), row.path * std::sin(half), row.turn});
       ends.push_back(end);
@@ -106,15 +106,15 @@ class Collector {
     }
     const double by_turn = 1.0 / fit_.model.robot.wheelbase;
     const auto by_motion = [&](std::size_t row) {
-      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(piece.rows, 3);
+      Eigen::MatrixXd change = Eigen::MatrixXd::Zero(segment.rows, 3);
       change.topLeftCorner<2, 2>() = rotation(ends[row].heading);
       change.block<2, 1>(0, 2) = quarter_turn(end.position() - ends[row].position());
       change(2, 2) = 1.0;
-      if (piece.rows == 4) change(3, 2) = -static_cast<double>(count - readings[row]) / count;
+      if (segment.rows == 4) change(3, 2) = -static_cast<double>(count - readings[row]) / count;
       return change;
     };
     double path = 0.0;
-    for (const PieceRow& row : rows) path += std::abs(row.path);
+    for (const SegmentRow& row : rows) path += std::abs(row.path);
     const bool drives = path > kLeastPath;
     const int group = 2 * static_cast<int>(places.size());
     for (std::size_t part = 0; drives && part < kBumps; ++part) {
@@ -248,16 +248,16 @@ class Collector {
       if (fit_.recordings[idx(session)].drive.has_compass()) channels.push_back(Channel::compass);
       channels.push_back(Channel::delay);
       Eigen::MatrixXd M(tests_.residuals().size(), static_cast<Eigen::Index>(channels.size()));
-      Eigen::VectorXd plausible(static_cast<Eigen::Index>(channels.size()));
+      Eigen::VectorXd prior_sd(static_cast<Eigen::Index>(channels.size()));
       for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto column = static_cast<Eigen::Index>(c);
         Effect effect;
         effect.name = effect.channel = facts_of(channels[c]).name;
         effect.shape = {"1"};
         M.col(column) = tests_.columns(effect);
-        plausible[column] = facts_of(channels[c]).plausible;
+        prior_sd[column] = facts_of(channels[c]).prior_sd;
       }
-      Dummies dummies{{}, plausible};
+      Dummies dummies{{}, prior_sd};
       for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
         if (at(k).session != session || projection_.left_out(k)) continue;
         dummies.parts.push_back({k, M.middleRows(tests_.system().first_row(k), at(k).rows)});

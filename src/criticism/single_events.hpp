@@ -4,13 +4,12 @@
 // What may have happened once, as dummy columns on the whitened rows of a few measurements.
 #pragma once
 
-#include "trussmap/criticism/score_test.hpp"
+#include "criticism/score_test.hpp"
+#include "fit/fit_projection.hpp"
 
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "fit_projection.hpp"
 
 namespace trussmap {
 
@@ -22,8 +21,8 @@ struct DummyRows {
 /// One place where an event may have been.
 struct Dummies {
   std::vector<DummyRows> parts;
-  Eigen::VectorXd plausible = {};  ///< sd of a prior on each coefficient; empty: none
-  int group = 0;                   ///< of an event's places that may be much the same
+  Eigen::VectorXd prior_sd = {};  ///< sd of a prior on each coefficient; empty: none
+  int group = 0;                  ///< of an event's places that may be much the same
 };
 
 struct SingleEvent {

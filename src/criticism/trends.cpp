@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/comparison.hpp"
-#include "trussmap/effects/shape.hpp"
+#include "criticism/comparison.hpp"
+#include "effects/shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +89,7 @@ std::vector<Kind> kinds_of(const ModelFit& fit) {
     return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(), what);
   };
   if (has([](const Measurement& one) {
-        return one.kind == MeasurementKind::piece && one.rows == 4;
+        return one.kind == MeasurementKind::segment && one.rows == 4;
       })) {
     kinds.push_back({"compass", "compass"});
   }

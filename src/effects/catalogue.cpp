@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -50,7 +50,7 @@ std::string_view trimmed(std::string_view text) {
 std::string expected_name(const CatalogueEntry& entry) {
   if (entry.of_covariate()) return fmt::format("{} (COLUMN)", entry.name);
   std::string text;
-  for (const InnerParameter& one : entry.parameters) {
+  for (const ShapeParameter& one : entry.parameters) {
     text += text.empty() ? "" : ", ";
     text += one.usual == 0.0 ? fmt::format("{}=...", one.name)
                              : fmt::format("{}={:g}", one.name, one.usual);
@@ -75,7 +75,7 @@ std::vector<std::string> with_parameters(const CatalogueEntry& entry, const Effe
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string_view name = trimmed(item.substr(0, equals));
     const std::string_view number = trimmed(item.substr(std::min(equals + 1, item.size())));
-    const auto is_it = [name](const InnerParameter& one) { return one.name == name; };
+    const auto is_it = [name](const ShapeParameter& one) { return one.name == name; };
     if (std::none_of(entry.parameters.begin(), entry.parameters.end(), is_it) ||
         std::find(given.begin(), given.end(), name) != given.end()) {
       refuse(fmt::format("has no parameter \"{}\", or has it twice", name));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/catalogue.hpp"
 
 namespace trussmap {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/channel.hpp"
+#include "trussmap/channel.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/corrected_recording.hpp"
+#include "effects/corrected_recording.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/effects/channel.hpp"
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/channel.hpp"
 
 #include <algorithm>
 #include <cmath>

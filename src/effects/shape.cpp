@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/experiment/tour_experiment.hpp"
+#include "experiment/tour_experiment.hpp"
 
-#include "trussmap/adjustment/linear_truss.hpp"
-#include "trussmap/core/index.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "geometry/index.hpp"
+#include "map/linear_truss.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -179,7 +179,7 @@ SeedMean figure_of(const std::vector<double>& values) {
   return figure;
 }
 
-TourFigures figures_of(const std::vector<Errors>& errors) {
+TourMetrics metrics_of(const std::vector<Errors>& errors) {
   std::vector<double> stretch;
   std::vector<double> orientation;
   std::vector<double> position;
@@ -188,7 +188,7 @@ TourFigures figures_of(const std::vector<Errors>& errors) {
     orientation.push_back(one.orientation);
     if (one.position) position.push_back(*one.position);
   }
-  TourFigures figures{figure_of(stretch), figure_of(orientation), std::nullopt};
+  TourMetrics figures{figure_of(stretch), figure_of(orientation), std::nullopt};
   if (!position.empty()) figures.position_error = figure_of(position);
   return figures;
 }
@@ -244,11 +244,11 @@ TourResult run_tours(const TourOptions& options) {
     std::vector<Errors> errors;
     errors.reserve(seeds.size());
     for (const SeedErrors& seed : seeds) errors.push_back(pick(seed));
-    return figures_of(errors);
+    return metrics_of(errors);
   };
   TourResult result;
   for (std::size_t tour = 0; tour < seeds.front().tours.size(); ++tour) {
-    MethodFigures figures;
+    MethodMetrics figures;
     for (const std::string& method : tour_methods()) {
       figures[method] =
           over_seeds([&](const SeedErrors& seed) { return seed.tours[tour].at(method); });

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/atomic_file.hpp"
-
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <array>
 #include <atomic>

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/index.hpp"
-#include "trussmap/recording/recording.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording.hpp"
 
 #include <algorithm>
 #include <array>

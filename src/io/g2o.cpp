@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/g2o.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
+#include "io/graph_line.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "graph_line.hpp"
 
 namespace trussmap {
 namespace {

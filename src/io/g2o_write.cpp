@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/core/index.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/g2o.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <iterator>
 

@@ -4,7 +4,7 @@
 // One line of a pose graph's file: words and numbers, with faults that name the line.
 #pragma once
 
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/map_formats.hpp"
-
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
+#include "trussmap/map_files.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/map_graphml.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/xml_text.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
+#include "io/xml_element.hpp"
+#include "text/xml_text.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -13,8 +13,6 @@
 #include <optional>
 
 #include <Eigen/LU>
-
-#include "xml_element.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/model_toml.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/effects/channel.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
+#include "trussmap/channel.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <initializer_list>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/mrclam.hpp"
-
-#include "trussmap/core/error.hpp"
+#include "io/number_rows.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@
 #include <map>
 #include <string>
 #include <vector>
-
-#include "number_rows.hpp"
 
 namespace trussmap {
 namespace {

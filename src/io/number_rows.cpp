@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "number_rows.hpp"
+#include "io/number_rows.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <charconv>

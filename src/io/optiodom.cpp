@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/optiodom.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/planar.hpp"
-#include "trussmap/io/atomic_file.hpp"
+#include "io/number_rows.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -14,8 +14,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include "number_rows.hpp"
 
 namespace trussmap {
 namespace {

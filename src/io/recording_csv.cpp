@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/recording_csv.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/index.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/csv.hpp"
+#include "geometry/index.hpp"
+#include "io/csv.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/runs_csv.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/planar.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/runs_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cmath>

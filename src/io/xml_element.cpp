@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "xml_element.hpp"
+#include "io/xml_element.hpp"
 
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
 
 #include <expat.h>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/odometry/arc.hpp"
+#include "trussmap/arc.hpp"
 
 #include <cmath>
 #include <stdexcept>

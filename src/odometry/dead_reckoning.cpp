@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/odometry/dead_reckoning.hpp"
+#include "trussmap/dead_reckoning.hpp"
 
-#include "trussmap/odometry/merge.hpp"
+#include "odometry/merge.hpp"
 
 #include <cmath>
 

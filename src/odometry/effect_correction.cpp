@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/odometry/effect_correction.hpp"
+#include "odometry/effect_correction.hpp"
 
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/corrected_recording.hpp"
+#include "effects/corrected_recording.hpp"
+#include "trussmap/catalogue.hpp"
 
 namespace trussmap {
 namespace {

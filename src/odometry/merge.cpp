@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/odometry/merge.hpp"
+#include "odometry/merge.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/recording/legs.hpp"
+#include "recording/legs.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/recording/test_path.hpp"
+#include "trussmap/test_path.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ TestPath square_path(double side, Direction direction) {
 
 double path_length(const TestPath& path) {
   double length = 0.0;
-  for (const PathPiece& piece : path) length += std::abs(piece.distance);
+  for (const PathSegment& segment : path) length += std::abs(segment.distance);
   return length;
 }
 

@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/comparison_page.hpp"
+#include "report/comparison_page.hpp"
 
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/diagnosis_tables.hpp"
+#include "report/fit_sections.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <fmt/format.h>
-
-#include "diagnosis_tables.hpp"
-#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/diagnosis_page.hpp"
+#include "report/diagnosis_page.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/diagnosis_tables.hpp"
+#include "report/fit_sections.hpp"
+#include "trussmap/table.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "diagnosis_tables.hpp"
-#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "diagnosis_tables.hpp"
+#include "report/diagnosis_tables.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/shape.hpp"
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
+#include "effects/shape.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/fit_sections.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/table.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,8 +16,6 @@
 #include <limits>
 
 #include <fmt/format.h>
-
-#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {
@@ -74,10 +73,10 @@ std::string at_most(const Effect& effect, const ShapeContext& context) {
 std::string seen_from(const Finding& finding, const ShapeContext& context) {
   Effect effect = finding.candidate.effect;
   double most = 0.0;
-  for (std::size_t k = 0; k < finding.smallest_detectable.size(); ++k) {
-    if (!std::isfinite(finding.smallest_detectable[k])) return "";
+  for (std::size_t k = 0; k < finding.minimal_detectable.size(); ++k) {
+    if (!std::isfinite(finding.minimal_detectable[k])) return "";
     std::vector<double> alone(effect.coefficients.size(), 0.0);
-    alone.at(k) = finding.smallest_detectable[k];
+    alone.at(k) = finding.minimal_detectable[k];
     effect.coefficients = std::move(alone);
     const EffectRange range = range_of(effect, context);
     most = std::max({most, std::abs(range.least), std::abs(range.most)});
@@ -118,7 +117,7 @@ std::string chance_of(const Finding& one, const Diagnosis& diagnosis) {
                                                   : chance_text(one.p_adjusted);
 }
 
-std::string drop_text(const Diagnosis& diagnosis, const HeldOutFigures& with) {
+std::string drop_text(const Diagnosis& diagnosis, const HeldOutMetrics& with) {
   if (diagnosis.held_out.legs.empty()) return "-";
   const double drop = diagnosis.held_out.arrival_rms - with.arrival_rms;
   return fmt::format("{:.1f}", std::abs(drop) < 5e-5 ? 0.0 : 1000.0 * drop);

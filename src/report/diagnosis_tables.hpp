@@ -4,7 +4,7 @@
 // What the pages of diagnose and discover say alike.
 #pragma once
 
-#include "trussmap/report/diagnosis_page.hpp"
+#include "report/diagnosis_page.hpp"
 
 #include <string>
 #include <vector>

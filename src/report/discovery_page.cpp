@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/discovery_page.hpp"
+#include "report/discovery_page.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/diagnosis_tables.hpp"
+#include "report/fit_sections.hpp"
+#include "trussmap/table.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "diagnosis_tables.hpp"
-#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {
@@ -62,9 +61,9 @@ PageTable step_table(const Discovery& discovery) {
     const bool legs = !step.held_out.legs.empty();
     table.rows.push_back(
         {step_name(step), fmt::format("{:.1f}", step.chi2), std::to_string(step.dof),
-         k > 0 ? fmt::format("{:.1f}", discovery.steps[k - 1].chi2 - step.promised_chi2) : "-",
+         k > 0 ? fmt::format("{:.1f}", discovery.steps[k - 1].chi2 - step.predicted_chi2) : "-",
          legs ? fmt::format("{:.1f}", 1000.0 * step.held_out.arrival_rms) : "-",
-         k > 0 && legs ? fmt::format("{:.1f}", 1000.0 * step.promised.arrival_rms) : "-"});
+         k > 0 && legs ? fmt::format("{:.1f}", 1000.0 * step.predicted.arrival_rms) : "-"});
   }
   return table;
 }

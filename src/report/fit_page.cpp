@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/fit_page.hpp"
+#include "report/fit_page.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/report/fit_charts.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/fit_sections.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "fit_sections.hpp"
 
 namespace trussmap {
 namespace {
@@ -73,7 +72,7 @@ std::vector<FittedEffect> fitted_effects(const ModelFit& without,
     const Effect& effect = effects[k].effect;
     ScoreTest tests(without);
     for (std::size_t other = 0; other < effects.size(); ++other) {
-      if (other != k) tests.take_out(tests.columns(effects[other].effect));
+      if (other != k) tests.condition_on(tests.columns(effects[other].effect));
     }
     FittedEffect one{effects[k], {}, range_of(effect, tests.context()), {}};
     if (k < rivals.size()) one.rivals = drawn_rivals(rivals[k], tests);

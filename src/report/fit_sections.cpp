@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "fit_sections.hpp"
+#include "report/fit_sections.hpp"
 
-#include "trussmap/criticism/effect_words.hpp"
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/fit_charts.hpp"
+#include "plot/layers.hpp"
+#include "trussmap/table.hpp"
+#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "layers.hpp"
 
 namespace trussmap {
 namespace {

@@ -4,9 +4,9 @@
 // Sections that pages on fitted models have in common.
 #pragma once
 
-#include "trussmap/report/comparison_page.hpp"
-#include "trussmap/report/fit_charts.hpp"
-#include "trussmap/report/fit_page.hpp"
+#include "plot/fit_charts.hpp"
+#include "report/comparison_page.hpp"
+#include "report/fit_page.hpp"
 
 #include <string>
 #include <vector>

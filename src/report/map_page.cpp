@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/map_page.hpp"
+#include "report/map_page.hpp"
+
+#include "plot/layers.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
-
-#include "layers.hpp"
 
 namespace trussmap {
 namespace {

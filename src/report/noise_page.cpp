@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/calibration_pages.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/layers.hpp"
+#include "report/calibration_pages.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
-
-#include "layers.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/page.hpp"
+#include "report/page.hpp"
 
-#include "trussmap/core/xml_text.hpp"
+#include "text/xml_text.hpp"
 
 #include <algorithm>
 #include <set>

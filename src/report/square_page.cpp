@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/calibration_pages.hpp"
-#include "trussmap/report/table.hpp"
+#include "plot/layers.hpp"
+#include "report/calibration_pages.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
-
-#include "layers.hpp"
 
 namespace trussmap {
 namespace {
@@ -89,7 +88,7 @@ double reach_of(const SquareRound& round) {
   return 1.1 * kMillimetres * std::max(reach, 1e-6);
 }
 
-PageTable figures_table(const SquareRound& last) {
+PageTable metrics_table(const SquareRound& last) {
   PageTable table;
   table.caption = "What the squares say";
   table.headings = {"", "exact", "by the papers' formulas"};
@@ -182,7 +181,7 @@ Page square_page(const SquareCalibration& found, const std::string& subject) {
   page.sections.push_back(
       {fmt::format("Squares of {:g} m, driven both ways", found.side), {std::move(rounds)}});
   page.sections.push_back(
-      {"Wheels and wheelbase", {ChartRow{ratio_chart(last)}, figures_table(last)}});
+      {"Wheels and wheelbase", {ChartRow{ratio_chart(last)}, metrics_table(last)}});
   return page;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/table.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/tour_page.hpp"
+#include "report/tour_page.hpp"
+
+#include "plot/layers.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,8 +10,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-
-#include "layers.hpp"
 
 namespace trussmap {
 namespace {
@@ -35,15 +35,15 @@ MethodLook look_of(const std::string& method) {
   return found == kMethodLooks.end() ? MethodLook{method.c_str(), "ink"} : found->second;
 }
 
-using Pick = std::optional<SeedMean> (*)(const TourFigures&);
+using Pick = std::optional<SeedMean> (*)(const TourMetrics&);
 
-std::optional<SeedMean> stretch(const TourFigures& figures) {
+std::optional<SeedMean> stretch(const TourMetrics& figures) {
   return figures.stretch_error;
 }
-std::optional<SeedMean> orientation(const TourFigures& figures) {
+std::optional<SeedMean> orientation(const TourMetrics& figures) {
   return figures.orientation_error;
 }
-std::optional<SeedMean> position(const TourFigures& figures) {
+std::optional<SeedMean> position(const TourMetrics& figures) {
   return figures.position_error;
 }
 
@@ -110,7 +110,7 @@ PageTable last_table(const TourResult& result) {
   table.headings = {"method", "stretch error [%]", "orientation error [mrad]",
                     "position error [m]"};
   for (const std::string& method : tour_methods()) {
-    const TourFigures& figures = result.tours.back().at(method);
+    const TourMetrics& figures = result.tours.back().at(method);
     const auto cell = [](const SeedMean& mean, double factor, int digits) {
       return fmt::format("{:.{}f} \u00b1 {:.{}f}", factor * mean.mean, digits,
                          factor * mean.standard_error, digits);
@@ -136,8 +136,8 @@ Chart first_sight_chart(const TourResult& result) {
   ChartColumn value{"error"};
   ChartColumn low{"95 % from"};
   ChartColumn high{"to"};
-  const TourFigures& before = result.first_sight_before;
-  const TourFigures& after = result.first_sight_after;
+  const TourMetrics& before = result.first_sight_before;
+  const TourMetrics& after = result.first_sight_after;
   for (const SeedMean& mean : {before.stretch_error, after.stretch_error, before.orientation_error,
                                after.orientation_error}) {
     value.numbers.push_back(100.0 * mean.mean);
@@ -152,10 +152,10 @@ Chart first_sight_chart(const TourResult& result) {
 }  // namespace
 
 Page tour_page(const TourResult& result, int seeds, const std::string& subject) {
-  const MethodFigures& last = result.tours.back();
-  const TourFigures& elastic = last.at("elastic");
-  const TourFigures& raw = last.at("raw");
-  const TourFigures& best = last.at("adjustment");
+  const MethodMetrics& last = result.tours.back();
+  const TourMetrics& elastic = last.at("elastic");
+  const TourMetrics& raw = last.at("raw");
+  const TourMetrics& best = last.at("adjustment");
   Page page;
   page.command = "tour";
   page.subject = subject;

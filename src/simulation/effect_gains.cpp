@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/effect_gains.hpp"
+#include "simulation/effect_gains.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
+#include "geometry/index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ double change(const ChannelGains& a, const ChannelGains& b) {
 /// What the path has to know of its effects.
 PathBias bias_of(const ChannelGains& gains, const TrueMotion& motion) {
   PathBias bias;
-  bias.pieces = motion.pieces;
+  bias.segments = motion.segments;
   const auto creep = gains.find(Channel::creep);
   if (creep != gains.end()) bias.slip = creep->second;
   // An event in a spin moves the robot, not its wheels: they would have to turn back for it, which

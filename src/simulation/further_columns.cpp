@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "further_columns.hpp"
+#include "simulation/further_columns.hpp"
 
-#include "trussmap/effects/row_variables.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "recording/row_variables.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <algorithm>
 #include <cmath>

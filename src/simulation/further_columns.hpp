@@ -4,7 +4,7 @@
 // Covariate columns of the user's own naming.
 #pragma once
 
-#include "trussmap/simulation/true_motion.hpp"
+#include "simulation/true_motion.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/hidden_effects.hpp"
+#include "simulation/hidden_effects.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/simulation/effect_gains.hpp"
-#include "trussmap/simulation/motion_variables.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "geometry/index.hpp"
+#include "simulation/effect_gains.hpp"
+#include "simulation/motion_variables.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <algorithm>
 #include <array>
@@ -115,7 +115,7 @@ class Draw {
     std::vector<double> values;
     const Vector2 place = one_of(mesh_.positions);
     const double reach = shortest_route(mesh_);
-    for (const InnerParameter& one : entry.parameters) {
+    for (const ShapeParameter& one : entry.parameters) {
       double value = uniform(0.8 * one.usual, 1.2 * one.usual);
       if (one.name == "x") value = place.x() + uniform(-0.3, 0.3) * reach;
       if (one.name == "y") value = place.y() + uniform(-0.3, 0.3) * reach;

@@ -4,7 +4,7 @@
 // The shape of a leg before it is scaled and turned to where it is to lead.
 #pragma once
 
-#include "trussmap/core/planar.hpp"
+#include "trussmap/planar.hpp"
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/mesh_world.hpp"
+#include "simulation/mesh_world.hpp"
 
 #include <algorithm>
 #include <charconv>

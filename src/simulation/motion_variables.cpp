@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/motion_variables.hpp"
+#include "simulation/motion_variables.hpp"
 
-#include "trussmap/core/index.hpp"
+#include "geometry/index.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/route_robot.hpp"
+#include "simulation/route_robot.hpp"
 
 #include <cmath>
 #include <numbers>

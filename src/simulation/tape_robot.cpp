@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/tape_robot.hpp"
+#include "trussmap/tape_robot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,10 +49,10 @@ Pose drive_once(const TapeRobot& robot, const TestPath& path, std::mt19937_64& r
   const bool noisy = robot.left_noise != 0.0 || robot.right_noise != 0.0;
   Pose believed;
   Pose actual;
-  for (const PathPiece& piece : path) {
-    const double difference = piece.turn * robot.wheelbase_believed;
-    const double left = piece.distance - 0.5 * difference;
-    const double right = piece.distance + 0.5 * difference;
+  for (const PathSegment& segment : path) {
+    const double difference = segment.turn * robot.wheelbase_believed;
+    const double left = segment.distance - 0.5 * difference;
+    const double right = segment.distance + 0.5 * difference;
     roll(believed, left, right, robot.wheelbase_believed);
     const double longest = std::max(std::abs(left), std::abs(right));
     const int steps = noisy ? std::max(1, static_cast<int>(std::ceil(longest / robot.step))) : 1;

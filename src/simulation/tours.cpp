@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/tours.hpp"
+#include "simulation/tours.hpp"
 
 #include <algorithm>
 #include <array>

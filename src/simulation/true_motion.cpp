@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/true_motion.hpp"
+#include "simulation/true_motion.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "geometry/index.hpp"
+#include "simulation/further_columns.hpp"
+#include "simulation/leg_shape.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +16,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "further_columns.hpp"
-#include "leg_shape.hpp"
 
 namespace trussmap {
 namespace {
@@ -29,7 +28,7 @@ int whole_rows(double seconds, double row_duration) {
   return static_cast<int>(std::max(1L, std::lround(seconds / row_duration)));
 }
 
-/// The path so far, to which pieces are added.
+/// The path so far, to which segments are added.
 class Path {
  public:
   Path(const Mesh& mesh, const DrivingStyle& style, std::uint64_t seed, const PathBias& bias)
@@ -93,11 +92,11 @@ class Path {
     return stop < bias_.sensor.size() ? bias_.sensor[stop] : Vector2::Zero();
   }
 
-  /// How many rows the next piece has: as many as are wanted, or as an earlier path's.
-  int rows_of_piece(int wanted) {
-    const std::size_t piece = motion_.pieces.size();
-    motion_.pieces.push_back(piece < bias_.pieces.size() ? bias_.pieces[piece] : wanted);
-    return motion_.pieces.back();
+  /// How many rows the next segment has: as many as are wanted, or as an earlier path's.
+  int rows_of_segment(int wanted) {
+    const std::size_t segment = motion_.segments.size();
+    motion_.segments.push_back(segment < bias_.segments.size() ? bias_.segments[segment] : wanted);
+    return motion_.segments.back();
   }
 
   [[nodiscard]] double jump_of(std::size_t row) const {
@@ -154,15 +153,15 @@ class Path {
   }
 
   void rest(double seconds) {
-    const int rows = rows_of_piece(whole_rows(seconds, style_.row_duration));
+    const int rows = rows_of_segment(whole_rows(seconds, style_.row_duration));
     for (int k = 0; k < rows; ++k) add_row(Activity::rest, 0.0, 0.0);
   }
 
   void spin(double angle) {
     const double wanted_rate = uniform(style_.slowest_turn, style_.fastest_turn);
-    int rows = rows_of_piece(
+    int rows = rows_of_segment(
         angle == 0.0 ? 0 : whole_rows(std::abs(angle) / wanted_rate, style_.row_duration));
-    if (rows == 0 && angle != 0.0) rows = motion_.pieces.back() = 1;
+    if (rows == 0 && angle != 0.0) rows = motion_.segments.back() = 1;
     const double before = pose_.heading;
     for (int k = 1; k <= rows; ++k) {
       const double heading = before + angle * k / rows;
@@ -176,8 +175,8 @@ class Path {
   /// Where a spin by an angle, which is next, will leave the robot by its jumps, from here.
   [[nodiscard]] Vector2 jumped(double angle) const {
     Vector2 sum = Vector2::Zero();
-    const std::size_t piece = motion_.pieces.size();
-    const int rows = piece < bias_.pieces.size() ? bias_.pieces[piece] : 0;
+    const std::size_t segment = motion_.segments.size();
+    const int rows = segment < bias_.segments.size() ? bias_.segments[segment] : 0;
     for (int k = 0; k < rows; ++k) {
       const double from = pose_.heading + angle * k / rows;
       sum += jump_of(motion_.rows.size() + idx(k)) * unit_step(from, from + angle / rows);
@@ -200,9 +199,10 @@ class Path {
   void drive(const Vector2& target, double wanted_speed) {
     const double dt = style_.row_duration;
     const Vector2 straight = target - pose_.position();
-    const std::size_t piece = motion_.pieces.size() + 1;  // after the spin
-    const int rows = piece < bias_.pieces.size() ? bias_.pieces[piece]
-                                                 : whole_rows(straight.norm() / wanted_speed, dt);
+    const std::size_t segment = motion_.segments.size() + 1;  // after the spin
+    const int rows = segment < bias_.segments.size()
+                         ? bias_.segments[segment]
+                         : whole_rows(straight.norm() / wanted_speed, dt);
     const int ramp_rows = std::min(static_cast<int>(std::lround(style_.ramp / dt)), rows / 2);
     const std::vector<double> profile = speed_profile(rows, ramp_rows);
     LegShape shape = draw_shape(profile);
@@ -220,7 +220,7 @@ class Path {
 
     const double offset = pose_.heading - shape.headings.front();
     const double speed = length / (rows * dt);
-    rows_of_piece(rows);
+    rows_of_segment(rows);
     for (int k = 1; k <= rows; ++k) {
       const double first = offset + shape.headings[idx(k - 1)];
       const double last = offset + shape.headings[idx(k)];
@@ -235,9 +235,9 @@ class Path {
   [[nodiscard]] Vector2 end_with_slip(const LegShape& shape,
                                       const std::vector<double>& profile) const {
     if (bias_.slip.empty()) return shape.end;
-    const std::size_t spin = motion_.pieces.size();
+    const std::size_t spin = motion_.segments.size();
     const std::size_t first =
-        motion_.rows.size() + (spin < bias_.pieces.size() ? idx(bias_.pieces[spin]) : 0);
+        motion_.rows.size() + (spin < bias_.segments.size() ? idx(bias_.segments[spin]) : 0);
     Vector2 end = Vector2::Zero();
     for (std::size_t k = 0; k < profile.size(); ++k) {
       const Vector2 step = unit_step(shape.headings[k], shape.headings[k + 1]);
@@ -262,7 +262,7 @@ class Path {
 
   /// Straight ahead.
   void drive_on(double length, double wanted_speed) {
-    const int rows = rows_of_piece(whole_rows(length / wanted_speed, style_.row_duration));
+    const int rows = rows_of_segment(whole_rows(length / wanted_speed, style_.row_duration));
     const Vector2 step = length / rows * unit_step(pose_.heading, pose_.heading);
     for (int k = 0; k < rows; ++k) {
       set_position(pose_.position() + slipped(step, motion_.rows.size()));

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "simulation/wheeled_robot.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/simulation/random_stream.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <algorithm>
 #include <cmath>

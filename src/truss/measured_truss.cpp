@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/truss/measured_truss.hpp"
+#include "truss/measured_truss.hpp"
 
-#include "trussmap/core/error.hpp"
-#include "trussmap/truss/connected_parts.hpp"
-#include "trussmap/truss/dissection.hpp"
+#include "linalg/connected_parts.hpp"
+#include "linalg/dissection.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/truss/stiffness_law.hpp"
+#include "trussmap/stiffness_law.hpp"
 
 #include <cmath>
 #include <numbers>

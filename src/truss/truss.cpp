@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/truss/truss.hpp"
+#include "truss/truss.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/truss/connected_parts.hpp"
+#include "geometry/index.hpp"
+#include "linalg/connected_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

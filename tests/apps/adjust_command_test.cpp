@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The command as its users meet it: exit status, one line for a mistake, files whole or absent.
-#include "trussmap/io/g2o.hpp"
+#include "pose_graph/synthetic_graph.hpp"
+#include "trussmap/map_files.hpp"
 
 #include <array>
 #include <cstdio>
@@ -12,8 +13,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "adjustment/synthetic_graph.hpp"
 
 namespace trussmap {
 namespace {

@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap calibrate as a user meets it, and what it reaches on a robot under motion capture.
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
+#include "estimation/drawn_drive.hpp"
+#include "json_file.hpp"
+#include "scratch_folder.hpp"
+#include "shared_data.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +18,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "adjustment/drawn_drive.hpp"
-#include "json_file.hpp"
-#include "scratch_folder.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

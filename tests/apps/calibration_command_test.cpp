@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap umbmark and trussmap noise as a user meets them.
-#include "trussmap/calibration/geometry_errors.hpp"
-#include "trussmap/io/model_toml.hpp"
+#include "json_file.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,9 +16,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "json_file.hpp"
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Stated uncertainties against what thousands of simulated calibrations do.
-#include "trussmap/calibration/umbmark.hpp"
+#include "calibration/square_simulation.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include "calibration/square_simulation.hpp"
 
 namespace trussmap {
 namespace {

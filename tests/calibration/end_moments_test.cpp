@@ -3,10 +3,10 @@
 //
 // Exact moments of a noisy path's end: against the first order where noise is small, against
 // simulation where it is not.
-#include "trussmap/calibration/end_moments.hpp"
+#include "calibration/end_moments.hpp"
 
-#include "trussmap/calibration/wheel_noise.hpp"
-#include "trussmap/simulation/tape_robot.hpp"
+#include "trussmap/tape_robot.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include <cmath>
 #include <random>

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // What the two calibration papers print, against the verdict of the reference on each claim.
-#include "trussmap/calibration/umbmark.hpp"
-#include "trussmap/odometry/arc.hpp"
-#include "trussmap/odometry/classical.hpp"
+#include "calibration/square_simulation.hpp"
+#include "odometry/classical.hpp"
+#include "shared_data.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +19,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "calibration/square_simulation.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {
@@ -137,13 +136,13 @@ TEST(PaperTables, VariancesOfAStraightPathGrowAsSaid) {
   EXPECT_NEAR(std::log10(ten(0, 0) / one(0, 0)), value("ck.along_linear"), 1e-12);
 }
 
-TEST(PaperTables, ManyPiecesAreOnePiece) {
+TEST(PaperTables, ManySegmentsAreOneSegment) {
   EXPECT_NE(verdict("ck.consistency").find("yes"), std::string::npos);
   const WheelNoise noise{value("ck.kL"), value("ck.kR")};
-  Motion pieces;
-  for (int k = 0; k < 100; ++k) pieces = then(pieces, arc_motion({0.02, 0.03}, 0.5, noise));
+  Motion segments;
+  for (int k = 0; k < 100; ++k) segments = then(segments, arc_motion({0.02, 0.03}, 0.5, noise));
   const Matrix3 whole = arc_motion({2.0, 3.0}, 0.5, noise).covariance;
-  EXPECT_LT((pieces.covariance - whole).norm() / whole.norm(), 1e-14);
+  EXPECT_LT((segments.covariance - whole).norm() / whole.norm(), 1e-14);
 }
 
 TEST(PaperTables, ClassicalModelsHaveTheCoefficientsSaid) {

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/square_checks.hpp"
+#include "calibration/square_simulation.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <random>
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include "calibration/square_simulation.hpp"
 
 namespace trussmap {
 namespace {

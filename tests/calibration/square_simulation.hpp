@@ -4,8 +4,8 @@
 // Squares driven by the simulated robot, as the calibration reads them.
 #pragma once
 
-#include "trussmap/calibration/umbmark.hpp"
-#include "trussmap/simulation/tape_robot.hpp"
+#include "trussmap/tape_robot.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <random>
 

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/calibration/umbmark.hpp"
+#include "trussmap/umbmark.hpp"
 
-#include "trussmap/core/error.hpp"
+#include "calibration/square_simulation.hpp"
+#include "json_matrix.hpp"
+#include "shared_data.hpp"
+#include "trussmap/error.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
-
-#include "calibration/square_simulation.hpp"
-#include "json_matrix.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/diagnosis.hpp"
+#include "criticism/diagnosis.hpp"
 
-#include "trussmap/criticism/discovery.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
+#include "criticism/discovery.hpp"
+#include "criticism/inverted_recordings.hpp"
+#include "criticism/known_events.hpp"
+#include "estimation/simulated_recordings.hpp"
+#include "shared_data.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "adjustment/simulated_recordings.hpp"
-#include "criticism/inverted_recordings.hpp"
-#include "criticism/known_events.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {
@@ -180,8 +179,8 @@ TEST(Diagnosis, PromisesWhatTheFitThenKeeps) {
   ASSERT_GE(result.steps.size(), 2U);
   const DiscoveryStep& before = result.steps[0];
   const DiscoveryStep& after = result.steps[1];
-  EXPECT_NEAR(after.promised_chi2, before.chi2 - after.chi2, 0.1 * (before.chi2 - after.chi2));
-  EXPECT_NEAR(after.promised.arrival_rms, after.held_out.arrival_rms,
+  EXPECT_NEAR(after.predicted_chi2, before.chi2 - after.chi2, 0.1 * (before.chi2 - after.chi2));
+  EXPECT_NEAR(after.predicted.arrival_rms, after.held_out.arrival_rms,
               0.2 * after.held_out.arrival_rms);
 }
 

@@ -3,17 +3,16 @@
 //
 // Tests of single events against dense algebra, against refits, and against drives in which
 // something is known to have happened.
-#include "trussmap/criticism/event_tests.hpp"
+#include "criticism/event_tests.hpp"
 
-#include "trussmap/adjustment/data_snooping.hpp"
+#include "criticism/known_events.hpp"
+#include "estimation/data_snooping.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>
-
-#include "criticism/known_events.hpp"
 
 namespace trussmap {
 namespace {

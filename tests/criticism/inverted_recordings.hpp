@@ -12,8 +12,8 @@
 // With creep g the body moves by ds (1, g): the course differs from the heading by atan g.
 #pragma once
 
-#include "trussmap/effects/model.hpp"
-#include "trussmap/recording/recording.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
 
 #include <cmath>
 #include <complex>

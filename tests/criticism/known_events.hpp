@@ -5,7 +5,8 @@
 // sessions, so large that the rest shows it by a given number of standard deviations.
 #pragma once
 
-#include "trussmap/criticism/score_test.hpp"
+#include "criticism/noisy_recordings.hpp"
+#include "criticism/score_test.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@
 #include <cstdio>
 #include <string>
 #include <vector>
-
-#include "criticism/noisy_recordings.hpp"
 
 namespace trussmap::testing {
 
@@ -44,7 +43,7 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   pattern.drives.emplace_back(drive.rows());
   pattern.drives[0][row].advance = 0.5;
   pattern.drives[0][row].turn = (left ? -1.0 : 1.0) / result.world.model.robot.wheelbase;
-  const EffectBorder border{pattern};
+  const EffectParameters border{pattern};
   RecordingSystem system(fit.problem, border);
   system.linearise(fit.adjustment.state, Eigen::VectorXd::Zero(1));
   const double told = tests.projected(system.border()).norm();

@@ -3,7 +3,9 @@
 //
 // Tests of noise laws against brute force with the dense projection, and against drives whose noise
 // is known.
-#include "trussmap/criticism/noise_tests.hpp"
+#include "criticism/noise_tests.hpp"
+
+#include "criticism/noisy_recordings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +14,6 @@
 #include <Eigen/LU>
 #include <boost/math/special_functions/gamma.hpp>
 #include <gtest/gtest.h>
-
-#include "criticism/noisy_recordings.hpp"
 
 namespace trussmap {
 namespace {
@@ -42,8 +42,8 @@ Eigen::MatrixXd dense_law(const ModelFit& fit, const RecordingSystem& system,
     if (law == "sighting" && one.kind == MeasurementKind::standing) {
       added.topLeftCorner<2, 2>().setIdentity();
     }
-    if (law == "compass" && one.kind == MeasurementKind::piece && one.rows == 4) {
-      added(3, 3) = 1.0 / readings_of(fit.problem.pieces[one.source]);
+    if (law == "compass" && one.kind == MeasurementKind::segment && one.rows == 4) {
+      added(3, 3) = 1.0 / readings_of(fit.problem.segments[one.source]);
     }
     const int at = system.first_row(k);
     V.block(at, at, one.rows, one.rows) =

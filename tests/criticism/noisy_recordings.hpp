@@ -5,10 +5,10 @@
 // does not state, or a bump. Legs differ in length, speed and rests.
 #pragma once
 
-#include "trussmap/effects/model.hpp"
-#include "trussmap/simulation/random_stream.hpp"
-#include "trussmap/simulation/tours.hpp"
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/random_stream.hpp"
 
 #include <cmath>
 #include <cstdint>

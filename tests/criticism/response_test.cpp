@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/criticism/response.hpp"
+#include "criticism/response.hpp"
 
-#include "trussmap/criticism/fitted_map.hpp"
-#include "trussmap/io/model_toml.hpp"
-#include "trussmap/io/recording_csv.hpp"
+#include "fit/fitted_map.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <cmath>
 #include <numbers>

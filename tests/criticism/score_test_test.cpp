@@ -3,17 +3,16 @@
 //
 // Score tests: what they promise against what a refit finds, and that they keep quiet where nothing
 // is missing.
-#include "trussmap/criticism/score_test.hpp"
+#include "criticism/score_test.hpp"
 
-#include "trussmap/criticism/comparison.hpp"
+#include "criticism/comparison.hpp"
+#include "criticism/noisy_recordings.hpp"
+#include "estimation/simulated_recordings.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "adjustment/simulated_recordings.hpp"
-#include "criticism/noisy_recordings.hpp"
 
 namespace trussmap {
 namespace {
@@ -74,7 +73,7 @@ TEST(ScoreTest, AQuickLookIsNearTheExactOne) {
                                     effect_of("creep", {bell}), effect_of("compass", {bell}),
                                     effect_of("travel", {"t"})};
   const std::vector<Score> exact = tests.test(effects);
-  const std::vector<Score> quick = tests.test(effects, Look::quick);
+  const std::vector<Score> quick = tests.test(effects, Resolution::quick);
   for (std::size_t k = 0; k < effects.size(); ++k) {
     const bool constant = effects[k].shape.front() == "1";
     const double near = constant ? 1e-9 : 0.02;
@@ -98,8 +97,8 @@ TEST(ScoreTest, ScreeningIsExactWhereItMatters) {
                                     effect_of("travel", {"t"}),
                                     effect_of("creep", {"speed"})};
   const std::vector<Score> exact = tests.test(effects);
-  const std::vector<Score> quick = tests.test(effects, Look::quick);
-  const std::vector<Score> screened = tests.test(effects, Look::screening);
+  const std::vector<Score> quick = tests.test(effects, Resolution::quick);
+  const std::vector<Score> screened = tests.test(effects, Resolution::screening);
   int left_quick = 0;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     EXPECT_EQ(screened[k].dof, exact[k].dof) << effects[k].channel;
@@ -126,11 +125,11 @@ TEST(ScoreTest, ManyAtOnceAreTheSameAsOneByOne) {
     effects.push_back(effect_of(channel, {"1"}));
     effects.push_back(effect_of(channel, {"sin(heading)", "cos(heading)"}));
   }
-  const std::vector<Score> together = tests.test(effects);
+  const std::vector<Score> joint = tests.test(effects);
   for (std::size_t k = 0; k < effects.size(); ++k) {
     const Score alone = tests.test({effects[k]}).front();
-    EXPECT_NEAR(alone.score, together[k].score, 1e-9 * (1.0 + alone.score));
-    EXPECT_EQ(alone.dof, together[k].dof);
+    EXPECT_NEAR(alone.score, joint[k].score, 1e-9 * (1.0 + alone.score));
+    EXPECT_EQ(alone.dof, joint[k].dof);
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/effects/catalogue.hpp"
+#include "trussmap/catalogue.hpp"
 
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
 
 #include <algorithm>
 #include <set>
@@ -96,7 +96,7 @@ TEST(Catalogue, KnowsEveryEffectThatTheProjectNames) {
     const CatalogueEntry* entry = find_entry(name);
     ASSERT_NE(entry, nullptr) << name;
     EXPECT_FALSE(entry->cause.empty() || entry->remedy.empty()) << name;
-    EXPECT_GT(entry->plausible(), 0.0) << name;
+    EXPECT_GT(entry->prior_sd(), 0.0) << name;
   }
 }
 

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // What a model's effects make of a recording.
-#include "trussmap/effects/corrected_recording.hpp"
+#include "effects/corrected_recording.hpp"
 
-#include "trussmap/effects/channel.hpp"
+#include "trussmap/channel.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -96,7 +96,7 @@ TEST(Channels, HaveOneNameEach) {
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(facts_of(one.channel).name, one.name);
-    EXPECT_GT(one.plausible, 0.0);
+    EXPECT_GT(one.prior_sd, 0.0);
   }
   EXPECT_EQ(parse_channel("Turn"), std::nullopt);
 }

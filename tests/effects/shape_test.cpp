@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Shapes and the variables they speak of.
-#include "trussmap/effects/shape.hpp"
+#include "effects/shape.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -4,15 +4,14 @@
 // The tour experiment against curves computed elsewhere (tests/reference/elastic_curves.json:
 // 6x6 mesh, 5 % and 0.03 rad, 24 seeds, 20 tours). Two means that agree differ by less than 4 of
 // their combined standard errors.
-#include "trussmap/experiment/tour_experiment.hpp"
+#include "experiment/tour_experiment.hpp"
 
-#include "trussmap/core/index.hpp"
+#include "geometry/index.hpp"
+#include "shared_data.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {
@@ -37,7 +36,7 @@ void expect_curve(const TourResult& result, const Curve& compared) {
   const json curve = testing::reference("elastic_curves.json")["methods"][compared.reference];
   ASSERT_EQ(result.tours.size(), 20U);
   for (std::size_t tour = 0; tour < 20; ++tour) {
-    const TourFigures& ours = result.tours[tour].at(compared.ours);
+    const TourMetrics& ours = result.tours[tour].at(compared.ours);
     ASSERT_TRUE(curve.contains("sigma") || curve.contains("abs_m"));
     if (curve.contains("sigma")) {
       ASSERT_GT(curve["sigma"].size(), tour);
@@ -63,12 +62,12 @@ TEST(SlowTour, EveryCurveAgreesWithTheReferenceAfterEveryTour) {
     expect_curve(result, curve);
   }
   // On the same measurements the exact increments stay with the batch.
-  for (const MethodFigures& tour : result.tours) {
+  for (const MethodMetrics& tour : result.tours) {
     EXPECT_LE(tour.at("gauss_markov").position_error->mean,
               1.15 * tour.at("adjustment").position_error->mean);
   }
   // The limited gain has no reference: it comes within a quarter of the batch.
-  const MethodFigures& tour10 = result.tours[9];
+  const MethodMetrics& tour10 = result.tours[9];
   EXPECT_LE(tour10.at("elastic").stretch_error.mean,
             1.25 * tour10.at("adjustment").stretch_error.mean);
 }
@@ -87,13 +86,13 @@ TEST(Tour, SeedsDoNotDependOnOneAnother) {
   options.mesh = even_mesh({3, 4}, 2.0);
   options.tours = 2;
   options.seeds = 3;
-  const TourResult together = run_tours(options);
+  const TourResult joint = run_tours(options);
   options.seeds = 1;
   double sum = 0.0;
   for (options.first_seed = 1; options.first_seed <= 3; ++options.first_seed) {
     sum += run_tours(options).tours[1].at("elastic").stretch_error.mean;
   }
-  EXPECT_NEAR(sum / 3.0, together.tours[1].at("elastic").stretch_error.mean, 1e-15);
+  EXPECT_NEAR(sum / 3.0, joint.tours[1].at("elastic").stretch_error.mean, 1e-15);
 }
 
 TEST(Tour, TinyErrorsGiveTheTrueMap) {

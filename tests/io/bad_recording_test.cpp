@@ -2,15 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // One small recording, spoilt in one way per case; each way has its own message.
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/recording_csv.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/g2o.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/core/index.hpp"
+#include "geometry/index.hpp"
+#include "pose_graph/synthetic_graph.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
 
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include "adjustment/synthetic_graph.hpp"
 
 namespace trussmap {
 namespace {

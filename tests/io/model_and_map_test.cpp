@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Models (TOML) and maps (GraphML, GeoJSON, DOT) out and in, and what is refused.
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/map_formats.hpp"
-#include "trussmap/io/map_graphml.hpp"
-#include "trussmap/io/model_toml.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/model_file.hpp"
 
 #include <cmath>
 #include <random>
@@ -13,8 +13,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {

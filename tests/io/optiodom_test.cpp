@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/io/optiodom.hpp"
-
-#include "trussmap/core/error.hpp"
+#include "scratch_folder.hpp"
+#include "shared_data.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "scratch_folder.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

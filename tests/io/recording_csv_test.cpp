@@ -2,19 +2,17 @@
 // SPDX-License-Identifier: MIT
 //
 // Recordings out and in, and the CSV beneath.
-#include "trussmap/io/recording_csv.hpp"
-
-#include "trussmap/core/error.hpp"
-#include "trussmap/io/atomic_file.hpp"
-#include "trussmap/io/csv.hpp"
+#include "io/csv.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // Arc covariance against quadrature (tests/reference/chong_kleeman.json).
-#include "trussmap/odometry/arc.hpp"
+#include "trussmap/arc.hpp"
+
+#include "shared_data.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {
@@ -64,11 +64,11 @@ INSTANTIATE_TEST_SUITE_P(EveryCase, ChongKleeman,
 
 class ChongKleemanPath : public ::testing::TestWithParam<testing::Case> {};
 
-TEST_P(ChongKleemanPath, PiecesComposeToTheQuadrature) {
+TEST_P(ChongKleemanPath, SegmentsComposeToTheQuadrature) {
   const json& c = GetParam().content;
   Motion path;
-  for (const json& piece : c["segments_LR"]) {
-    path = then(path, arc_motion({piece[0], piece[1]}, c["B"], {c["kL"], c["kR"]}));
+  for (const json& segment : c["segments_LR"]) {
+    path = then(path, arc_motion({segment[0], segment[1]}, c["B"], {c["kL"], c["kR"]}));
   }
   const double theta0 = c["theta0"];
   expect_covariance(in_map(path.covariance, theta0), matrix3(c["cov"]), 1e-12);

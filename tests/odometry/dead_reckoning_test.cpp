@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Dead reckoning over recorded rows: cutting, merging, the compass, landmarks at both ends.
-#include "trussmap/odometry/dead_reckoning.hpp"
+#include "trussmap/dead_reckoning.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/odometry/merge.hpp"
+#include "geometry/index.hpp"
+#include "odometry/merge.hpp"
 
 #include <cmath>
 #include <random>

@@ -2,20 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // Maps from recordings of a robot with known faults, built with and without the model of them.
-#include "trussmap/odometry/effect_correction.hpp"
+#include "odometry/effect_correction.hpp"
 
-#include "trussmap/correction/recording_map.hpp"
-#include "trussmap/graph/survey_comparison.hpp"
-#include "trussmap/io/recording_csv.hpp"
-#include "trussmap/simulation/random_stream.hpp"
-#include "trussmap/simulation/tours.hpp"
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "build_map/recording_map.hpp"
+#include "shared_data.hpp"
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/random_stream.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/survey_comparison.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

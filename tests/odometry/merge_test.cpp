@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Rows cut to a span of time, and rows merged into arcs.
-#include "trussmap/odometry/merge.hpp"
+#include "odometry/merge.hpp"
 
-#include "trussmap/core/index.hpp"
+#include "geometry/index.hpp"
 
 #include <cmath>
 #include <random>
@@ -23,10 +23,10 @@ struct Stretch {
 };
 
 /// Rows of uneven length in time, the first two 0.1 s each.
-Drive drive_of(const std::vector<Stretch>& stretches) {
+Drive drive_of(const std::vector<Stretch>& training_segments) {
   Drive drive;
   double t = 0.0;
-  for (const Stretch& stretch : stretches) {
+  for (const Stretch& stretch : training_segments) {
     for (int k = 0; k < stretch.rows; ++k) {
       t += drive.rows() < 2 ? 0.1 : 0.05 + 0.01 * static_cast<double>(drive.rows() % 7);
       drive.t.push_back(t);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Every source names its licence, and none names a place on somebody's machine.
+#include "policy/source_files.hpp"
+
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -11,8 +13,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "policy/source_files.hpp"
 
 namespace trussmap {
 namespace {
@@ -31,7 +31,7 @@ bool names_licence(const std::string& text) {
 
 /// The first line (counted from 1) with an absolute path into a folder that only some machine has.
 std::optional<int> line_with_machine_path(const std::string& text) {
-  // In pieces, so that this file passes its own test.
+  // In segments, so that this file passes its own test.
   static const std::regex kMachinePath(
       "(^|[^A-Za-z0-9_.})*/-])/("
       "work|home|tmp|root)/");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Stops and legs as the file format defines them.
-#include "trussmap/recording/legs.hpp"
+#include "recording/legs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/diagnosis_page.hpp"
+#include "report/diagnosis_page.hpp"
+
+#include "report/large_pages.hpp"
 
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "report/large_pages.hpp"
 
 namespace trussmap {
 namespace {

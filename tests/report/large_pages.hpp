@@ -4,10 +4,10 @@
 // Pages of recordings of any size, made up: for their size and speed.
 #pragma once
 
-#include "trussmap/report/comparison_page.hpp"
-#include "trussmap/report/diagnosis_page.hpp"
-#include "trussmap/report/discovery_page.hpp"
-#include "trussmap/report/map_page.hpp"
+#include "report/comparison_page.hpp"
+#include "report/diagnosis_page.hpp"
+#include "report/discovery_page.hpp"
+#include "report/map_page.hpp"
 
 #include <cmath>
 #include <string>

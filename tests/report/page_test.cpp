@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/report/page.hpp"
+#include "report/page.hpp"
+
+#include "report/large_pages.hpp"
+#include "report/some_charts.hpp"
 
 #include <regex>
 #include <stdexcept>
@@ -9,9 +12,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "report/large_pages.hpp"
-#include "report/some_charts.hpp"
 
 namespace trussmap {
 namespace {

@@ -4,7 +4,7 @@
 // Charts with every kind of layer, and a name that means harm.
 #pragma once
 
-#include "trussmap/report/chart.hpp"
+#include "plot/chart.hpp"
 
 #include <cmath>
 #include <string>

@@ -3,11 +3,11 @@
 //
 // Effects of the catalogue in simulated recordings, undone by the definitions of the channels: a
 // slow integration of a few lines, which shares nothing with the simulator or the adjustment.
-#include "trussmap/core/index.hpp"
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/effects/shape.hpp"
-#include "trussmap/simulation/tours.hpp"
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "effects/shape.hpp"
+#include "geometry/index.hpp"
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -310,7 +310,7 @@ TEST(EffectPhysics, SlipAndLeverLeaveTheRobotsWayOfDriving) {
   const World a = simulate(straight, Rates::true_motion);
   const World b = simulate(creeping, Rates::true_motion);
   ASSERT_EQ(a.drive.motion.rows.size(), b.drive.motion.rows.size());
-  EXPECT_EQ(a.drive.motion.pieces, b.drive.motion.pieces);
+  EXPECT_EQ(a.drive.motion.segments, b.drive.motion.segments);
   for (std::size_t k = 0; k < a.drive.motion.stops.size(); ++k) {
     EXPECT_LT(
         (a.drive.motion.stops[k].pose.position() - b.drive.motion.stops[k].pose.position()).norm(),

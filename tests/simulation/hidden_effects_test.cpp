@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/hidden_effects.hpp"
+#include "simulation/hidden_effects.hpp"
 
-#include "trussmap/effects/catalogue.hpp"
-#include "trussmap/simulation/tours.hpp"
+#include "simulation/tours.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +92,7 @@ TEST(HiddenEffects, AreOfASizeThatShowsAndThatARobotMayHave) {
       const double times = largest / (entry->detectable * std::max(1.0, std::sqrt(60.0 / legs)));
       EXPECT_GT(times, 2.99) << effect.name;
       EXPECT_LT(times, 6.01) << effect.name;
-      EXPECT_LT(largest, 3.0 * entry->plausible()) << effect.name;
+      EXPECT_LT(largest, 3.0 * entry->prior_sd()) << effect.name;
     }
   }
 }

@@ -3,9 +3,10 @@
 //
 // The errors are those that were asked for, and the reference curves' single measurements and
 // averages come out of Euler walks (tests/reference/elastic_curves.json).
-#include "trussmap/simulation/route_robot.hpp"
+#include "simulation/route_robot.hpp"
 
-#include "trussmap/simulation/tours.hpp"
+#include "shared_data.hpp"
+#include "simulation/tours.hpp"
 
 #include <cmath>
 #include <map>
@@ -14,8 +15,6 @@
 #include <utility>
 
 #include <gtest/gtest.h>
-
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/true_motion.hpp"
+#include "simulation/true_motion.hpp"
 
-#include "trussmap/simulation/tours.hpp"
+#include "simulation/tours.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/simulation/wheeled_robot.hpp"
+#include "simulation/wheeled_robot.hpp"
 
-#include "trussmap/simulation/tours.hpp"
+#include "simulation/tours.hpp"
 
 #include <algorithm>
 #include <cmath>

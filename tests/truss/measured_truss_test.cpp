@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Merged measurements against dense least squares over every single one of them.
-#include "trussmap/truss/measured_truss.hpp"
+#include "truss/measured_truss.hpp"
 
-#include "trussmap/core/error.hpp"
+#include "trussmap/error.hpp"
 
 #include <cmath>
 #include <random>

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: MIT
 //
 // Bars and small trusses against dense solves made elsewhere (tests/reference).
-#include "trussmap/core/index.hpp"
-#include "trussmap/truss/stiffness_law.hpp"
-#include "trussmap/truss/truss.hpp"
+#include "geometry/index.hpp"
+#include "json_matrix.hpp"
+#include "shared_data.hpp"
+#include "truss/truss.hpp"
+#include "trussmap/stiffness_law.hpp"
 
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include "json_matrix.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // The stiffness method's laws, on random trusses (seeds stated).
-#include "trussmap/truss/truss.hpp"
+#include "truss/truss.hpp"
 
-#include "trussmap/core/index.hpp"
-#include "trussmap/truss/stiffness_law.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/stiffness_law.hpp"
 
 #include <random>
 

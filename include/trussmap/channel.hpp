@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Channels: where an effect acts. With g = sum of coefficient x shape, a row's motion becomes
+//
+//   travel            ds (1 + g)                      left, right, wheels   that wheel's (1 + g)
+//   difference        left (1 - g/2), right (1 + g/2) turn                  dtheta (1 + g)
+//   drift             dtheta + g dt                   advance, rotate       ds + g; dtheta + g
+//   creep             slips to its left by g ds       lever, lever_left     sensor's point on the
+//   robot compass           reading = heading + g           range, bearing        reading + g
+//   range_scale       range (1 + g)                   delay                 stamped g late
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+enum class Channel {
+  travel,
+  left,
+  right,
+  wheels,
+  difference,
+  turn,
+  drift,
+  advance,
+  rotate,
+  creep,
+  lever,
+  lever_left,
+  compass,
+  range,
+  range_scale,
+  bearing,
+  delay
+};
+
+struct ChannelFacts {
+  Channel channel;
+  std::string_view name;
+  std::string_view unit;       ///< of g; "" = none
+  double prior_sd;             ///< sd of a weak prior on the largest |g| of a recording, same unit
+  std::string_view does_what;  ///< in words
+};
+
+/// All of them, in the order above.
+[[nodiscard]] const std::vector<ChannelFacts>& channels();
+[[nodiscard]] const ChannelFacts& facts_of(Channel channel);
+[[nodiscard]] std::optional<Channel> parse_channel(std::string_view name);
+
+/// Their names, separated by commas.
+[[nodiscard]] std::string channel_names();
+
+}  // namespace trussmap

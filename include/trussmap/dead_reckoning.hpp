@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Dead reckoning between two times of a recording, and routes from landmark to landmark.
+//
+//   A o . . . . rho_A . . . robot ~~~~~ drive ~~~~> robot . . rho_B . . o B
+//     position 0                                                        displacement A -> B
+//
+// Without a compass: rows composed exactly, covariance in closed form per merged arc. With one:
+// the heading is filtered row by row (extended Kalman filter over x, y and heading: wheels
+// predict, each reading corrects, and what is learnt of the heading corrects the displacement
+// driven since the start, too). Wheel noise as Chong & Kleeman; the model's further noise laws
+// (heading per second or per radian, travel per second) are added to it.
+#pragma once
+
+#include "trussmap/arc.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+#include <limits>
+
+namespace trussmap {
+
+struct PoseEstimate {
+  Pose pose;                             ///< map axes
+  Matrix3 covariance = Matrix3::Zero();  ///< of (x, y, heading), map axes
+};
+
+struct HeadingEstimate {
+  double heading = 0.0;   ///< rad, map frame
+  double variance = 0.0;  ///< rad^2
+};
+
+/// A landmark as seen from the robot.
+struct LandmarkOffset {
+  Vector2 offset_robot = Vector2::Zero();      ///< m, robot frame: x ahead, y to the left
+  Matrix2 covariance_robot = Matrix2::Zero();  ///< m^2
+};
+
+/// Covariance of one merged arc under all the noise the model knows, in the arc's start frame.
+[[nodiscard]] Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
+                                     const Noise& noise);
+
+/// Standing on it: no offset, sd `sighting` per coordinate. By range and bearing: the offset, with
+/// `range` and `range_relative` along, `bearing` across.
+[[nodiscard]] LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise);
+
+/// A first heading, and the time of the compass reading that it rests on (without: -infinity).
+struct InitialHeading {
+  HeadingEstimate heading;
+  double reading_time = -std::numeric_limits<double>::infinity();  ///< s
+};
+
+/// Heading at time `t` in map axes: the first compass reading from there on, less the turn up to
+/// it. Without a compass: 0, exactly, which makes this heading the map's +x direction.
+[[nodiscard]] InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
+                                             const Noise& noise);
+
+/// The robot sees a landmark that is the origin: where the robot then is.
+[[nodiscard]] PoseEstimate pose_from_landmark(const HeadingEstimate& heading,
+                                              const LandmarkOffset& landmark);
+
+/// The robot drives from time `from` to time `to`. Compass readings up to `readings_used_until`
+/// are passed over: `start` knows them already.
+[[nodiscard]] PoseEstimate dead_reckon(
+    const PoseEstimate& start, const Drive& drive, double from, double to, const Robot& robot,
+    const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity());
+
+/// Position of a landmark that the robot at `pose` sees, with its covariance, both map axes.
+struct PositionEstimate {
+  Vector2 position = Vector2::Zero();
+  Matrix2 covariance = Matrix2::Zero();
+};
+[[nodiscard]] PositionEstimate landmark_from_pose(const PoseEstimate& pose,
+                                                  const LandmarkOffset& landmark);
+
+}  // namespace trussmap

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The relational graph of landmarks and routes: the map as knowledge, before any mechanics.
+//
+// Landmarks are numbered 0, 1, ... in the order they are added and have unique names; routes are
+// numbered likewise, join two different landmarks, and there is at most one between a pair. The
+// graph itself is a Boost.Graph adjacency list, open for its algorithms through boost_graph().
+#pragma once
+
+#include "trussmap/planar.hpp"
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <boost/graph/adjacency_list.hpp>
+
+namespace trussmap {
+
+// A route between two landmarks and what its traversals say on average.
+//
+//   t        number of traversals
+//   s        stretch, running mean of the measured lengths                              m
+//   theta    orientation of the route's own direction, source -> target: running mean of the
+//            measured directions, each unwrapped next to the present mean; not folded   rad
+//   d        running mean of the measured displacement vectors, source -> target        m
+//   C        running mean of the traversals' covariances, map axes                      m^2
+//
+// Golfarelli, Maio & Rizzi (1998), section 3; the paper folds orientations to [0, pi), which here
+// is done for printing and files only (an undirected route has no direction to average).
+
+/// One drive along a route: what odometry measured, in map axes.
+struct Traversal {
+  Vector2 displacement = Vector2::Zero();  ///< from where it began to where it ended, m
+  Matrix2 covariance = Matrix2::Zero();    ///< of the displacement, m^2
+};
+
+/// The same drive the other way round.
+[[nodiscard]] Traversal reversed(const Traversal& traversal);
+
+struct Route {
+  int source = -1;  ///< landmark
+  int target = -1;  ///< landmark
+  int traversals = 0;
+  double stretch = 0.0;                    ///< m
+  double orientation = 0.0;                ///< rad, source -> target, not folded
+  Vector2 displacement = Vector2::Zero();  ///< m, source -> target
+  Matrix2 covariance = Matrix2::Zero();    ///< m^2, of one traversal
+
+  /// s (cos theta, sin theta): what the paper's refinement steers to.
+  [[nodiscard]] Vector2 mean_vector() const;
+};
+
+/// Takes a traversal from source to target into the averages.
+void average_in(Route& route, const Traversal& traversal);
+
+/// Orientation folded to [0, pi), as the paper prints it.
+[[nodiscard]] double folded_orientation(double orientation);
+
+struct Landmark {
+  std::string name;
+  Vector2 position = Vector2::Zero();  ///< m
+  std::optional<Matrix2> covariance;   ///< of the position, m^2, where known
+};
+
+class LandmarkGraph {
+ public:
+  struct RouteNumber {
+    int route = -1;
+  };
+  using BoostGraph =
+      boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, Landmark, RouteNumber>;
+
+  /// Throws std::invalid_argument if the name is empty or taken.
+  int add_landmark(const std::string& name, const Vector2& position);
+
+  /// A route without traversals yet. Throws std::invalid_argument if the two are the same
+  /// landmark, unknown, or joined already.
+  int add_route(int source, int target);
+
+  /// Takes the drive from `from` to `to` into the averages of their route, which is added if
+  /// there is none (its direction is then from -> to). Returns the route.
+  int add_traversal(int from, int to, const Traversal& traversal);
+
+  /// Replaces a route's averages. Throws std::invalid_argument if its ends differ.
+  void set_route(int number, const Route& route);
+
+  void set_position(int landmark, const Vector2& position);
+  void set_covariance(int landmark, const Matrix2& covariance);
+
+  [[nodiscard]] int landmarks() const;
+  [[nodiscard]] int routes() const { return static_cast<int>(routes_.size()); }
+  [[nodiscard]] const Landmark& landmark(int number) const;
+  [[nodiscard]] const Route& route(int number) const;
+  [[nodiscard]] Route& route(int number);
+
+  [[nodiscard]] std::optional<int> find(const std::string& name) const;
+  [[nodiscard]] std::optional<int> route_between(int a, int b) const;
+  [[nodiscard]] std::vector<int> routes_at(int landmark) const;
+
+  [[nodiscard]] const BoostGraph& boost_graph() const { return graph_; }
+
+ private:
+  BoostGraph graph_;
+  std::vector<Route> routes_;
+  std::unordered_map<std::string, int> numbers_;
+};
+
+/// The landmark at the other end of the route.
+[[nodiscard]] int other_end(const Route& route, int landmark);
+
+}  // namespace trussmap

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The map builder: what exploration code calls at every landmark.
+//
+//   MapBuilder builder;                         // the elastic truss with limited gain
+//   builder.start("dock");
+//   Arrival a = builder.arrive("door", {displacement, covariance});   // by this leg
+//   a.kind, a.landmarks_moved, a.largest_move   // what was corrected, by how much
+//
+// Methods (their names stand in every output):
+//   elastic          the paper's two phases, the gain of a refinement limited to one half
+//   elastic_printed  the paper's two phases as printed: diverges on unequal routes
+//   gauss_markov     exact increments: the least-squares map after every traversal
+//
+// A refinement acts on the eta landmarks nearest to the route (a floating piece; the map as a
+// whole is counted as shifted so that the first landmark stays), on all of them with the first one
+// held, or on an eta estimated for each correction. Cost per arrival with a fixed eta: bounded by
+// eta, whatever the size of the map, but for the logarithm in the spatial index.
+// gauss_markov acts on the whole map always.
+//
+// A call that throws leaves the builder as it was.
+#pragma once
+
+#include "trussmap/landmark_map.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace trussmap {
+
+enum class Method { elastic, elastic_printed, gauss_markov };
+
+/// How many landmarks a refinement may move.
+struct Eta {
+  enum class Kind { all, fixed, estimated };
+  Kind kind = Kind::fixed;
+  int count = 50;  ///< for Kind::fixed; 2 at least
+  /// When the structure is the whole map: hold its first landmark (as the reference numbers have
+  /// it), or let it float, which is a little better and much better where the first landmark is
+  /// tied to the map by few or poor routes.
+  bool hold_first = true;
+};
+
+struct MapBuilderOptions {
+  Method method = Method::elastic;
+  Eta eta;
+  double gain_limit = 0.5;  ///< of `elastic`: part of the desired change reached at most, (0, 1]
+  bool refine = true;       ///< false: first sight only (a known route only updates its averages)
+  bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
+                            ///< traversal's own (exact_increments.hpp)
+};
+
+/// What an arrival did to the map.
+struct Arrival {
+  enum class Kind {
+    new_landmark,  ///< placed by its measurement
+    first_sight,   ///< a loop closed: the chain of fresh routes was corrected
+    new_route,     ///< between two settled landmarks: nothing moved, its averages began
+    refinement,    ///< a known route was driven again
+  };
+  Kind kind = Kind::new_landmark;
+  int landmark = -1;                 ///< where the robot is now
+  int route = -1;                    ///< the route it came by
+  int landmarks_moved = 0;           ///< displaced by more than 1e-12 m
+  double largest_move = 0.0;         ///< m
+  Vector2 misfit = Vector2::Zero();  ///< measured displacement - the map's before, m
+  int eta = 0;                       ///< landmarks in the structure that was solved
+};
+
+class MapBuilder {
+ public:
+  /// Throws std::invalid_argument on options out of range.
+  explicit MapBuilder(const MapBuilderOptions& options = {});
+  ~MapBuilder();
+  MapBuilder(MapBuilder&&) noexcept;
+  MapBuilder& operator=(MapBuilder&&) noexcept;
+
+  /// The robot stands on a landmark: the map's first (which gets `position`, and keeps it for
+  /// ever), or one that the map has (a new session). Throws SolveError for any other: nothing
+  /// would tie it to the map.
+  void start(const std::string& landmark, const Vector2& position = Vector2::Zero());
+
+  /// The robot drove from the landmark it stood on to this one; `leg` in map axes. Throws
+  /// std::invalid_argument if it stood nowhere, on this landmark already, or if the leg is not
+  /// finite with a positive definite covariance.
+  Arrival arrive(const std::string& landmark, const Traversal& leg);
+
+  /// A side measurement from the landmark the robot stands on, as by sighting another one from
+  /// there: like a drive there and back with one traversal; the robot stays.
+  Arrival observe(const std::string& landmark, const Traversal& from_here);
+
+  /// `elastic` only: refines every route once more towards its averages, without a new measurement
+  /// and with this gain limit. Routes driven only once, which moved nothing, have their say.
+  /// Returns the largest move, m. Rounds with falling limits (1/2, 1/4, 1/6, ...) come to rest
+  /// close to the least-squares map. Cost: one refinement per route.
+  double settle(double gain_limit);
+
+  [[nodiscard]] const MapBuilderOptions& options() const;
+
+  /// Changes what refinements do from now on. The method and the kind of eta must stay as they
+  /// are, else std::invalid_argument.
+  void set_options(const MapBuilderOptions& options);
+
+  /// Landmark the robot stands on, -1 before start().
+  [[nodiscard]] int here() const;
+
+  [[nodiscard]] int landmarks() const;
+  [[nodiscard]] std::optional<int> find(const std::string& landmark) const;
+
+  /// Present position, m.
+  [[nodiscard]] Vector2 position(int landmark) const;
+
+  /// Averages of the route between two landmarks, if it was ever driven.
+  [[nodiscard]] std::optional<Route> route_between(int a, int b) const;
+
+  /// The map: present positions, and the routes with their averages.
+  [[nodiscard]] LandmarkGraph map() const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// "elastic", "elastic_printed", "gauss_markov".
+[[nodiscard]] std::string name_of(Method method);
+
+}  // namespace trussmap

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Pose graphs as text: g2o's format, of which the plane's part, TORO's and iSAM's.
+//
+//   VERTEX_SE2   id x y theta                                pose                     m, rad
+//   VERTEX_XY    id x y                                      point                    m
+//   FIX          id id ...                                   these stay where they are
+//   EDGE_SE2     i j  dx dy dtheta  I11 I12 I13 I22 I23 I33  pose to pose
+//   EDGE_SE2_XY  i j  dx dy  I11 I12 I22                     pose to point, robot's frame
+//   EDGE_POINTXY i j  dx dy  I11 I12 I22                     point to point, map frame
+//   VERTEX2      id x y theta                                TORO: pose
+//   EDGE2        i j  dx dy dtheta  I11 I12 I22 I33 I13 I23  TORO: pose to pose, j seen from i
+//
+//   ODOMETRY     i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  iSAM: pose to pose, information R'R
+//   EDGE2        i j  dx dy dtheta  R11 R12 R13 R22 R23 R33  the same, in a file with LANDMARKs
+//   LANDMARK     i l  dx dy  R11 R12 R22                     iSAM: pose to point, robot's frame;
+//                                                            l counts landmarks apart from poses,
+//                                                            and becomes vertex (last pose) + 1 + l
+//
+// One element a line, in any order; blank lines and what follows a # are skipped. A file may have
+// no vertex lines at all: its vertices are then those that its edges name, without estimates. If
+// there are vertex lines, every vertex needs one. Files whose name ends in .xz are decompressed.
+#pragma once
+
+#include "trussmap/landmark_map.hpp"
+#include "trussmap/pose_graph.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace trussmap {
+
+/// Throws InputError with file and line: a tag that is not in the table, too few or too many
+/// values, a value that is no finite number, a vertex defined twice or not at all, an edge between
+/// the wrong kinds of vertices, information that is not positive semidefinite.
+[[nodiscard]] PoseGraph read_g2o(const std::string& path);
+
+/// The same from text; `name` stands for the file in messages.
+[[nodiscard]] PoseGraph parse_g2o(std::string_view text, const std::string& name);
+
+/// Vertices that have an estimate, fixed ones, and all edges; numbers read back without loss.
+[[nodiscard]] std::string format_g2o(const PoseGraph& graph);
+
+/// Written whole or not at all. Throws InputError where the path cannot be written.
+void write_g2o(const PoseGraph& graph, const std::string& path);
+
+// ----------------------------------------
+// A map for other people's programs: GeoJSON and Graphviz.
+
+/// A FeatureCollection: a Point per landmark, a LineString per route, with their numbers as
+/// properties. Coordinates are metres in the map frame, not degrees.
+[[nodiscard]] std::string format_geojson(const LandmarkGraph& map);
+
+/// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
+[[nodiscard]] std::string format_dot(const LandmarkGraph& map);
+
+// ----------------------------------------
+// A map as GraphML, out and in without loss.
+//
+//   node id = landmark name; data x, y [m] and, where known, c_xx c_xy c_yy [m^2]
+//   edge data traversals, stretch [m], orientation [rad] (source to target), dx, dy [m],
+//   c_xx c_xy c_yy [m^2] (mean covariance of a traversal, map frame)
+
+/// Throws InputError, with the line where the XML reader knows it: no XML, no GraphML graph, a
+/// directed graph, a landmark twice, a value missing or no number, an edge to an unknown landmark,
+/// two edges between the same landmarks, a count below 1.
+[[nodiscard]] LandmarkGraph read_map_graphml(const std::filesystem::path& file);
+
+/// `comment`, if any, is written as an XML comment (which method made the map, say).
+[[nodiscard]] std::string format_map_graphml(const LandmarkGraph& map,
+                                             const std::string& comment = "");
+
+}  // namespace trussmap

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A recording as a folder of CSV streams: drive.csv, sightings.csv, survey.csv, truth.csv (their
+// columns: recording.hpp; angles in rad, lengths in m, times in s).
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+/// Reads a folder, strictly: InputError with file and line for whatever is wrong, nothing is
+/// guessed. sightings.csv may be absent only where there is a truth.csv.
+[[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
+
+/// Writes the streams that the recording has (a drive always; sightings unless there is truth and
+/// no sighting) and removes the others that an earlier recording left in the folder. `comment`, if
+/// any, becomes # lines at the top of drive.csv; `beside` are further files, by name and content,
+/// written with them. The folder is made where it is missing. Numbers read back exactly.
+void write_recording(const std::filesystem::path& folder, const Recording& recording,
+                     const std::string& comment = "",
+                     const std::vector<std::pair<std::string, std::string>>& beside = {});
+
+// ----------------------------------------
+// The UTIAS multi-robot data sets (MRCLAM: Leung, Halpern, Barfoot & Liu, 2011) as recordings.
+//
+//   DIR/RobotN_Odometry.dat      time, forward velocity [m/s], angular velocity [rad/s]
+//   DIR/RobotN_Measurement.dat   time, barcode, range [m], bearing [rad]
+//   DIR/Barcodes.dat             subject, barcode: subjects 1-5 are robots, the rest landmarks
+//   DIR/Landmark_Groundtruth.dat subject, x, y, sd of x, sd of y       (optional)
+//   DIR/RobotN_Groundtruth.dat   time, x, y, heading                   (optional)
+//
+// each plain or with .xz. A velocity holds from its row's time until the next row's. Times that
+// repeat or run backwards are merged into the row before; sightings of robots, of unknown barcodes
+// and outside of the drive are dropped; sightings within 5 ms of one another are one camera frame
+// and get its first time. All of that is counted. Times are counted from the epoch, a whole second.
+
+struct MrclamRecording {
+  Recording recording;
+  Model model;  ///< the maker's wheelbase and noise that suits these robots
+
+  double epoch = 0.0;           ///< s, Unix time of t = 0
+  int merged_times = 0;         ///< odometry rows whose time repeats or runs backwards
+  int robots_seen = 0;          ///< sightings of other robots, dropped
+  int unknown_barcodes = 0;     ///< sightings of barcodes that belong to nothing, dropped
+  int outside_drive = 0;        ///< sightings before or after the odometry, dropped
+  int same_frame = 0;           ///< sightings whose time was set to their frame's
+  int unordered_sightings = 0;  ///< sightings earlier than the one before, sorted in
+};
+
+/// True if `prefix` (DIR/RobotN) names such files.
+[[nodiscard]] bool is_mrclam(const std::filesystem::path& prefix);
+
+/// Throws InputError with file and line.
+[[nodiscard]] MrclamRecording read_mrclam(const std::filesystem::path& prefix);
+
+// ----------------------------------------
+// OptiOdom runs (Sousa, Petry, Costa & Moreira, 2022) of the differential robot as recordings.
+//
+//   SET_run-NN.csv   time [s], x, y [m], heading [rad], ticks of the right wheel, of the left wheel
+//                    in the cycle that ends then; no header; plain or .xz
+//   SET_metadata.csv beside it: type (diff), ngear, encRes (counts per turn of the motor), ...
+//
+// Wheels of 0.084 m and a wheelbase of 0.20 m, the nominal ones. (The metadata's own Li and Di are
+// what the controller believed during the set.) There are no landmarks: truth.csv takes their
+// place.
+
+struct OptiOdomRecording {
+  Recording recording;
+  Model model;  ///< nominal wheelbase, and noise that suits this robot and its motion capture
+  double metre_per_tick = 0.0;
+};
+
+/// True if the file's name is that of a run: ..._run-NN.csv or ..._run-NN.csv.xz.
+[[nodiscard]] bool is_optiodom(const std::filesystem::path& file);
+
+/// Throws InputError with file and line; a run of another robot than the differential one is named.
+[[nodiscard]] OptiOdomRecording read_optiodom(const std::filesystem::path& file);
+
+}  // namespace trussmap

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A path that a robot is told to drive for a calibration, as segments of constant curvature.
+// Heading +x at the start, y to the left, angles counter-clockwise.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct PathSegment {
+  double distance = 0.0;  ///< m, signed: negative is backwards
+  double turn = 0.0;      ///< rad, over the whole segment
+};
+
+using TestPath = std::vector<PathSegment>;
+
+enum class Direction { cw, ccw };
+
+/// A square of this side (m), driven once round: four straight legs, each with a quarter turn on
+/// the spot after it, to the left (ccw) or to the right (cw).
+[[nodiscard]] TestPath square_path(double side, Direction direction);
+
+/// Driven length of the axle's centre, m.
+[[nodiscard]] double path_length(const TestPath& path);
+
+// ----------------------------------------
+// Test paths as text: segments in the order driven, separated by commas.
+//
+//   10        straight, 10 m ahead           -10       straight, 10 m backwards
+//   a90       turn on the spot by 90 degrees, counter-clockwise (a-90: clockwise)
+//   3@45      an arc of length 3 m that turns by 45 degrees in all (-3@45: driven backwards)
+//
+// "10,-10" is Chong & Kleeman's (1997) experiment: out and back.
+
+/// Throws std::invalid_argument: an empty segment, text, a number that is not finite, no motion at
+/// all. The message names the segment and says what was expected.
+[[nodiscard]] TestPath parse_path(const std::string& text);
+
+}  // namespace trussmap

@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The two systematic errors of a differential drive, and what undoes them.
+//
+//   E_d   D_R / D_L, ratio of the actual wheel diameters, right over left          -
+//   E_b   actual over nominal wheelbase                                            -
+//   c_L   factor for the left wheel's travel:  2 / (E_d + 1)                       -
+//   c_R   factor for the right wheel's travel: 2 / (1/E_d + 1) = E_d c_L           -
+//
+// Borenstein & Feng (1996), eq. 2.3, 2.4, 4.29-4.33. The factors' mean is 1: the mean wheel size,
+// which a tape along one straight drive gives, is not part of it.
+// Factors of several rounds multiply, and are then brought back to a mean of 1.
+#pragma once
+
+#include "trussmap/estimate.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/test_path.hpp"
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace trussmap {
+
+struct GeometryErrors {
+  double diameter_ratio = 1.0;   ///< E_d
+  double wheelbase_ratio = 1.0;  ///< E_b
+
+  [[nodiscard]] double left_factor() const { return 2.0 / (diameter_ratio + 1.0); }
+  [[nodiscard]] double right_factor() const { return diameter_ratio * left_factor(); }
+};
+
+/// What is found by a robot that already corrects for `in_force`, on top of that.
+[[nodiscard]] GeometryErrors combined(const GeometryErrors& in_force, const GeometryErrors& found);
+
+/// The effects `wheel diameter ratio` (channel difference, 2 (E_d - 1)/(E_d + 1)) and `wheelbase`
+/// (channel turn, 1/E_b - 1) of the model; 1 and 1 where it has neither. Throws
+/// std::invalid_argument where one of them has another channel or shape than these.
+[[nodiscard]] GeometryErrors geometry_errors(const Model& model);
+
+/// Puts them into the model, in place of what it said of them.
+void set_geometry_errors(Model& model, const GeometryErrors& errors);
+
+/// How a path's end differs from what the robot calculates (absolute - calculated), exactly.
+struct PathError {
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< m, m, rad
+  /// d error / d (E_d, E_b).
+  Eigen::Matrix<double, 3, 2> jacobian = Eigen::Matrix<double, 3, 2>::Zero();
+};
+
+/// A robot drives the path exactly by its own odometry, which takes the wheels as equal and the
+/// wheelbase as `wheelbase` [m]; its true geometry is off by `errors`.
+[[nodiscard]] PathError path_error(const TestPath& path, double wheelbase,
+                                   const GeometryErrors& errors);
+
+// ----------------------------------------
+// UMBmark: a square driven several times in both senses, a tape measure, and two factors.
+//
+//        ccw            start at (0, 0), heading +x; error = absolute - calculated, in these axes
+//     +--<--+           L      side, m                 b   wheelbase the robot calculates with, m
+//     v     ^           alpha  what a quarter turn lacks, rad; > 0: wheels farther apart than b
+//     o-->--+           beta   turn over one leg to the left, rad; > 0: right wheel larger
+//
+// Borenstein & Feng (1996), for small angles (their 4.10a, 4.20, 4.22, 4.24 repaired):
+//   cw centre (-2L(alpha + beta), -2L(alpha + beta)),  ccw centre (-2L(alpha - beta), 2L(alpha -
+//   beta)) alpha = mean of (x_cw + x_ccw), (y_cw - y_ccw), over -4L beta  = mean of (x_cw - x_ccw),
+//   (y_cw + y_ccw), over -4L E_d = (L + b sin(beta/2)) / (L - b sin(beta/2)),  E_b = (pi/2) / (pi/2
+//   - alpha)
+// Chong & Kleeman (1997) print pi/(pi - alpha) for E_b, which removes half of the error.
+//
+// The formulas drop second-order terms: at E_d = 1.005 and E_b = 1.01 some 2 % of the error is left
+// for a second round. solve_square() fits E_d and E_b to the exact kinematics, by least squares on
+// the four coordinates of the centres, and needs no second round on that account.
+// Standard errors follow from the scatter of the runs; no scatter law is assumed.
+
+/// End errors (absolute - calculated), m, in the frame of the start.
+struct SquareRuns {
+  std::vector<Eigen::Vector2d> cw;
+  std::vector<Eigen::Vector2d> ccw;
+};
+
+struct SquareSetup {
+  double side = 4.0;        ///< m
+  double wheelbase = 0.34;  ///< m, that the robot calculated with
+};
+
+/// What the runs say before any model of the robot.
+struct SquareClusters {
+  SampleMean cw;            ///< centre of gravity, m
+  SampleMean ccw;           ///< m
+  Estimate largest_offset;  ///< E_max,syst: distance of the farther centre from 0, m
+  double sem = 0.0;  ///< standard error of a centre's coordinate (mean square of the four), m
+  /// E_max,syst exceeds three standard errors: correcting it again can be seen to help.
+  bool second_round_worthwhile = false;
+};
+
+struct SquareSolution {
+  Estimate alpha;            ///< rad
+  Estimate beta;             ///< rad
+  Estimate diameter_ratio;   ///< E_d
+  Estimate wheelbase_ratio;  ///< E_b
+  Estimate left_factor;      ///< c_L
+  Estimate right_factor;     ///< c_R
+  Estimate wheelbase;        ///< corrected, m
+
+  [[nodiscard]] GeometryErrors errors() const {
+    return {diameter_ratio.value, wheelbase_ratio.value};
+  }
+};
+
+/// alpha and beta from x alone and from y alone: they agree where E_d and E_b are all there is.
+struct SquareAngles {
+  Estimate alpha_x, alpha_y;  ///< rad
+  Estimate beta_x, beta_y;    ///< rad
+};
+
+/// Throws std::invalid_argument on fewer than two runs in a direction.
+[[nodiscard]] SquareClusters square_clusters(const SquareRuns& runs);
+
+[[nodiscard]] SquareAngles square_angles(const SquareClusters& clusters, double side);
+
+/// The papers' formulas. Throws SolveError where they have no answer (a turn of 90 degrees or more
+/// missing, or a wheel ratio of 0).
+[[nodiscard]] SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup);
+
+/// E_d and E_b by Gauss-Newton on the exact kinematics. Throws SolveError where that does not
+/// converge: errors as large as the square.
+[[nodiscard]] SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& setup);
+
+// ----------------------------------------
+// Whether runs round a square can be what they are said to be, and what one direction alone hides.
+//
+// Four coordinates determine two unknowns, so two combinations of them are left to contradict.
+// Exchanged labels cw/ccw do so in a way of their own: alpha from x and alpha from y get opposite
+// signs, and so do the betas. An axis y that points to the right does the same.
+
+struct SquareConsistency {
+  double residual = 0.0;  ///< root mean square of what the exact solution leaves of the centres, m
+  double residual_exchanged = 0.0;  ///< the same with cw and ccw exchanged, m
+  /// Probability of a contradiction as large by the scatter of the runs alone; NaN without scatter.
+  double p_value = 0.0;
+};
+
+[[nodiscard]] SquareConsistency square_consistency(const SquareClusters& clusters,
+                                                   const SquareSetup& setup);
+
+/// Doubts, a sentence each, that a person can act on: exchanged labels, a contradiction, runs all
+/// equal, millimetres. `errors`: those in the clusters.
+[[nodiscard]] std::vector<std::string> square_doubts(const SquareClusters& clusters,
+                                                     const SquareSetup& setup);
+
+/// Runs that end far from the others of their direction (ten times as far as those scatter), a
+/// sentence each: a wrong label, a slip, a misread tape. Nothing where a direction has fewer
+/// than 4.
+[[nodiscard]] std::vector<std::string> square_outliers(const SquareRuns& runs);
+
+/// Borenstein & Feng (1996), Fig. 4: a robot with both errors, its wheelbase alone tuned until the
+/// square closes in one direction.
+struct OneWayTuning {
+  double wheelbase_ratio = 1.0;  ///< tuned over nominal wheelbase
+  double error_before = 0.0;     ///< m, in the direction driven
+  double error_same_way = 0.0;   ///< m, after tuning, in the direction driven
+  double error_other_way = 0.0;  ///< m, after tuning, in the other
+};
+
+[[nodiscard]] OneWayTuning tune_one_way(const GeometryErrors& errors, const SquareSetup& setup,
+                                        Direction driven);
+
+}  // namespace trussmap

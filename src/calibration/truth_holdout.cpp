@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/truth_holdout.hpp"
+
+#include "geometry/index.hpp"
+#include "odometry/effect_correction.hpp"
+#include "odometry/merge.hpp"
+#include "recording/legs.hpp"
+#include "trussmap/error.hpp"
+
+#include <cmath>
+#include <optional>
+
+namespace trussmap {
+namespace {
+
+constexpr int kBlock = 5;  // legs
+
+bool is_held_out(int leg, double share) {
+  const int block = leg / kBlock;
+  return std::floor((block + 1) * share) > std::floor(block * share);
+}
+
+/// The rows and truth of one stretch of time.
+Recording cut(const Recording& whole, double from, double to) {
+  constexpr double kSameTime = 1e-9;  // s
+  Recording part;
+  part.name = whole.name;
+  part.survey = whole.survey;
+  for (const Covariate& covariate : whole.drive.covariates) {
+    part.drive.covariates.push_back({covariate.name, {}});
+  }
+  for (std::size_t row = 0; row < whole.drive.rows(); ++row) {
+    const double t = whole.drive.t[row];
+    if (t <= from + kSameTime || t > to + kSameTime) continue;
+    part.drive.t.push_back(t);
+    part.drive.left.push_back(whole.drive.left[row]);
+    part.drive.right.push_back(whole.drive.right[row]);
+    if (whole.drive.has_compass()) part.drive.heading.push_back(whole.drive.heading[row]);
+    for (std::size_t k = 0; k < part.drive.covariates.size(); ++k) {
+      part.drive.covariates[k].values.push_back(whole.drive.covariates[k].values[row]);
+    }
+  }
+  for (const TruthRow& row : whole.truth) {
+    if (row.t >= from - kSameTime && row.t <= to + kSameTime) part.truth.push_back(row);
+  }
+  for (const Sighting& sighting : whole.sightings) {
+    if (sighting.t >= from && sighting.t <= to) part.sightings.push_back(sighting);
+  }
+  return part;
+}
+
+/// Dead reckoning from a pose.
+Pose reckoned(const Drive& drive, Pose pose, double from, double to, double wheelbase) {
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    pose = compose(pose, arc_displacement(travel_of(drive, row), wheelbase));
+  }
+  return pose;
+}
+
+Pose pose_of(const TruthRow& row) {
+  return {row.x, row.y, row.heading};
+}
+
+/// The heading at truth row `at` by all rows of the second before it.
+double settled_heading(const Recording& recording, std::size_t at, double wheelbase) {
+  constexpr double kSecond = 1.0;  // s
+  const TruthRow& last = recording.truth[at];
+  double sum = 0.0;
+  int rows = 0;
+  for (std::size_t k = at; recording.truth[k].t > last.t - kSecond; --k) {
+    const TruthRow& row = recording.truth[k];
+    if (row.t < recording.drive.start()) break;
+    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t, wheelbase);
+    sum += wrap_angle(there.heading - last.heading);
+    ++rows;
+    if (k == 0) break;
+  }
+  return last.heading + (rows > 0 ? sum / rows : 0.0);
+}
+
+}  // namespace
+
+double ArrivalErrors::rms() const {
+  double sum = 0.0;
+  for (const double one : distances) sum += one * one;
+  return distances.empty() ? 0.0 : std::sqrt(sum / legs());
+}
+
+std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, double share,
+                                 double leg) {
+  std::vector<TruthLeg> legs;
+  for (std::size_t session = 0; session < recordings.size(); ++session) {
+    const Recording& recording = recordings[session];
+    const std::vector<double> path = driven_path(recording.drive);
+    std::optional<std::size_t> from;
+    double start = 0.0;
+    for (std::size_t row = 0; row < recording.truth.size(); ++row) {
+      const double t = recording.truth[row].t;
+      if (t < recording.drive.start() || t > recording.drive.t.back()) continue;
+      const double at = path_at(recording.drive, path, t);
+      if (from && at - start < leg) continue;
+      if (from) {
+        const bool held_out = is_held_out(static_cast<int>(legs.size()), share);
+        legs.push_back({static_cast<int>(session), *from, row, held_out});
+      }
+      from = row;
+      start = at;
+    }
+  }
+  return legs;
+}
+
+TrainingSegments without_held_out(const std::vector<Recording>& recordings,
+                                  const std::vector<TruthLeg>& legs) {
+  TrainingSegments training_segments;
+  for (std::size_t k = 0; k < legs.size();) {
+    if (legs[k].held_out) {
+      ++k;
+      continue;
+    }
+    std::size_t last = k;
+    while (last + 1 < legs.size() && !legs[last + 1].held_out &&
+           legs[last + 1].session == legs[k].session) {
+      ++last;
+    }
+    const Recording& whole = recordings[idx(legs[k].session)];
+    Recording part = cut(whole, whole.truth[legs[k].from].t, whole.truth[legs[last].to].t);
+    if (part.drive.rows() >= 2) {
+      training_segments.recordings.push_back(std::move(part));
+      training_segments.sessions.push_back(legs[k].session);
+    }
+    k = last + 1;
+  }
+  return training_segments;
+}
+
+ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
+                             const std::vector<TruthLeg>& legs, const Model& model) {
+  const std::vector<Recording> corrected = without_effects(recordings, model);
+  ArrivalErrors result;
+  for (const TruthLeg& leg : legs) {
+    if (!leg.held_out) continue;
+    const Recording& recording = corrected[idx(leg.session)];
+    const TruthRow& from = recording.truth[leg.from];
+    const TruthRow& to = recording.truth[leg.to];
+    const double heading = settled_heading(recording, leg.from, model.robot.wheelbase);
+    const Pose end =
+        reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot.wheelbase);
+    result.distances.push_back((end.position() - Vector2(to.x, to.y)).norm());
+  }
+  return result;
+}
+
+std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
+  std::vector<DriveError> result;
+  const std::vector<Recording> corrected = without_effects(recordings, model);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Drive& drive = corrected[k].drive;
+    std::vector<TruthRow> truth = recordings[k].truth;
+    std::erase_if(truth, [&](const TruthRow& row) {
+      return row.t < drive.start() || row.t > drive.t.back();
+    });
+    if (truth.size() < 2) {
+      throw InputError(recordings[k].name, 0,
+                       "has no two truth rows within its drive, expected them to judge it by");
+    }
+    const TruthRow& from = truth.front();
+    const TruthRow& to = truth.back();
+    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot.wheelbase);
+    DriveError one;
+    one.end = (end.position() - Vector2(to.x, to.y)).norm();
+    one.heading = wrap_angle(end.heading - to.heading);
+    // Metres as recorded, so that they are the same for every model.
+    for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
+      const WheelTravel travel = travel_of(recordings[k].drive, row);
+      one.driven += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+    }
+    result.push_back(one);
+  }
+  return result;
+}
+
+}  // namespace trussmap

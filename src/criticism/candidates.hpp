@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a diagnosis tries: the whole catalogue, and every channel against every variable.
+//
+//   catalogue     as it stands; one per covariate, one per place and radius, one per threshold
+//   line          u                   sense       sign(u)
+//   magnitude     |u|                 square      u^2
+//   step          1 beyond c          threshold   max(0, u - c)
+//   curve         four bells over u; of the heading: two harmonics
+//   with heading  u sin, u cos of the heading
+//   bell, disc    a place
+//
+// Forms with something open inside (a place, a threshold) are tried at many values; the best member
+// of such a family stands for it, refined, and the number tried is counted.
+#pragma once
+
+#include "criticism/score_test.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+enum class Form {
+  catalogue,
+  line,
+  sense,
+  magnitude,
+  square,
+  step,
+  threshold,
+  curve,
+  with_heading,
+  place
+};
+
+struct Candidate {
+  Effect effect;  ///< resolved, without coefficients
+  Form form = Form::catalogue;
+  std::string variable;  ///< what it goes with: "speed", "payload_kg", "place", ""
+  /// Candidates of the same family (not empty) differ in `inner` alone.
+  std::string family;
+  std::vector<std::string> pattern;  ///< shapes, "{x}" and so on for the inner parameters
+  std::vector<std::string> inner_names;
+  std::vector<double> inner;       ///< values
+  std::vector<double> inner_step;  ///< between the members tried
+  std::vector<double> inner_least;
+  std::vector<double> inner_most;
+  /// Log of the belief in it before any data, against a catalogue effect's.
+  double log_prior = 0.0;
+};
+
+/// All of them for these recordings. What the recordings cannot have (a compass effect without a
+/// compass) is not among them.
+[[nodiscard]] std::vector<Candidate> candidates_for(const ModelFit& fit,
+                                                    const ShapeContext& context);
+
+/// The same candidate with other inner values, its name and shapes made anew.
+[[nodiscard]] Candidate with_inner(const Candidate& candidate, const std::vector<double>& inner);
+
+/// The candidate with inner values near its own that explain the most (itself, where it has none).
+[[nodiscard]] Candidate refined(const ScoreTest& tests, const Candidate& candidate);
+
+}  // namespace trussmap

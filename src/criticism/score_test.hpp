@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Is an effect missing? Asked of a fit that does not have it, without fitting anew.
+//
+//   r    whitened residuals of the fit          J   its whitened rows, poses and landmarks
+//   M    columns of the candidate               M_  = M less its projections on J and on the
+//                                                     columns of the effects that the model has
+//   g = M_' r,  S = M_' M_,  P = phi (plausible size)^-2 (a weak prior on each coefficient)
+//   score = g' (S + P)^-1 g: the chi^2 that adding the effect would take away;  chi^2(dof) if the
+//           effect is absent
+//   estimate = -(S + P)^-1 g,  sd^2 = diag (S + P)^-1
+//   smallest detectable = sqrt(24.4 / S_kk): 90 % power at p = 0.05/200
+//
+// phi = max(1, chi^2/dof): under a large misfit a smaller map has smaller residuals, and without
+// phi the pure scale would take credit for that (design of score tests: Rao 1948).
+//
+// J and M are taken at a state without noise of its own (noise_free.hpp): what cannot be seen at
+// all then has no projection at all.
+//
+// The virtual work of the locked-in forces on the effect's strain pattern, in the truss's terms.
+// One factorisation serves all candidates.
+#pragma once
+
+#include "estimation/recording_system.hpp"
+#include "fit/column_builder.hpp"
+#include "fit/model_fit.hpp"
+#include "fit/noise_free.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace trussmap {
+
+inline constexpr double kDetectableScore = 24.4;
+
+struct Score {
+  double score = 0.0;
+  int dof = 0;  ///< shapes that can be seen at all
+  double p_value = 1.0;
+  std::vector<double> coefficients;        ///< 0 where unseen
+  std::vector<double> sd;                  ///< infinite where unseen
+  std::vector<double> minimal_detectable;  ///< of each shape alone; infinite where unseen
+  std::vector<double> largest;             ///< |f| of each shape
+  std::vector<double> share;               ///< |M_|^2/|M|^2 of each shape
+  std::vector<double> information;         ///< |M_|^2 of each shape
+  Eigen::MatrixXd columns;                 ///< M, rows x shapes
+  Eigen::MatrixXd projected;               ///< M_, rows x shapes; zero columns where unseen
+  Eigen::MatrixXd landmarks;  ///< what one unit of each moves the landmarks by, two rows each, m
+};
+
+/// Every row by itself; or a second of driving at a time, a tenth of the work, enough to find the
+/// best of many places or thresholds; or quick, and exact for what shows something (p < 0.05) or
+/// goes with events and accelerations, which a second's middle says nothing about.
+enum class Resolution { exact, quick, screening };
+
+class ScoreTest {
+ public:
+  /// Keeps a reference to the fit. A copy shares all but what was taken out.
+  explicit ScoreTest(const ModelFit& fit);
+
+  /// Tests several candidates at once (resolved, their coefficients at 0). Throws
+  /// std::invalid_argument like effect_columns.
+  [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,
+                                        Resolution resolution = Resolution::exact) const;
+
+  /// The chi^2 that adding all of these together would take away, without priors.
+  [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
+
+  /// Whitened columns of an effect (resolved), M.
+  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
+    return builders_->exact.columns(effect);
+  }
+  /// M less its projections on J and on what is present.
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
+
+  /// Whether the effect would be seen but for what is present: the model has it, or its like.
+  [[nodiscard]] bool is_present(const Effect& effect) const;
+
+  /// Takes further whitened columns as present from now on: what they explain is no longer there
+  /// to be explained.
+  void condition_on(const Eigen::MatrixXd& columns);
+
+  [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
+  /// Of the fit, less what the columns taken out explain.
+  [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
+  /// Orthonormal columns that the model's effects, and what was taken out, span.
+  [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
+  /// At the fit itself, noise and all.
+  [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  [[nodiscard]] const ShapeContext& context() const { return clean_->context; }
+
+ private:
+  [[nodiscard]] std::vector<Score> test_with(ColumnBuilder& builder,
+                                             const std::vector<Effect>& candidates) const;
+  [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
+                               Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
+
+  /// Rows of the landmarks, zero where held, among those of all nodes.
+  [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
+
+  const ModelFit& fit_;
+  std::shared_ptr<const NoiseFree> clean_;
+  std::shared_ptr<RecordingSystem> system_;
+  std::shared_ptr<RecordingSystem> clean_system_;
+  struct Builders {
+    ColumnBuilder exact;
+    std::optional<ColumnBuilder> quick;  ///< made when first asked for
+  };
+  std::shared_ptr<Builders> builders_;
+  Eigen::MatrixXd present_;  ///< orthonormal: what the model's effects span, projected
+  Eigen::VectorXd residuals_;
+  double dispersion_ = 1.0;
+};
+
+}  // namespace trussmap

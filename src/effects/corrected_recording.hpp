@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A recording as it would be without the model's effects: what the wheels would have shown if the
+// nominal model held.
+//
+// Wheel channels change the rows' travels, `compass` the readings, `range`, `range_scale` and
+// `bearing` the sightings. Other channels (creep, lever, lever_left, delay) have no place in a
+// recording; the adjustment knows them.
+#pragma once
+
+#include "recording/row_variables.hpp"
+
+namespace trussmap {
+
+/// `variables` are this recording's. Throws std::invalid_argument, naming the effect: an unknown
+/// channel or one of the others, a shape that cannot be evaluated, coefficients that do not match.
+/// Effects without coefficients count as 0; per session, those of `session` are taken.
+[[nodiscard]] Recording corrected_recording(const Recording& recording, const Model& model,
+                                            const RowVariables& variables, int session);
+
+}  // namespace trussmap

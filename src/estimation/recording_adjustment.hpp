@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The best map of all that was recorded: landmarks, poses and coefficients of least chi^2.
+//
+//   recordings --make_problem--> problem --start_of--> start --descend--> adjustment
+//
+// The optimum is the usual one of Gauss-Newton with damping, from a start that is laid down
+// landmark by landmark (recording_start.hpp). Uncertainties are those of the linearised problem at
+// the optimum, for the noise that the model states.
+//
+// What fails, as SolveErrors in the user's words: sessions that nothing ties together, a landmark
+// or a pose that its measurements leave free, a coefficient that the motion cannot determine.
+// Nothing is hidden by damping.
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "estimation/recording_problem.hpp"
+#include "trussmap/error.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+struct RecordingAdjustmentOptions {
+  int max_iterations = 100;
+  double tolerance = 1e-12;  ///< relative decrease of chi^2 that a next step may still promise
+  /// With a gate, sightings whose squared whitened error exceeds it at the best fit of the others
+  /// are left out: 16 for one right sighting in 3000 (chi^2, 2 dof).
+  std::optional<double> gate;
+  Eigen::VectorXd coefficients;  ///< to start from, the unknown ones; empty: 0
+};
+
+struct RecordingAdjustment {
+  RecordingState state;
+  std::vector<Matrix2> landmark_covariances;  ///< m^2, map frame; zero where held
+  Eigen::VectorXd coefficients;               ///< the unknown ones
+  Eigen::MatrixXd coefficient_covariance;
+  double chi2 = 0.0;     ///< of the measurements kept, and the coefficients' priors
+  int dof = 0;           ///< measured values kept less unknowns
+  double p_value = 1.0;  ///< chance of a chi^2 as large, if the model is right
+  int iterations = 0;
+  double gradient_norm = 0.0;  ///< 2-norm of the gradient of chi^2, 1/m and 1/rad
+  bool converged = false;
+  std::vector<int> left_out;  ///< measurements, ascending
+  std::vector<std::string> warnings;
+};
+
+/// Coefficients that the motion cannot determine.
+class UndeterminedError : public SolveError {
+ public:
+  UndeterminedError(const std::string& what, std::vector<int> coefficients)
+      : SolveError(what), coefficients_(std::move(coefficients)) {}
+
+  /// Places among the unknown ones, ascending.
+  [[nodiscard]] const std::vector<int>& coefficients() const { return coefficients_; }
+
+ private:
+  std::vector<int> coefficients_;
+};
+
+/// Throws SolveError as said above.
+[[nodiscard]] RecordingAdjustment adjust(const RecordingProblem& problem,
+                                         const EffectParameters& border = {},
+                                         const RecordingAdjustmentOptions& options = {});
+
+/// The same from a start of one's own.
+[[nodiscard]] RecordingAdjustment adjust_from(const RecordingState& start,
+                                              const RecordingProblem& problem,
+                                              const EffectParameters& border = {},
+                                              const RecordingAdjustmentOptions& options = {});
+
+/// Joint covariance of landmarks and poses (nodes, in the order given: 2 or 3 rows each) and,
+/// after them, all coefficients; map frame, zero where held.
+[[nodiscard]] Eigen::MatrixXd joint_covariance(const RecordingProblem& problem,
+                                               const EffectParameters& border,
+                                               const RecordingAdjustment& adjustment,
+                                               const std::vector<int>& nodes);
+
+/// Upper tail of the chi^2 distribution; 1 for no degrees of freedom.
+[[nodiscard]] double chi2_p_value(double chi2, int dof);
+
+}  // namespace trussmap

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/recording_problem.hpp"
+
+#include "estimation/motion_changes.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kExactSd = 1e-6;   // m or rad: what is called exact is this exact
+constexpr double kNearRange = 3.0;  // sds
+
+Matrix4 whitener_of_sds(std::initializer_list<double> sds) {
+  Matrix4 result = Matrix4::Zero();
+  Eigen::Index k = 0;
+  for (const double sd : sds) {
+    result(k, k) = 1.0 / std::max(sd, kExactSd);
+    ++k;
+  }
+  return result;
+}
+
+/// Collects the problem, session by session.
+class Collector {
+ public:
+  Collector(const Model& model, const ProblemOptions& options) : model_(model), options_(options) {}
+
+  void add_session(const Recording& recording) {
+    session_ = static_cast<int>(problem_.sessions.size());
+    problem_.sessions.push_back(recording.name);
+    const std::vector<std::size_t> truth = truth_rows_used(recording);
+    if (recording.sightings.empty() && truth.empty()) {
+      throw InputError(recording.name, 0,
+                       "neither sightings nor truth in use, expected some to adjust to");
+    }
+    add_poses(recording, truth);
+    add_segments(recording);
+    for (std::size_t k = 0; k < recording.sightings.size(); ++k) {
+      if (pose_at_.contains(recording.sightings[k].t)) add_sighting(recording.sightings[k], k);
+    }
+    for (const std::size_t k : truth) {
+      if (pose_at_.contains(recording.truth[k].t)) add_truth(recording.truth[k], k);
+    }
+  }
+
+  /// After all sessions, so that every sighted landmark has its node.
+  void add_survey(const Recording& recording) {
+    if (!options_.survey) return;
+    for (std::size_t k = 0; k < recording.survey.size(); ++k) {
+      const SurveyPoint& point = recording.survey[k];
+      const auto node = landmark_node_.find(point.landmark);
+      if (node == landmark_node_.end()) continue;
+      const double sd = std::isnan(point.sd) ? model_.noise.survey : point.sd;
+      Measurement one;
+      one.kind = MeasurementKind::survey;
+      one.from = node->second;
+      one.rows = 2;
+      one.value.head<2>() = Vector2(point.x, point.y);
+      one.whitener = whitener_of_sds({sd, sd});
+      one.source = k;
+      // Sessions come with copies of one survey: the same numbers count once.
+      const bool copy =
+          std::any_of(surveyed_.begin(), surveyed_.end(), [&](const Measurement& other) {
+            return other.from == one.from && other.value == one.value;
+          });
+      if (copy) continue;
+      surveyed_.push_back(one);
+      problem_.measurements.push_back(one);
+    }
+  }
+
+  [[nodiscard]] RecordingProblem take() { return std::move(problem_); }
+
+ private:
+  [[nodiscard]] std::vector<std::size_t> truth_rows_used(const Recording& recording) const {
+    std::vector<std::size_t> used;
+    if (!options_.truth || recording.truth.empty()) return used;
+    const Drive& drive = recording.drive;
+    double path = 0.0;
+    double turn = 0.0;
+    double from = drive.start();
+    std::size_t last = 0;
+    for (std::size_t k = 0; k < recording.truth.size(); ++k) {
+      const double t = recording.truth[k].t;
+      if (t < drive.start() || t > drive.t.back()) continue;
+      for (const SegmentRow& row : segment_rows(drive, from, t, model_.robot)) {
+        path += std::abs(row.path);
+        turn += std::abs(row.turn);
+      }
+      from = t;
+      last = k;
+      if (used.empty() || path >= options_.truth_path || turn >= options_.truth_turn) {
+        used.push_back(k);
+        path = turn = 0.0;
+      }
+    }
+    // At rest again, the end tells a late clock from a short way.
+    if (!used.empty() && used.back() != last) used.push_back(last);
+    return used;
+  }
+
+  void add_poses(const Recording& recording, const std::vector<std::size_t>& truth) {
+    std::vector<double> times;
+    for (const Sighting& sighting : recording.sightings) times.push_back(sighting.t);
+    for (const std::size_t k : truth) times.push_back(recording.truth[k].t);
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    leave_out(times);
+    pose_at_.clear();
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      if (k > 0 && !is_left_out(times[k - 1], times[k])) {
+        const std::vector<SegmentRow> rows =
+            segment_rows(recording.drive, times[k - 1], times[k], model_.robot);
+        for (const double t : motion_changes(recording.drive, rows, model_.robot,
+                                             {options_.least_spin, options_.least_drive})) {
+          if (t > times[k - 1] && t < times[k]) add_pose(t);
+        }
+      }
+      add_pose(times[k]);
+    }
+  }
+
+  /// Whether nothing between two successive instants counts.
+  [[nodiscard]] bool is_left_out(double from, double to) const {
+    return std::any_of(spans_.begin(), spans_.end(),
+                       [&](const TimeSpan& span) { return span.from <= from && to <= span.to; });
+  }
+
+  /// Drops instants inside what is left out, and those that would stand alone.
+  void leave_out(std::vector<double>& times) {
+    spans_.clear();
+    if (!options_.left_out.empty()) spans_ = options_.left_out[idx(session_)];
+    if (spans_.empty()) return;
+    std::erase_if(times, [this](double t) {
+      return std::any_of(spans_.begin(), spans_.end(),
+                         [t](const TimeSpan& span) { return span.from < t && t < span.to; });
+    });
+    std::vector<double> kept;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const bool after = k > 0 && !is_left_out(times[k - 1], times[k]);
+      const bool before = k + 1 < times.size() && !is_left_out(times[k], times[k + 1]);
+      if (after || before) kept.push_back(times[k]);
+    }
+    times = std::move(kept);
+  }
+
+  void add_pose(double t) {
+    pose_at_[t] = static_cast<int>(problem_.poses.size());
+    problem_.poses.push_back({session_, t});
+  }
+
+  void add_segments(const Recording& recording) {
+    if (pose_at_.empty()) return;
+    for (auto from = pose_at_.begin(), to = std::next(from); to != pose_at_.end(); from = to++) {
+      if (is_left_out(from->first, to->first)) continue;
+      std::vector<SegmentRow> rows =
+          segment_rows(recording.drive, from->first, to->first, model_.robot);
+      const SegmentMotion motion = segment_motion(rows);
+      Measurement one;
+      one.kind = MeasurementKind::segment;
+      one.from = from->second;  // poses, until every landmark has its node
+      one.to = to->second;
+      one.rows = std::isnan(motion.mean_heading) ? 3 : 4;
+      one.value << motion.displacement.x, motion.displacement.y, motion.displacement.heading,
+          one.rows == 4 ? motion.mean_heading : 0.0;
+      one.whitener = whitener_of(
+          segment_covariance(recording.drive, rows, model_.robot, model_.noise), one.rows);
+      one.session = session_;
+      one.source = problem_.segments.size();
+      problem_.segments.push_back(std::move(rows));
+      problem_.measurements.push_back(one);
+    }
+  }
+
+  void add_sighting(const Sighting& sighting, std::size_t source) {
+    const int next = static_cast<int>(problem_.landmarks.size());
+    const auto [node, fresh] = landmark_node_.try_emplace(sighting.landmark, next);
+    if (fresh) problem_.landmarks.push_back(sighting.landmark);
+    const Noise& noise = model_.noise;
+    Measurement one;
+    one.from = pose_at_.at(sighting.t);
+    one.to = node->second;
+    one.rows = 2;
+    one.session = session_;
+    one.source = source;
+    if (sighting.standing()) {
+      one.kind = MeasurementKind::standing;
+      one.whitener = whitener_of_sds({noise.sighting, noise.sighting});
+    } else {
+      const double sd_range = std::hypot(noise.range, noise.range_relative * sighting.range);
+      if (std::isnan(sighting.bearing)) {
+        one.kind = MeasurementKind::view;
+        one.rows = 1;
+        one.value[0] = sighting.range;
+        one.whitener = whitener_of_sds({sd_range});
+      } else if (sighting.range > kNearRange * sd_range) {
+        one.kind = MeasurementKind::view;
+        one.value.head<2>() = Vector2(sighting.range, sighting.bearing);
+        one.whitener = whitener_of_sds({sd_range, noise.bearing});
+      } else {
+        one.kind = MeasurementKind::cartesian_view;
+        one.value.head<2>() = sighting.range * rotation(sighting.bearing).col(0);
+        one.whitener = whitener_of_sds({sd_range, sd_range});
+      }
+    }
+    problem_.measurements.push_back(one);
+  }
+
+  void add_truth(const TruthRow& row, std::size_t source) {
+    const Noise& noise = model_.noise;
+    Measurement one;
+    one.kind = MeasurementKind::truth;
+    one.from = pose_at_.at(row.t);
+    one.rows = 3;
+    one.value.head<3>() = Eigen::Vector3d(row.x, row.y, row.heading);
+    one.whitener = whitener_of_sds({noise.truth, noise.truth, noise.truth_heading});
+    one.session = session_;
+    one.source = source;
+    problem_.measurements.push_back(one);
+  }
+
+  const Model& model_;
+  const ProblemOptions& options_;
+  int session_ = 0;
+  std::vector<TimeSpan> spans_;  ///< left out of this session
+  std::map<std::string, int> landmark_node_;
+  std::map<double, int> pose_at_;  ///< of this session, by time
+  std::vector<Measurement> surveyed_;
+  RecordingProblem problem_;
+};
+
+}  // namespace
+
+Matrix4 whitener_of(const Matrix4& covariance, int rows) {
+  Matrix4 result = Matrix4::Zero();
+  const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
+  const Eigen::LLT<Eigen::MatrixXd> factor(block);
+  result.topLeftCorner(rows, rows) = factor.matrixL().solve(Eigen::MatrixXd::Identity(rows, rows));
+  return result;
+}
+
+RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
+                              const ProblemOptions& options) {
+  Collector collector(model, options);
+  for (const Recording& recording : recordings) collector.add_session(recording);
+  for (const Recording& recording : recordings) collector.add_survey(recording);
+  RecordingProblem problem = collector.take();
+  for (Measurement& one : problem.measurements) {
+    if (one.kind == MeasurementKind::survey) continue;
+    one.from = problem.pose_node(one.from);
+    if (one.kind == MeasurementKind::segment) one.to = problem.pose_node(one.to);
+  }
+  return problem;
+}
+
+std::string describe(const RecordingProblem& problem, const Measurement& measurement) {
+  const auto pose = [&](int node) -> const PoseNode& {
+    return problem.poses[idx(node - problem.landmark_count())];
+  };
+  const std::string session = problem.sessions.size() > 1 && measurement.session >= 0
+                                  ? " of " + problem.sessions[idx(measurement.session)]
+                                  : std::string();
+  switch (measurement.kind) {
+    case MeasurementKind::segment:
+      return fmt::format("drive from t = {:.3f} s to {:.3f} s{}", pose(measurement.from).t,
+                         pose(measurement.to).t, session);
+    case MeasurementKind::standing:
+      return fmt::format("standing on landmark {} at t = {:.3f} s{}",
+                         problem.landmarks[idx(measurement.to)], pose(measurement.from).t, session);
+    case MeasurementKind::view:
+    case MeasurementKind::cartesian_view:
+      return fmt::format("sight of landmark {} at t = {:.3f} s{}",
+                         problem.landmarks[idx(measurement.to)], pose(measurement.from).t, session);
+    case MeasurementKind::survey:
+      return fmt::format("survey of landmark {}", problem.landmarks[idx(measurement.from)]);
+    case MeasurementKind::truth:
+      return fmt::format("truth at t = {:.3f} s{}", pose(measurement.from).t, session);
+  }
+  return "measurement";
+}
+
+}  // namespace trussmap

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Recordings as one least-squares problem: what is unknown, and what was measured of it.
+//
+//   unknown                                        node
+//     landmark positions, shared by all sessions   0 ... landmarks - 1                2 each
+//     robot poses at sightings, truth rows used,   landmarks ... nodes - 1            3 each
+//     and changes between spinning and driving
+//     coefficients of effects                      none: a dense border               1 each
+//
+//   measurement          between                rows
+//     segment              pose, next pose        motion (3), mean compass innovation (0 or 1)
+//     standing           pose, landmark         landmark in robot axes (2): 0 is exact      m
+//     view               pose, landmark         range, bearing (2), range alone (1)         m, rad
+//     cartesian_view          pose, landmark         the same in robot axes (2): a range within
+//     three
+//                                               of its sds says nothing of a direction      m
+//     survey             landmark               x, y (2)                                    m
+//     truth              pose                   x, y, heading (3)                           m, rad
+//
+// A segment's four numbers share the wheels' noise (segment_motion.hpp); all else is independent.
+// What was driven before the first and after the last sighting (or truth row) carries nothing and
+// is left out.
+#pragma once
+
+#include "estimation/segment_motion.hpp"
+#include "geometry/index.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+enum class MeasurementKind { segment, standing, view, cartesian_view, survey, truth };
+
+struct Measurement {
+  MeasurementKind kind = MeasurementKind::segment;
+  int from = -1;                    ///< node
+  int to = -1;                      ///< node; -1: none
+  int rows = 0;                     ///< 1 to 4
+  Vector4 value = Vector4::Zero();  ///< measured; a segment's last is its mean heading
+  Vector4 linearization_offset =
+      Vector4::Zero();                 ///< added to a segment's value (segment_noise.hpp)
+  Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
+  int session = -1;                    ///< -1: survey
+  std::size_t source = 0;  ///< sighting, survey point or truth row of the session; else the segment
+};
+
+/// A robot's pose that is unknown.
+struct PoseNode {
+  int session = 0;
+  double t = 0.0;  ///< s
+};
+
+struct RecordingProblem {
+  std::vector<std::string> landmarks;             ///< names, in order of first sighting
+  std::vector<PoseNode> poses;                    ///< session after session, in order of time
+  std::vector<std::vector<SegmentRow>> segments;  ///< rows of each segment
+  std::vector<Measurement> measurements;
+  std::vector<std::string> sessions;  ///< names of the recordings
+
+  [[nodiscard]] int landmark_count() const { return static_cast<int>(landmarks.size()); }
+  [[nodiscard]] int nodes() const { return landmark_count() + static_cast<int>(poses.size()); }
+  [[nodiscard]] bool is_landmark(int node) const { return node < landmark_count(); }
+  [[nodiscard]] int pose_node(int pose) const { return landmark_count() + pose; }
+};
+
+/// Part of a session's time.
+struct TimeSpan {
+  double from = 0.0;  ///< s
+  double to = 0.0;    ///< s
+};
+
+struct ProblemOptions {
+  bool survey = true;        ///< use survey.csv
+  bool truth = true;         ///< use truth.csv
+  double truth_path = 0.25;  ///< m between truth rows used, or
+  double truth_turn = 0.5;   ///< rad turned between them, whichever comes first
+  double least_spin = 0.1;   ///< rad: a shorter spin is no change of motion
+  double least_drive = 0.1;  ///< m: nor is a shorter drive
+  /// Per session, in order of time (or none at all): what is driven there, and what is sighted or
+  /// known in between, is left out. A stretch of which one instant is left goes with it.
+  std::vector<std::vector<TimeSpan>> left_out = {};
+};
+
+/// Inverse Cholesky factor of a covariance's leading rows x rows.
+[[nodiscard]] Matrix4 whitener_of(const Matrix4& covariance, int rows);
+
+/// Throws InputError where a recording has neither sightings nor truth in use.
+[[nodiscard]] RecordingProblem make_problem(const std::vector<Recording>& recordings,
+                                            const Model& model, const ProblemOptions& options = {});
+
+/// Values of all unknowns but the coefficients.
+struct RecordingState {
+  std::vector<Vector2> landmarks;  ///< m, map frame
+  std::vector<Pose> poses;         ///< map frame; headings not wrapped
+};
+
+/// Sighting, "landmark 12 at t = 3.5 s", and so on: a measurement in the user's words.
+[[nodiscard]] std::string describe(const RecordingProblem& problem, const Measurement& measurement);
+
+}  // namespace trussmap

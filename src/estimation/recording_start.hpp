@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A start for the adjustment of recordings that is near enough to the best fit.
+//
+// Session by session: the robot is reckoned from pose to pose; the compass, truth rows and
+// landmarks already placed correct it on the way (extended Kalman filter over the one pose, with
+// landmarks as they are); a landmark is placed when it is first seen.
+//
+// Without a compass that drifts too far to descend from. So a session is adjusted while it is laid
+// down, first a stretch, then that stretch with the next one, each a third longer than the last:
+//
+//   |----|      reckon, adjust
+//   |----|--|   reckon on from there, with the landmarks as adjusted; adjust all
+//   |-------|---|  ...
+//
+// At last the session is laid over the landmarks that are known by then (survey, other sessions):
+// shifted, and without a compass turned.
+#pragma once
+
+#include "estimation/recording_problem.hpp"
+
+#include <limits>
+
+namespace trussmap {
+
+struct StartOptions {
+  double map_sd = 0.1;  ///< m per coordinate: how far off landmarks may be while laying down
+  /// Squared standard deviations beyond which a sighting does not correct the reckoning, and
+  /// counts less in the stretches' adjustments; infinity: all sightings are believed.
+  double gate = std::numeric_limits<double>::infinity();
+};
+
+[[nodiscard]] RecordingState start_of(const RecordingProblem& problem,
+                                      const StartOptions& options = {});
+
+/// Dead reckoning alone, with the compass if there is one: no landmark corrects it, and each lies
+/// at the mean of where its sightings put it. What the adjustment is compared with.
+[[nodiscard]] RecordingState dead_reckoned(const RecordingProblem& problem);
+
+/// The part of a problem that one session's poses first ... first + count - 1 see, without survey
+/// and truth; landmarks that they do not see are left out.
+struct ProblemPart {
+  RecordingProblem problem;
+  std::vector<int> landmarks;  ///< of the whole problem, in the part's order
+  int first_pose = 0;
+};
+[[nodiscard]] ProblemPart part_of(const RecordingProblem& problem, int first, int count);
+
+}  // namespace trussmap

@@ -1,0 +1,355 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/recording_system.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge& gauge) {
+  std::vector<int> sizes(idx(problem.nodes()), 3);
+  for (int node = 0; node < problem.landmark_count(); ++node) sizes[idx(node)] = 2;
+  if (gauge.hold_landmark) sizes[0] = 0;
+  return sizes;
+}
+
+std::vector<NodePair> pairs_of(const RecordingProblem& problem) {
+  std::vector<NodePair> pairs;
+  for (const Measurement& one : problem.measurements) {
+    if (one.to >= 0) pairs.push_back({one.from, one.to});
+  }
+  return pairs;
+}
+
+BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge) {
+  const std::vector<NodePair> pairs = pairs_of(problem);
+  return {sizes_of(problem, gauge), pairs, elimination_order(problem.nodes(), pairs)};
+}
+
+SegmentWithEffects segment_with(const RecordingProblem& problem, const EffectParameters& border,
+                                const Eigen::VectorXd& coefficients, const Measurement& one) {
+  std::vector<const std::vector<DrivePattern>*> patterns;
+  patterns.reserve(border.size());
+  for (const EffectPattern& effect : border) {
+    patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
+  }
+  return segment_motion(problem.segments[one.source], patterns, coefficients);
+}
+
+bool touches_drives(const EffectParameters& border) {
+  for (const EffectPattern& effect : border) {
+    if (!effect.drives.empty()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectParameters& border)
+    : problem_(problem),
+      border_(border),
+      unknown_(unknown_coefficients(border)),
+      gauge_(choose_gauge(problem)),
+      root_weights_(problem.measurements.size(), 1.0),
+      normal_(lay_out(problem, gauge_)),
+      J_(problem.measurements.size()) {
+  int pair = 0;
+  for (const Measurement& one : problem.measurements) {
+    first_row_.push_back(rows_);
+    rows_ += one.rows;
+    pair_.push_back(one.to >= 0 ? pair++ : -1);
+  }
+  residuals_.resize(rows_);
+  squared_errors_.resize(problem.measurements.size());
+  M_.resize(rows_, static_cast<Eigen::Index>(unknown_.size()));
+}
+
+Eigen::VectorXd RecordingSystem::offsets(const Eigen::VectorXd& coefficients) const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(border_.size()));
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < border_.size(); ++k) {
+    const double value = border_[k].held ? *border_[k].held : coefficients[next++];
+    result[static_cast<Eigen::Index>(k)] = value - border_[k].reference;
+  }
+  return result;
+}
+
+void RecordingSystem::set_weights(const std::vector<double>& weights) {
+  for (std::size_t k = 0; k < weights.size(); ++k) root_weights_[k] = std::sqrt(weights[k]);
+}
+
+int RecordingSystem::unknowns() const {
+  return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) + static_cast<int>(unknown_.size());
+}
+
+double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
+                                  bool hold_headings) {
+  const auto heading_held = [&](int node) {
+    return node >= problem_.landmark_count() &&
+           (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
+  };
+  normal_.clear();
+  gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
+  M_.setZero();
+  const bool with_drives = touches_drives(border_);
+  const Eigen::VectorXd all = offsets(coefficients);
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    Vector4 value = one.value;
+    Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, 0);
+    if (one.kind == MeasurementKind::segment && with_drives) {
+      const SegmentWithEffects segment = segment_with(problem_, border_, all, one);
+      const Pose& d = segment.motion.displacement;
+      value.head<3>() = Eigen::Vector3d(d.x, d.y, d.heading);
+      if (one.rows == 4) value[3] = segment.motion.mean_heading;
+      slopes = segment.derivatives;
+    }
+    value += one.linearization_offset;
+    const MeasurementRows rows =
+        measurement_rows(problem_, one, state, value, view_of(border_, all, one));
+    const Matrix4 W = root_weights_[k] * one.whitener;
+    Whitened& J = J_[k];
+    J.from = W * rows.by_from;
+    J.to = W * rows.by_to;
+    if (heading_held(one.from)) J.from.col(2).setZero();
+    if (heading_held(one.to)) J.to.col(2).setZero();
+    const Vector4 error = W * rows.error;
+    squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
+    residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
+    add_to_normal(k, J, error);
+    evaluate_effect_parameters(k, rows, slopes);
+  }
+  Matrix3 held = Matrix3::Zero();
+  held(2, 2) = 1.0;
+  for (int node = problem_.landmark_count(); node < problem_.nodes(); ++node) {
+    if (heading_held(node)) normal_.add_diagonal<3>(node, held);
+  }
+  double chi2 = residuals_.squaredNorm();
+  B_ = transposed_times(M_);
+  D_ = M_.transpose() * M_;
+  border_gradient_ = M_.transpose() * residuals_;
+  for (Eigen::Index c = 0; c < D_.cols(); ++c) {
+    const double prior_sd = border_[idx(unknown_[idx(c)])].prior_sd;
+    const double information = 1.0 / (prior_sd * prior_sd);
+    D_(c, c) += information;
+    border_gradient_[c] += information * coefficients[c];
+    chi2 += information * coefficients[c] * coefficients[c];
+  }
+  return chi2;
+}
+
+void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error) {
+  const Measurement& one = problem_.measurements[k];
+  const auto add = [&](int node, const RowsByNode& J) {
+    const int size = normal_.size(node);
+    if (size == 0) return;
+    const Matrix3 block = J.transpose() * J;
+    const Eigen::Vector3d force = J.transpose() * error;
+    if (size == 2) {
+      normal_.add_diagonal<2>(node, block.topLeftCorner<2, 2>());
+    } else {
+      normal_.add_diagonal<3>(node, block);
+    }
+    gradient_.segment(normal_.offset(node), size) += force.head(size);
+  };
+  add(one.from, rows.from);
+  if (one.to < 0) return;
+  add(one.to, rows.to);
+  const Matrix3 coupling = rows.from.transpose() * rows.to;
+  if (problem_.is_landmark(one.to)) {
+    normal_.add_coupling<3, 2>(pair_[k], coupling.leftCols<2>());
+  } else {
+    normal_.add_coupling<3, 3>(pair_[k], coupling);
+  }
+}
+
+void RecordingSystem::evaluate_effect_parameters(
+    std::size_t k, const MeasurementRows& rows,
+    const Eigen::Matrix<double, 4, Eigen::Dynamic>& segment_slopes) {
+  const Measurement& one = problem_.measurements[k];
+  const Matrix4 W = root_weights_[k] * one.whitener;
+  auto M = M_.middleRows(first_row_[k], one.rows);
+  if (segment_slopes.cols() > 0) {
+    for (std::size_t c = 0; c < unknown_.size(); ++c) {
+      const Vector4 column = -(W * segment_slopes.col(unknown_[c]));
+      M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
+    }
+    return;
+  }
+  if (one.session < 0 || one.kind == MeasurementKind::segment) return;
+  for (std::size_t c = 0; c < unknown_.size(); ++c) {
+    const EffectPattern& effect = border_[idx(unknown_[c])];
+    const auto& views = one.kind == MeasurementKind::truth ? effect.truths : effect.sightings;
+    if (views.empty() || views[idx(one.session)].empty()) continue;
+    const Vector4 column = W * rows.by_view * views[idx(one.session)][one.source].vector();
+    M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
+  }
+}
+
+Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns(), rows.cols());
+  if (rows.cols() == 0) return result;
+  for (std::size_t k = 0; k < J_.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    const auto part = rows.middleRows(first_row_[k], one.rows);
+    for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
+      if (node < 0 || normal_.size(node) == 0) continue;
+      const int size = normal_.size(node);
+      result.middleRows(normal_.offset(node), size) +=
+          J->topLeftCorner(one.rows, size).transpose() * part;
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, nodes.cols());
+  for (std::size_t k = 0; k < J_.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
+      if (node < 0 || normal_.size(node) == 0) continue;
+      const int size = normal_.size(node);
+      result.middleRows(first_row_[k], one.rows) +=
+          J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const {
+  const Measurement& one = problem_.measurements[measurement];
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns() + M_.cols(), one.rows);
+  for (const auto& [node, J] :
+       {std::pair(one.from, &J_[measurement].from), std::pair(one.to, &J_[measurement].to)}) {
+    if (node < 0 || normal_.size(node) == 0) continue;
+    const int size = normal_.size(node);
+    result.middleRows(normal_.offset(node), size) = J->topLeftCorner(one.rows, size).transpose();
+  }
+  result.bottomRows(M_.cols()) = M_.middleRows(first_row_[measurement], one.rows).transpose();
+  return result;
+}
+
+void RecordingSystem::build_schur(double damping) {
+  A_inverse_B_ = B_.cols() > 0 ? normal_.solve(B_) : B_;
+  schur_ = D_ - B_.transpose() * A_inverse_B_;
+  schur_ = (0.5 * (schur_ + schur_.transpose())).eval();
+  schur_.diagonal() += damping * D_.diagonal();
+  if (schur_.cols() == 0) return;
+  const Eigen::LLT<Eigen::MatrixXd> factor(schur_);
+  if (factor.info() != Eigen::Success) throw NotPositiveDefinite(-1);
+  schur_inverse_ = factor.solve(Eigen::MatrixXd::Identity(schur_.rows(), schur_.cols()));
+}
+
+RecordingSystem::Step RecordingSystem::solve_step(double damping) {
+  const Eigen::VectorXd diagonal = normal_.diagonal();
+  if (damping > 0.0) normal_.set_diagonal((1.0 + damping) * diagonal);
+  try {
+    if (normal_.unknowns() > 0) normal_.factorise();
+  } catch (const NotPositiveDefinite&) {
+    normal_.set_diagonal(diagonal);
+    throw;
+  }
+  normal_.set_diagonal(diagonal);
+  build_schur(damping);
+  Step step;
+  step.nodes = -gradient_;
+  normal_.solve_in_place(step.nodes);
+  step.coefficients = Eigen::VectorXd::Zero(B_.cols());
+  if (B_.cols() > 0) {
+    step.coefficients = schur_inverse_ * (-border_gradient_ - B_.transpose() * step.nodes);
+    step.nodes -= A_inverse_B_ * step.coefficients;
+  }
+  step.predicted = -step.nodes.dot(gradient_) - step.coefficients.dot(border_gradient_) +
+                   damping * (step.nodes.cwiseAbs2().dot(diagonal) +
+                              step.coefficients.cwiseAbs2().dot(D_.diagonal()));
+  return step;
+}
+
+RecordingState RecordingSystem::moved(const RecordingState& state, const Step& step) const {
+  RecordingState result = state;
+  for (int node = 0; node < problem_.nodes(); ++node) {
+    if (normal_.size(node) == 0) continue;
+    const int at = normal_.offset(node);
+    if (problem_.is_landmark(node)) {
+      result.landmarks[idx(node)] += step.nodes.segment<2>(at);
+    } else {
+      Pose& pose = result.poses[idx(node - problem_.landmark_count())];
+      pose.x += step.nodes[at];
+      pose.y += step.nodes[at + 1];
+      pose.heading += step.nodes[at + 2];
+    }
+  }
+  return result;
+}
+
+void RecordingSystem::factorise() {
+  if (normal_.unknowns() > 0) normal_.factorise();
+  build_schur(0.0);
+}
+
+Eigen::MatrixXd RecordingSystem::solve(const Eigen::MatrixXd& b) const {
+  const Eigen::Index n = normal_.unknowns();
+  Eigen::MatrixXd x(b.rows(), b.cols());
+  if (b.cols() == 0) return x;
+  x.topRows(n) = normal_.solve(b.topRows(n));
+  if (B_.cols() > 0) {
+    x.bottomRows(B_.cols()) =
+        schur_inverse_ * (b.bottomRows(B_.cols()) - B_.transpose() * x.topRows(n));
+    x.topRows(n) -= A_inverse_B_ * x.bottomRows(B_.cols());
+  }
+  return x;
+}
+
+Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes) const {
+  const Eigen::Index n = normal_.unknowns();
+  Eigen::Index size = B_.cols();
+  for (const int node : nodes) size += problem_.is_landmark(node) ? 2 : 3;
+  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(n + B_.cols(), size);
+  Eigen::Index at = 0;
+  for (const int node : nodes) {
+    const int width = problem_.is_landmark(node) ? 2 : 3;
+    for (int k = 0; k < width && k < normal_.size(node); ++k) {
+      const bool held = gauge_.hold_heading && node == problem_.pose_node(0) && k == 2;
+      if (!held) selection(normal_.offset(node) + k, at + k) = 1.0;
+    }
+    at += width;
+  }
+  selection.bottomRightCorner(B_.cols(), B_.cols()).setIdentity();
+  const Eigen::MatrixXd covariance = selection.transpose() * solve(selection);
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {
+  return B_.cols() == 0 ? B_.topRows(0) : schur_inverse_;
+}
+
+double RecordingSystem::log_determinant() const {
+  double sum = normal_.unknowns() > 0 ? normal_.log_determinant() : 0.0;
+  if (schur_.cols() == 0) return sum;
+  const Eigen::LLT<Eigen::MatrixXd> factor(schur_);
+  return sum + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+}
+
+double RecordingSystem::gradient_norm() const {
+  return 2.0 * std::hypot(gradient_.norm(), border_gradient_.norm());
+}
+
+Eigen::MatrixXd RecordingSystem::scaled_schur() const {
+  const Eigen::VectorXd scale = D_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  // Not D - B' A^-1 B, whose difference loses all digits where it matters, but what is left of M
+  // when the nodes have taken what they can.
+  const Eigen::MatrixXd left = M_ - times(A_inverse_B_);
+  Eigen::MatrixXd schur = left.transpose() * left;
+  for (Eigen::Index k = 0; k < schur.cols(); ++k) {
+    const double prior_sd = border_[idx(unknown_[idx(k)])].prior_sd;
+    schur(k, k) += 1.0 / (prior_sd * prior_sd);
+  }
+  return scale.asDiagonal() * schur * scale.asDiagonal();
+}
+
+}  // namespace trussmap

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Normal equations of a recording problem: sparse in landmarks and poses, dense in the few
+// coefficients of effects, which are eliminated last.
+//
+//   r    whitened errors of all measurements, one vector           chi^2 = r'r
+//   J    their derivatives by landmarks and poses, sparse;  A = J'J
+//   M    their derivatives by the coefficients, dense;      B = J'M,  D = M'M (+ prior)
+//
+//   [A  B] [dx]    [J'r]          S = D - B' A^-1 B, the Schur complement:
+//   [B' D] [dc] = -[M'r]          its inverse is the coefficients' covariance
+//
+// The sparse pattern is laid out and analysed once; adding an effect never changes it.
+//
+// Held, where nothing measures it: the first landmark at the origin, and the first pose's heading.
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "estimation/measurement_rows.hpp"
+#include "estimation/recording_problem.hpp"
+#include "linalg/block_system.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+struct RecordingGauge {
+  bool hold_landmark = false;  ///< the first one
+  bool hold_heading = false;   ///< of the first pose
+};
+
+/// What no measurement of the problem fixes. Throws SolveError where sessions have nothing in
+/// common that would tie them together.
+[[nodiscard]] RecordingGauge choose_gauge(const RecordingProblem& problem);
+
+/// Poses that no common landmark, survey or truth ties to the map's frame or, where nothing gives
+/// one, to the first pose.
+[[nodiscard]] std::vector<int> untied_poses(const RecordingProblem& problem);
+
+class RecordingSystem {
+ public:
+  /// Keeps references to the problem and the border.
+  RecordingSystem(const RecordingProblem& problem, const EffectParameters& border);
+  RecordingSystem(const RecordingProblem& problem, EffectParameters&& border) = delete;
+  RecordingSystem(RecordingProblem&& problem, const EffectParameters& border) = delete;
+
+  /// `coefficients` are the unknown ones. chi^2 (with priors), and with it r, J, M, A, B, D at
+  /// these values. With headings held, a step moves positions (and coefficients) only.
+  double linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
+                   bool hold_headings = false);
+  /// Multiplies the information of each measurement from the next linearise on.
+  void set_weights(const std::vector<double>& weights);
+
+  struct Step {
+    Eigen::VectorXd nodes;  ///< in the sparse system's order
+    Eigen::VectorXd coefficients;
+    double predicted = 0.0;  ///< decrease of chi^2 by the linear model
+  };
+  /// Solves with damping times the diagonal added. Throws NotPositiveDefinite (its column is -1
+  /// where the coefficients are at fault).
+  [[nodiscard]] Step solve_step(double damping = 0.0);
+
+  [[nodiscard]] RecordingState moved(const RecordingState& state, const Step& step) const;
+
+  /// Factorises A and S undamped, for what follows. Throws like solve_step.
+  void factorise();
+  /// Joint covariance of nodes and, after them, all coefficients. Zero where held.
+  [[nodiscard]] Eigen::MatrixXd joint_covariance(const std::vector<int>& nodes) const;
+  [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
+  /// Of the whole normal matrix, border included. Call after factorise.
+  [[nodiscard]] double log_determinant() const;
+  /// Inverse normal matrix (with border) times the columns of b (nodes, then coefficients).
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+
+  /// A^-1 b, nodes only.
+  [[nodiscard]] Eigen::MatrixXd solve_nodes(const Eigen::MatrixXd& b) const {
+    return normal_.solve(b);
+  }
+  [[nodiscard]] int rows() const { return rows_; }
+  /// Where a measurement's rows begin in r and M.
+  [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }
+  [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
+  [[nodiscard]] const Eigen::MatrixXd& border() const { return M_; }
+  /// Squared whitened error of each measurement, as if all weights were 1.
+  [[nodiscard]] const std::vector<double>& squared_errors() const { return squared_errors_; }
+  /// J'v and J x, J as linearised.
+  [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
+  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
+  /// A measurement's rows of J and M as a dense matrix over all unknowns, transposed.
+  [[nodiscard]] Eigen::MatrixXd transposed_rows(std::size_t measurement) const;
+
+  [[nodiscard]] int unknowns() const;  ///< free ones, coefficients among them
+  [[nodiscard]] const RecordingGauge& gauge() const { return gauge_; }
+  [[nodiscard]] double gradient_norm() const;
+  [[nodiscard]] BlockSystem& normal_equations() { return normal_; }
+  [[nodiscard]] const BlockSystem& normal_equations() const { return normal_; }
+  /// The Schur complement with its diagonal scaled by D's: 1 where a coefficient is independent of
+  /// all else, 0 where it cannot be determined.
+  [[nodiscard]] Eigen::MatrixXd scaled_schur() const;
+
+ private:
+  struct Whitened {
+    RowsByNode from, to;
+  };
+  void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
+  /// How far every coefficient of the border is from its reference.
+  [[nodiscard]] Eigen::VectorXd offsets(const Eigen::VectorXd& coefficients) const;
+  void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows,
+                                  const Eigen::Matrix<double, 4, Eigen::Dynamic>& segment_slopes);
+  void build_schur(double damping);
+
+  const RecordingProblem& problem_;
+  const EffectParameters& border_;
+  std::vector<int> unknown_;  ///< of the border
+  RecordingGauge gauge_;
+  std::vector<double> root_weights_;
+  std::vector<int> first_row_;
+  std::vector<int> pair_;  ///< of each measurement, -1: none
+  int rows_ = 0;
+  BlockSystem normal_;
+  std::vector<Whitened> J_;
+  Eigen::MatrixXd M_;
+  Eigen::VectorXd residuals_;
+  std::vector<double> squared_errors_;
+  Eigen::VectorXd gradient_;         ///< J'r
+  Eigen::VectorXd border_gradient_;  ///< M'r and prior
+  Eigen::MatrixXd B_;
+  Eigen::MatrixXd D_;
+  Eigen::MatrixXd A_inverse_B_;
+  Eigen::MatrixXd schur_;
+  Eigen::MatrixXd schur_inverse_;
+};
+
+}  // namespace trussmap

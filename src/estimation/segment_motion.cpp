@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/segment_motion.hpp"
+
+#include "trussmap/dead_reckoning.hpp"
+
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastSegmentSd = 1e-5;  // m and rad
+
+/// Direction of an arc's chord times chord/path, (sin a/a, (1 - cos a)/a), and its derivative.
+struct UnitArc {
+  Vector2 end;
+  Vector2 slope;
+};
+
+UnitArc unit_arc(double a) {
+  if (std::abs(a) < 1e-4) {
+    return {{1.0 - a * a / 6.0, 0.5 * a - a * a * a / 24.0}, {-a / 3.0, 0.5 - a * a / 8.0}};
+  }
+  const double s = std::sin(a);
+  const double c = std::cos(a);
+  return {{s / a, (1.0 - c) / a}, {(a * c - s) / (a * a), (a * s - 1.0 + c) / (a * a)}};
+}
+
+/// A row's motion under the effects.
+struct Step {
+  double path = 0.0;
+  double slip = 0.0;
+  double turn = 0.0;
+  double compass = 0.0;
+
+  [[nodiscard]] Vector2 end(const UnitArc& arc) const {
+    return path * arc.end + slip * quarter_turn(arc.end);
+  }
+};
+
+/// Mean of angles that lie near each other, wherever whole turns put them.
+class MeanAngle {
+ public:
+  void add(double angle) {
+    if (count_ == 0) first_ = angle;
+    sum_ += wrap_angle(angle - first_);
+    ++count_;
+  }
+  [[nodiscard]] double mean() const {
+    return count_ == 0 ? kAbsent : wrap_angle(first_ + sum_ / count_);
+  }
+
+ private:
+  double first_ = 0.0;
+  double sum_ = 0.0;
+  int count_ = 0;
+};
+
+const DrivePattern* pattern_at(const std::vector<DrivePattern>* patterns, std::size_t row) {
+  return patterns == nullptr || patterns->empty() ? nullptr : &(*patterns)[row];
+}
+
+Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePattern>*>& patterns,
+             const Eigen::VectorXd& coefficients) {
+  Step step{row.path, 0.0, row.turn, 0.0};
+  for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
+    const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+    if (pattern == nullptr) continue;
+    step.path += coefficients[k] * row.part * pattern->advance;
+    step.slip += coefficients[k] * row.part * pattern->slip;
+    step.turn += coefficients[k] * row.part * pattern->turn;
+    step.compass += coefficients[k] * pattern->compass;
+  }
+  return step;
+}
+
+}  // namespace
+
+std::vector<SegmentRow> segment_rows(const Drive& drive, double from, double to,
+                                     const Robot& robot) {
+  std::vector<SegmentRow> rows;
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    const WheelTravel travel = travel_of(drive, row);
+    const double reading = drive.has_compass() && row.ends ? drive.heading[row.row] : kAbsent;
+    rows.push_back({row.row, row.part, 0.5 * (travel.left + travel.right),
+                    (travel.right - travel.left) / robot.wheelbase, row.duration, reading});
+  }
+  return rows;
+}
+
+int readings_of(const std::vector<SegmentRow>& rows) {
+  int count = 0;
+  for (const SegmentRow& row : rows) count += std::isnan(row.reading) ? 0 : 1;
+  return count;
+}
+
+SegmentMotion segment_motion(const std::vector<SegmentRow>& rows) {
+  return segment_motion(rows, {}, Eigen::VectorXd()).motion;
+}
+
+SegmentWithEffects segment_motion(const std::vector<SegmentRow>& rows,
+                                  const std::vector<const std::vector<DrivePattern>*>& patterns,
+                                  const Eigen::VectorXd& coefficients) {
+  const Eigen::Index count = coefficients.size();
+  Pose pose;
+  Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, count);
+  slopes.setZero();
+  MeanAngle mean;
+  int readings = 0;
+  for (const SegmentRow& row : rows) {
+    const Step step = step_of(row, patterns, coefficients);
+    const UnitArc arc = unit_arc(step.turn);
+    const Matrix2 R = rotation(pose.heading);
+    const Vector2 chord = R * step.end(arc);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      slopes.col(k).head<2>() += slopes(2, k) * quarter_turn(chord);
+      const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+      if (pattern == nullptr) continue;
+      const Vector2 own =
+          row.part *
+          (pattern->advance * arc.end + pattern->slip * quarter_turn(arc.end) +
+           pattern->turn * (step.path * arc.slope + step.slip * quarter_turn(arc.slope)));
+      slopes.col(k).head<2>() += R * own;
+      slopes(2, k) += row.part * pattern->turn;
+    }
+    pose.x += chord.x();
+    pose.y += chord.y();
+    pose.heading += step.turn;
+    if (std::isnan(row.reading)) continue;
+    ++readings;
+    mean.add(row.reading - step.compass - pose.heading);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
+      slopes(3, k) -= slopes(2, k) + (pattern == nullptr ? 0.0 : pattern->compass);
+    }
+  }
+  if (readings > 0) slopes.row(3) /= readings;
+  return {{pose, mean.mean()}, slopes};
+}
+
+std::vector<Matrix4> row_influences(const std::vector<SegmentRow>& rows,
+                                    const std::vector<const std::vector<DrivePattern>*>& patterns,
+                                    const Eigen::VectorXd& coefficients) {
+  std::vector<Matrix4> influences(rows.size(), Matrix4::Zero());
+  std::vector<Vector2> ends(rows.size());
+  Pose pose;
+  const int readings = readings_of(rows);
+  int read = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const SegmentRow& row = rows[k];
+    const Step step = step_of(row, patterns, coefficients);
+    const UnitArc arc = unit_arc(step.turn);
+    const Matrix2 R = row.part * rotation(pose.heading);
+    Matrix4& own = influences[k];
+    own.block<2, 1>(0, 0) = R * arc.end;
+    own.block<2, 1>(0, 1) = R * quarter_turn(arc.end);
+    own.block<2, 1>(0, 2) = R * (step.path * arc.slope + step.slip * quarter_turn(arc.slope));
+    own(2, 2) = row.part;
+    const Vector2 chord = rotation(pose.heading) * step.end(arc);
+    pose.x += chord.x();
+    pose.y += chord.y();
+    pose.heading += step.turn;
+    ends[k] = pose.position();
+    if (readings == 0) continue;
+    own(3, 2) = -row.part * (readings - read) / readings;  // this row's own and all later ones
+    if (std::isnan(row.reading)) continue;
+    ++read;
+    own(3, 3) = -1.0 / readings;
+  }
+  // A turn swings all that comes after it.
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    influences[k].block<2, 1>(0, 2) += rows[k].part * quarter_turn(pose.position() - ends[k]);
+  }
+  return influences;
+}
+
+Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& rows,
+                           const Robot& robot, const Noise& noise) {
+  Matrix4 P = Matrix4::Zero();  // of (x, y, a, S)
+  Pose pose;
+  int readings = 0;
+  for (const SegmentRow& row : rows) {
+    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
+    const Matrix3 T = pose_rotation(pose.heading);
+    const Pose step = arc_displacement(travel, robot.wheelbase);
+    Matrix4 F = Matrix4::Identity();
+    F.block<2, 1>(0, 2) = quarter_turn(T.topLeftCorner<2, 2>() * step.position());
+    P = F * P * F.transpose();
+    P.topLeftCorner<3, 3>() +=
+        T * arc_covariance(travel, row.duration, robot, noise) * T.transpose();
+    pose = compose(pose, step);
+    if (std::isnan(row.reading)) continue;
+    ++readings;
+    P.row(3) += P.row(2);
+    P.col(3) += P.col(2);
+  }
+  P.diagonal().head<3>().array() += kLeastSegmentSd * kLeastSegmentSd;
+  if (readings > 0) {
+    P.row(3) /= -readings;
+    P.col(3) /= -readings;
+    P(3, 3) += noise.compass * noise.compass / readings + kLeastSegmentSd * kLeastSegmentSd;
+  } else {
+    P.row(3).setZero();
+    P.col(3).setZero();
+  }
+  return 0.5 * (P + P.transpose());
+}
+
+}  // namespace trussmap

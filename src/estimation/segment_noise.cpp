@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/segment_noise.hpp"
+
+#include "trussmap/dead_reckoning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastSd = 1e-5;  // m and rad
+
+struct Path {
+  std::vector<Pose> poses;  ///< at the start of each row, and the end
+  Vector4 numbers = Vector4::Zero();
+};
+
+/// Lays the steps end to end; without readings the fourth number is 0.
+Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps,
+         const std::vector<double>& offsets) {
+  Path path;
+  Pose pose;
+  path.poses.push_back(pose);
+  double first = 0.0;
+  double sum = 0.0;
+  int readings = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    pose = compose(pose, steps[k]);
+    path.poses.push_back(pose);
+    if (std::isnan(rows[k].reading)) continue;
+    const double angle = rows[k].reading - offsets[k] - pose.heading;
+    if (readings == 0) first = angle;
+    sum += wrap_angle(angle - first);
+    ++readings;
+  }
+  path.numbers << pose.x, pose.y, pose.heading,
+      readings == 0 ? 0.0 : wrap_angle(first + sum / readings);
+  return path;
+}
+
+/// What the rows do each by itself, whatever the noise of the others.
+struct RowsAlone {
+  std::vector<Pose> steps;
+  std::vector<double> offsets;  ///< of the readings, of which there are so many
+  int readings = 0;
+  std::vector<Matrix3> Q;
+};
+
+RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
+                     const Noise& noise,
+                     const std::vector<const std::vector<DrivePattern>*>& patterns,
+                     const Eigen::VectorXd& offsets) {
+  RowsAlone alone;
+  alone.readings = readings_of(rows);
+  for (const SegmentRow& row : rows) {
+    const SegmentMotion motion = segment_motion({row}, patterns, offsets).motion;
+    alone.steps.push_back(motion.displacement);
+    alone.offsets.push_back(
+        std::isnan(row.reading)
+            ? 0.0
+            : wrap_angle(row.reading - motion.displacement.heading - motion.mean_heading));
+    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
+    alone.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
+  }
+  return alone;
+}
+
+/// All of a segment's noise but Q.
+SegmentNoise noise_at(const std::vector<SegmentRow>& rows, const RowsAlone& alone,
+                      const Noise& noise, const std::vector<Eigen::Vector3d>& missing) {
+  SegmentNoise result;
+  std::vector<Pose> steps = alone.steps;
+  result.recorded = lay(rows, steps, alone.offsets).numbers;
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    steps[k].x += missing[k][0];
+    steps[k].y += missing[k][1];
+    steps[k].heading += missing[k][2];
+  }
+  const Path path = lay(rows, steps, alone.offsets);
+  result.value = path.numbers;
+  result.H.resize(rows.size());
+  const Vector2 end = path.poses.back().position();
+  const int readings = alone.readings;
+  int after = 0;
+  for (std::size_t k = rows.size(); k-- > 0;) {
+    if (!std::isnan(rows[k].reading)) ++after;
+    Eigen::Matrix<double, 4, 3>& H = result.H[k];
+    H.setZero();
+    H.topLeftCorner<2, 2>() = rotation(path.poses[k].heading);
+    H.block<2, 1>(0, 2) = quarter_turn(end - path.poses[k + 1].position());
+    H(2, 2) = 1.0;
+    if (readings > 0) H(3, 2) = -static_cast<double>(after) / readings;
+    result.covariance += H * alone.Q[k] * H.transpose();
+    if (k < missing.size()) result.value -= H * missing[k];
+  }
+  result.covariance.diagonal().head<3>().array() += kLeastSd * kLeastSd;
+  if (readings > 0) {
+    result.covariance(3, 3) += noise.compass * noise.compass / readings + kLeastSd * kLeastSd;
+  }
+  return result;
+}
+
+}  // namespace
+
+SegmentNoise segment_noise(const Drive& drive, const std::vector<SegmentRow>& rows,
+                           const Robot& robot, const Noise& noise,
+                           const std::vector<const std::vector<DrivePattern>*>& patterns,
+                           const Eigen::VectorXd& offsets,
+                           const std::vector<Eigen::Vector3d>& missing) {
+  RowsAlone alone = rows_alone(drive, rows, robot, noise, patterns, offsets);
+  SegmentNoise result = noise_at(rows, alone, noise, missing);
+  result.Q = std::move(alone.Q);
+  return result;
+}
+
+double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
+                   const Model& model, const EffectParameters& border,
+                   const Eigen::VectorXd& offsets, const RecordingState& state) {
+  double most = 0.0;
+  for (Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::segment) continue;
+    const std::vector<SegmentRow>& rows = problem.segments[one.source];
+    const Drive& drive = recordings[idx(one.session)].drive;
+    std::vector<const std::vector<DrivePattern>*> patterns;
+    for (const EffectPattern& effect : border) {
+      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
+    }
+    const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
+    const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
+    const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());
+    const Vector4 z(chord.x(), chord.y(), to.heading - from.heading, from.heading);
+    const RowsAlone alone = rows_alone(drive, rows, model.robot, model.noise, patterns, offsets);
+    // From n = 0; the second look takes H where the first found n.
+    std::vector<Eigen::Vector3d> missing;
+    SegmentNoise at = noise_at(rows, alone, model.noise, missing);
+    for (int look = 0; look < 2; ++look) {
+      Vector4 error = z - at.value;
+      error[3] = wrap_angle(error[3]);
+      const Matrix4 W = whitener_of(at.covariance, one.rows);
+      const Vector4 pull = W.transpose() * (W * error);
+      missing.resize(rows.size());
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        missing[k] = alone.Q[k] * at.H[k].transpose() * pull;
+      }
+      at = noise_at(rows, alone, model.noise, missing);
+    }
+    Vector4 linearization_offset = at.value - at.recorded;
+    linearization_offset[3] = one.rows == 4 ? wrap_angle(linearization_offset[3]) : 0.0;
+    const Vector4 change = one.whitener * (linearization_offset - one.linearization_offset);
+    most = std::max(most, change.cwiseAbs().maxCoeff());
+    one.linearization_offset = linearization_offset;
+    one.whitener = whitener_of(at.covariance, one.rows);
+  }
+  return most;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The elastic paper's experiment: a robot tours a mesh again and again, every method builds its map
+// from the same measurements, and after each tour the maps are compared with the truth.
+//
+//   stretch_error      sigma: mean over routes of |s_map - s|/s
+//   orientation_error  rho: mean over routes of |theta_map - theta|                    rad
+//   position_error     mean distance of the landmarks from the truth, the first left out   m
+//
+//   raw               single measurements, the first of each route
+//   dead_reckoning    positions where the landmarks were first met, never corrected
+//   weighted_average  each route's own means; it has no positions
+//   elastic_printed   the paper's two phases as printed
+//   elastic           the same, gain limited
+//   gauss_markov      exact increments, covariances pooled per route
+//   adjustment        batch least squares on the routes' means
+//
+// Golfarelli, Maio & Rizzi (1998), section 4. A seed's walk and measurements are shared by all
+// methods, and do not depend on how many seeds or threads there are.
+#pragma once
+
+#include "simulation/mesh_world.hpp"
+#include "simulation/route_robot.hpp"
+#include "simulation/tours.hpp"
+#include "trussmap/map_builder.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct TourOptions {
+  Mesh mesh;
+  WalkKind walk = WalkKind::euler;
+  int tours = 20;
+  std::uint64_t first_seed = 1;
+  int seeds = 24;
+  /// Mean absolute errors, as in the paper; standard deviations are sqrt(pi/2) times these.
+  double odometry_error = 0.05;  ///< fraction of the stretch
+  double compass_error = 0.03;   ///< rad
+  Eta eta{.kind = Eta::Kind::all};
+  std::function<void(int)> seeds_done = {};  ///< called after each seed, by one thread at a time
+};
+
+/// Mean over the seeds, and its standard error.
+struct SeedMean {
+  double mean = 0.0;
+  double standard_error = 0.0;
+};
+
+struct TourMetrics {
+  SeedMean stretch_error;
+  SeedMean orientation_error;              ///< rad
+  std::optional<SeedMean> position_error;  ///< m, where the method has positions
+};
+
+using MethodMetrics = std::map<std::string, TourMetrics>;
+
+struct TourResult {
+  std::vector<MethodMetrics> tours;  ///< after tour 1, 2, ...
+  TourMetrics first_sight_before;    ///< single measurements of the first tour
+  TourMetrics first_sight_after;     ///< the map after first-sight correction alone, tour 1
+};
+
+/// Names of the methods, in the order in which they are shown.
+[[nodiscard]] const std::vector<std::string>& tour_methods();
+
+/// Throws std::invalid_argument on options out of range.
+[[nodiscard]] TourResult run_tours(const TourOptions& options);
+
+}  // namespace trussmap

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/column_builder.hpp"
+
+#include "effects/shape.hpp"
+#include "estimation/measurement_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using Instant = ShapeContext::Instant;
+
+constexpr std::size_t kValuesKept = 30'000'000;  // numbers
+
+double duration_of(const Drive& drive, std::size_t row) {
+  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
+}
+
+Channel channel_of(const Effect& effect) {
+  if (const std::optional<Channel> channel = parse_channel(effect.channel)) return *channel;
+  throw std::invalid_argument(
+      fmt::format("effect \"{}\" has channel \"{}\", which is unknown, expected one of {}",
+                  effect.name, effect.channel, channel_names()));
+}
+
+/// Shape and session (-1: all) of each of an effect's coefficients.
+struct Part {
+  const std::string& shape;
+  int session;
+};
+
+std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
+  std::vector<Part> parts;
+  const bool apart = effect.per_session && sessions > 1;
+  for (std::size_t s = 0; s < (apart ? sessions : 1); ++s) {
+    for (const std::string& shape : effect.shape) {
+      parts.push_back({shape, apart ? static_cast<int>(s) : -1});
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
+                             const EffectParameters& border, const Eigen::VectorXd& offsets,
+                             const RecordingState& state, const std::vector<double>& weights)
+    : context_(context), segment_rows_(std::make_shared<std::vector<Row>>()) {
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    const Matrix4 W = std::sqrt(weights[k]) * one.whitener;
+    if (one.kind == MeasurementKind::segment) {
+      std::vector<const std::vector<DrivePattern>*> patterns;
+      for (const EffectPattern& effect : border) {
+        patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
+      }
+      const std::vector<SegmentRow>& rows = problem.segments[one.source];
+      const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
+      Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0};
+      for (std::size_t row = 0; row < rows.size(); ++row) {
+        segment_rows_->push_back({rows[row].row, -(W * influences[row])});
+      }
+      segment.row_end = segment_rows_->size();
+      segments_.push_back(segment);
+    } else if (one.session >= 0) {
+      const ViewPattern view = view_of(border, offsets, one);
+      const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
+      views_.push_back({rows_, one.rows, idx(one.session), one.source,
+                        one.kind == MeasurementKind::truth, W * rows.by_view});
+    }
+    rows_ += one.rows;
+  }
+  take_training_segments();
+}
+
+ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
+  ColumnBuilder result = *this;
+  result.joint_ = seconds;
+  result.bases_.clear();
+  result.thinned_.clear();
+  result.values_.clear();
+  result.largest_.clear();
+  result.take_training_segments();
+  return result;
+}
+
+void ColumnBuilder::take_training_segments() {
+  training_segments_.clear();
+  middles_.assign(context_.recordings().size(), {});
+  for (Segment& segment : segments_) take_training_segments(segment);
+}
+
+void ColumnBuilder::take_training_segments(Segment& segment) {
+  const std::vector<Row>& rows = *segment_rows_;
+  const Drive& drive = context_.recordings()[segment.session].drive;
+  std::vector<std::size_t>& middles = middles_[segment.session];
+  segment.begin = training_segments_.size();
+  for (std::size_t k = segment.row_begin; k < segment.row_end;) {
+    Stretch stretch{rows[k].row, k, k + 1};
+    if (joint_ > 0.0) {
+      double time = duration_of(drive, rows[k].row);
+      for (; stretch.end < segment.row_end; ++stretch.end) {
+        time += duration_of(drive, rows[stretch.end].row);
+        if (time > joint_) break;
+      }
+      stretch.place = middles.size();
+      middles.push_back(rows[(stretch.begin + stretch.end) / 2].row);
+    }
+    training_segments_.push_back(stretch);
+    k = stretch.end;
+  }
+  segment.end = training_segments_.size();
+}
+
+RowVariables ColumnBuilder::thinned(std::size_t session, Instant at) const {
+  RowVariables result;
+  for (const auto& [name, values] : context_.variables(session, at)) {
+    std::vector<double>& some = result[name];
+    some.reserve(middles_[session].size());
+    for (const std::size_t row : middles_[session]) some.push_back(values[row]);
+  }
+  return result;
+}
+
+const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
+  const auto found = bases_.find(channel);
+  if (found != bases_.end()) return found->second;
+  Eigen::Matrix4Xd basis =
+      Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(training_segments_.size()));
+  for (const Segment& segment : segments_) {
+    const Drive& drive = context_.recordings()[segment.session].drive;
+    for (std::size_t k = segment.begin; k < segment.end; ++k) {
+      for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
+        const Row& row = (*segment_rows_)[at];
+        const DrivePattern unit =
+            row_pattern(channel, 1.0, context_.travel(segment.session, row.row),
+                        duration_of(drive, row.row), context_.robot().wheelbase);
+        basis.col(static_cast<Eigen::Index>(k)).noalias() +=
+            row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+      }
+    }
+  }
+  return bases_.emplace(channel, std::move(basis)).first->second;
+}
+
+const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Instant at) {
+  const auto key = std::make_pair(shape, at);
+  const auto found = values_.find(key);
+  if (found != values_.end()) return found->second;
+  if (values_.size() * training_segments_.size() > kValuesKept) values_.clear();
+  const Values& f = values_.emplace(key, evaluated(shape, at)).first->second;
+  std::vector<double>& largest = largest_[key];
+  largest.clear();
+  for (const std::vector<double>& session : f) {
+    double most = 0.0;
+    for (const double value : session) most = std::max(most, std::abs(value));
+    largest.push_back(most);
+  }
+  return f;
+}
+
+ColumnBuilder::Values ColumnBuilder::evaluated(const std::string& shape, Instant at) {
+  const bool of_rows = at == Instant::middle || at == Instant::end;
+  if (joint_ == 0.0 || !of_rows) return context_.values(shape, at);
+  std::vector<RowVariables>& some = thinned_[at];
+  for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
+  Values result;
+  for (const RowVariables& session : some) result.push_back(evaluate_shape(shape, session));
+  return result;
+}
+
+void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int session,
+                               Eigen::Ref<Eigen::VectorXd> column) {
+  const Eigen::Matrix4Xd& units = basis(channel);
+  const Values& f =
+      values(shape, acts_on(channel) == ActsOn::readings ? Instant::end : Instant::middle);
+  for (const Segment& segment : segments_) {
+    if (session >= 0 && segment.session != idx(session)) continue;
+    const std::vector<double>& here = f[segment.session];
+    Vector4 sum = Vector4::Zero();
+    for (std::size_t k = segment.begin; k < segment.end; ++k) {
+      sum += here[training_segments_[k].place] * units.col(static_cast<Eigen::Index>(k));
+    }
+    for (int row = 0; row < segment.rows; ++row) column[segment.first_row + row] = sum[row];
+  }
+}
+
+void ColumnBuilder::add_views(Channel channel, const std::string& shape, int session,
+                              Eigen::Ref<Eigen::VectorXd> column) {
+  for (const Instant at : {Instant::sighting, Instant::truth}) {
+    const Values& f = values(shape, at);
+    for (const View& view : views_) {
+      if (view.truth != (at == Instant::truth)) continue;
+      if (session >= 0 && view.session != idx(session)) continue;
+      const RowVariables& variables = context_.variables(view.session, at);
+      const ViewPattern unit =
+          view_pattern(channel, f[view.session][view.source], variables.at("speed")[view.source],
+                       variables.at("turn_rate")[view.source]);
+      const Vector4 rows = view.influence * unit.vector();
+      for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
+    }
+  }
+}
+
+Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
+  const Channel channel = channel_of(effect);
+  const std::vector<Part> parts = parts_of(effect, context_.recordings().size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(parts.size()));
+  try {
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      if (acts_on(channel) == ActsOn::views) {
+        add_views(channel, parts[k].shape, parts[k].session, result.col(column));
+      } else {
+        add_drives(channel, parts[k].shape, parts[k].session, result.col(column));
+      }
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+  }
+  return result;
+}
+
+std::vector<double> ColumnBuilder::largest(const Effect& effect) {
+  const Channel channel = channel_of(effect);
+  std::vector<Instant> instants{Instant::middle};
+  if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
+  if (acts_on(channel) == ActsOn::views) instants = {Instant::sighting, Instant::truth};
+  std::vector<double> result;
+  for (const Part& part : parts_of(effect, context_.recordings().size())) {
+    double most = 0.0;
+    for (const Instant at : instants) {
+      const auto key = std::make_pair(part.shape, at);
+      if (!largest_.contains(key)) static_cast<void>(values(part.shape, at));
+      const std::vector<double>& sessions = largest_.at(key);
+      for (std::size_t s = 0; s < sessions.size(); ++s) {
+        if (part.session < 0 || s == idx(part.session)) most = std::max(most, sessions[s]);
+      }
+    }
+    result.push_back(most);
+  }
+  return result;
+}
+
+}  // namespace trussmap

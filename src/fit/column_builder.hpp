@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Whitened columns of any number of effects at one fit, fast: channel x shape comes apart.
+//
+//   column = - sum over the rows k of a segment  f_k  W I_k u_k        (a view: W V u f)
+//
+//   I_k   what one unit of motion in row k does to the segment (row_influences)
+//   u_k   what one unit of the channel adds to row k (row_pattern): the same for every shape
+//   f_k   the shape there: the same for every channel
+//
+// Channels and shapes are each worked out once. Cost of a further column: four products a row.
+#pragma once
+
+#include "fit/effect_columns.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+class ColumnBuilder {
+ public:
+  /// Keeps references to context, problem and border. `weights` of the measurements (information);
+  /// `offsets` of the border's coefficients from their references.
+  ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
+                const EffectParameters& border, const Eigen::VectorXd& offsets,
+                const RecordingState& state, const std::vector<double>& weights);
+
+  /// The same for a quick look: so many seconds of driving count as one row, with the variables of
+  /// its middle. Shares what it can with this one.
+  [[nodiscard]] ColumnBuilder coarsened(double seconds) const;
+
+  /// One column per coefficient of the effect (resolved), its rows in the order of the problem's
+  /// measurements. Throws std::invalid_argument like effect_columns.
+  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect);
+  /// |f| at most, per coefficient.
+  [[nodiscard]] std::vector<double> largest(const Effect& effect);
+
+  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+
+ private:
+  struct Row {
+    std::size_t row = 0;                  ///< of the drive
+    Matrix4 influence = Matrix4::Zero();  ///< whitened
+  };
+  /// Rows of a segment that share a shape's value.
+  struct Stretch {
+    std::size_t place = 0;  ///< of the value, in its session
+    std::size_t begin = 0;  ///< of the rows
+    std::size_t end = 0;
+  };
+  struct Segment {
+    Eigen::Index first_row = 0;
+    int rows = 0;
+    std::size_t session = 0;
+    std::size_t row_begin = 0;  ///< of the rows
+    std::size_t row_end = 0;
+    std::size_t begin = 0;  ///< of training_segments_
+    std::size_t end = 0;
+  };
+  struct View {
+    Eigen::Index first_row = 0;
+    int rows = 0;
+    std::size_t session = 0;
+    std::size_t source = 0;
+    bool truth = false;
+    Eigen::Matrix<double, 4, 6> influence = Eigen::Matrix<double, 4, 6>::Zero();  ///< whitened
+  };
+  using Values = std::vector<std::vector<double>>;  ///< per session
+
+  /// Of rows joint_ long at most; no longer than a segment.
+  void take_training_segments();
+  void take_training_segments(Segment& segment);
+  [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
+  const Eigen::Matrix4Xd& basis(Channel channel);
+  const Values& values(const std::string& shape, ShapeContext::Instant at);
+  [[nodiscard]] Values evaluated(const std::string& shape, ShapeContext::Instant at);
+  void add_drives(Channel channel, const std::string& shape, int session,
+                  Eigen::Ref<Eigen::VectorXd> column);
+  void add_views(Channel channel, const std::string& shape, int session,
+                 Eigen::Ref<Eigen::VectorXd> column);
+
+  const ShapeContext& context_;
+  double joint_ = 0.0;
+  Eigen::Index rows_ = 0;
+  std::shared_ptr<std::vector<Row>> segment_rows_;
+  std::vector<Stretch> training_segments_;
+  std::vector<std::vector<std::size_t>> middles_;  ///< per session, rows that stand for a stretch
+  std::vector<Segment> segments_;
+  std::vector<View> views_;
+  std::map<Channel, Eigen::Matrix4Xd> bases_;
+  std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
+  std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
+  /// |f| at most, per session; outlives the values.
+  std::map<std::pair<std::string, ShapeContext::Instant>, std::vector<double>> largest_;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,332 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/effect_columns.hpp"
+
+#include "effects/shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+ActsOn acts_on(Channel channel) {
+  switch (channel) {
+    case Channel::compass:
+      return ActsOn::readings;
+    case Channel::lever:
+    case Channel::lever_left:
+    case Channel::range:
+    case Channel::range_scale:
+    case Channel::bearing:
+    case Channel::delay:
+      return ActsOn::views;
+    default:
+      return ActsOn::drives;
+  }
+}
+
+DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel, double duration,
+                         double wheelbase) {
+  const auto [left, right] = travel;
+  const double path = 0.5 * (left + right);
+  const double turn = (right - left) / wheelbase;
+  switch (channel) {
+    case Channel::travel:
+      return {f * path, 0.0, 0.0, 0.0};
+    case Channel::left:
+      return {0.5 * f * left, 0.0, -f * left / wheelbase, 0.0};
+    case Channel::right:
+      return {0.5 * f * right, 0.0, f * right / wheelbase, 0.0};
+    case Channel::wheels:
+      return {f * path, 0.0, f * turn, 0.0};
+    case Channel::difference:
+      return {0.25 * f * (right - left), 0.0, f * path / wheelbase, 0.0};
+    case Channel::turn:
+      return {0.0, 0.0, f * turn, 0.0};
+    case Channel::drift:
+      return {0.0, 0.0, f * duration, 0.0};
+    case Channel::advance:
+      return {f, 0.0, 0.0, 0.0};
+    case Channel::rotate:
+      return {0.0, 0.0, f, 0.0};
+    case Channel::creep:
+      return {0.0, f * path, 0.0, 0.0};
+    case Channel::compass:
+      return {0.0, 0.0, 0.0, f};
+    default:
+      return {};
+  }
+}
+
+ViewPattern view_pattern(Channel channel, double f, double speed, double turn_rate) {
+  ViewPattern view;
+  switch (channel) {
+    case Channel::lever:
+      view.ahead = f;
+      break;
+    case Channel::lever_left:
+      view.left = f;
+      break;
+    case Channel::range:
+      view.range = f;
+      break;
+    case Channel::range_scale:
+      view.range_scale = f;
+      break;
+    case Channel::bearing:
+      view.bearing = f;
+      break;
+    case Channel::delay:
+      view.ahead = -f * speed;
+      view.heading = -f * turn_rate;
+      break;
+    default:
+      break;
+  }
+  return view;
+}
+
+namespace {
+
+using Instant = ShapeContext::Instant;
+
+std::vector<ViewPattern> views(Channel channel, const std::vector<double>& f,
+                               const RowVariables& variables) {
+  const std::vector<double>& speed = variables.at("speed");
+  const std::vector<double>& turn_rate = variables.at("turn_rate");
+  std::vector<ViewPattern> result;
+  result.reserve(f.size());
+  for (std::size_t k = 0; k < f.size(); ++k) {
+    result.push_back(view_pattern(channel, f[k], speed[k], turn_rate[k]));
+  }
+  return result;
+}
+
+double duration_of(const Drive& drive, std::size_t row) {
+  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
+}
+
+double largest(const std::vector<std::vector<double>>& values) {
+  double most = 0.0;
+  for (const std::vector<double>& session : values) {
+    for (const double f : session) most = std::max(most, std::abs(f));
+  }
+  return most;
+}
+
+template <typename Event>
+RowVariables event_variables(const Recording& recording, const Robot& robot,
+                             const SessionPath& path, const std::vector<Event>& events,
+                             int session) {
+  std::vector<double> instants;
+  std::vector<Pose> poses;
+  for (const Event& event : events) {
+    instants.push_back(event.t);
+    poses.push_back(pose_at(recording.drive, path, event.t));
+  }
+  return instant_variables(recording.drive, robot.wheelbase, instants, poses, session);
+}
+
+}  // namespace
+
+ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
+                           const std::vector<SessionPath>& paths)
+    : recordings_(recordings), robot_(robot) {
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const Recording& one = recordings[s];
+    const int session = static_cast<int>(s);
+    missing_.push_back(paths[s].missing);
+    middles_.push_back(
+        row_variables(one.drive, robot.wheelbase, paths[s].start, paths[s].ends, session));
+    ends_.push_back(
+        instant_variables(one.drive, robot.wheelbase, one.drive.t, paths[s].ends, session));
+    sightings_.push_back(event_variables(one, robot, paths[s], one.sightings, session));
+    truths_.push_back(event_variables(one, robot, paths[s], one.truth, session));
+  }
+}
+
+WheelTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
+  const Drive& drive = recordings_[session].drive;
+  WheelTravel travel{drive.left[row], drive.right[row]};
+  if (missing_[session].empty()) return travel;
+  const Vector2& lacks = missing_[session][row];
+  travel.left += lacks[0] - 0.5 * robot_.wheelbase * lacks[1];
+  travel.right += lacks[0] + 0.5 * robot_.wheelbase * lacks[1];
+  return travel;
+}
+
+const RowVariables& ShapeContext::variables(std::size_t session, Instant at) const {
+  switch (at) {
+    case Instant::middle:
+      return middles_[session];
+    case Instant::end:
+      return ends_[session];
+    case Instant::sighting:
+      return sightings_[session];
+    case Instant::truth:
+      break;
+  }
+  return truths_[session];
+}
+
+std::vector<std::vector<double>> ShapeContext::values(const std::string& shape, Instant at) const {
+  std::vector<std::vector<double>> result;
+  result.reserve(recordings_.size());
+  for (std::size_t s = 0; s < recordings_.size(); ++s) {
+    result.push_back(evaluate_shape(shape, variables(s, at)));
+  }
+  return result;
+}
+
+namespace {
+
+struct Column {
+  EffectPattern pattern;
+  double largest = 0.0;
+};
+
+void keep_session(std::vector<std::vector<double>>& values, int session) {
+  for (std::size_t s = 0; s < values.size() && session >= 0; ++s) {
+    if (s != idx(session)) std::fill(values[s].begin(), values[s].end(), 0.0);
+  }
+}
+
+/// What fails within is told with the effect's name.
+template <typename Action>
+auto in_words_of(const Effect& effect, const Action& action) {
+  try {
+    return action();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+  }
+}
+
+Column make_column(Channel channel, const std::string& shape, int session,
+                   const ShapeContext& context) {
+  const std::vector<Recording>& recordings = context.recordings();
+  Column column;
+  if (acts_on(channel) == ActsOn::views) {
+    auto sightings = context.values(shape, Instant::sighting);
+    auto truths = context.values(shape, Instant::truth);
+    keep_session(sightings, session);
+    keep_session(truths, session);
+    for (std::size_t s = 0; s < recordings.size(); ++s) {
+      column.pattern.sightings.push_back(
+          views(channel, sightings[s], context.variables(s, Instant::sighting)));
+      column.pattern.truths.push_back(
+          views(channel, truths[s], context.variables(s, Instant::truth)));
+    }
+    column.largest = std::max(largest(sightings), largest(truths));
+    return column;
+  }
+  const bool readings = acts_on(channel) == ActsOn::readings;
+  auto values = context.values(shape, readings ? Instant::end : Instant::middle);
+  keep_session(values, session);
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    std::vector<DrivePattern>& patterns = column.pattern.drives.emplace_back();
+    patterns.reserve(values[s].size());
+    for (std::size_t row = 0; row < values[s].size(); ++row) {
+      const WheelTravel travel = context.travel(s, row);
+      patterns.push_back(row_pattern(channel, values[s][row], travel,
+                                     duration_of(recordings[s].drive, row),
+                                     context.robot().wheelbase));
+    }
+  }
+  column.largest = largest(values);
+  return column;
+}
+
+}  // namespace
+
+EffectPattern effect_column(Channel channel, const std::string& shape, int session,
+                            const ShapeContext& context) {
+  return make_column(channel, shape, session, context).pattern;
+}
+
+std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) {
+  const std::size_t expected = effect.shape.size() * (effect.per_session ? sessions : 1);
+  if (effect.coefficients.empty()) return std::vector<double>(expected, 0.0);
+  if (effect.coefficients.size() != expected) {
+    throw std::invalid_argument(fmt::format(
+        "effect \"{}\" has {} coefficients, expected {}: one per shape{}", effect.name,
+        effect.coefficients.size(), expected,
+        effect.per_session ? fmt::format(" and session, of which there are {}", sessions) : ""));
+  }
+  return effect.coefficients;
+}
+
+EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeContext& context) {
+  EffectColumns result;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const Effect& effect = effects[e];
+    const std::optional<Channel> channel = parse_channel(effect.channel);
+    if (!channel) {
+      throw std::invalid_argument(
+          fmt::format("effect \"{}\" has channel \"{}\", which is unknown, expected one of {}",
+                      effect.name, effect.channel, channel_names()));
+    }
+    const std::size_t sessions = effect.per_session ? context.recordings().size() : 1;
+    const std::vector<double> coefficients = coefficients_of(effect, context.recordings().size());
+    for (std::size_t place = 0; place < coefficients.size(); ++place) {
+      const std::size_t shape = place % effect.shape.size();
+      const int session = sessions == 1 ? -1 : static_cast<int>(place / effect.shape.size());
+      Column column = in_words_of(
+          effect, [&] { return make_column(*channel, effect.shape[shape], session, context); });
+      column.pattern.name = effect.name;
+      if (*channel == Channel::delay) column.pattern.reference = coefficients[place];
+      result.border.push_back(std::move(column.pattern));
+      result.coefficients.push_back({e, shape, place, column.largest});
+    }
+  }
+  return result;
+}
+
+std::vector<double> retimed(const std::vector<double>& instants, const Recording& recording,
+                            std::size_t session, std::size_t sessions,
+                            const std::vector<Effect>& effects, const Robot& robot) {
+  std::vector<double> result = instants;
+  const std::vector<Pose> nowhere(instants.size());
+  for (const Effect& effect : effects) {
+    if (parse_channel(effect.channel) != Channel::delay) continue;
+    const std::vector<double> coefficients = coefficients_of(effect, sessions);
+    const RowVariables variables = instant_variables(recording.drive, robot.wheelbase, instants,
+                                                     nowhere, static_cast<int>(session));
+    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+      const std::vector<double> f =
+          in_words_of(effect, [&] { return evaluate_shape(effect.shape[k], variables); });
+      const std::size_t place = (effect.per_session ? session * effect.shape.size() : 0) + k;
+      for (std::size_t n = 0; n < result.size(); ++n) result[n] -= coefficients[place] * f[n];
+    }
+  }
+  return result;
+}
+
+std::vector<Recording> retimed(const std::vector<Recording>& recordings,
+                               const std::vector<Effect>& effects, const Robot& robot) {
+  std::vector<Recording> result = recordings;
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const auto shift = [&](auto& events) {
+      std::vector<double> instants;
+      for (const auto& event : events) instants.push_back(event.t);
+      instants = retimed(instants, recordings[s], s, recordings.size(), effects, robot);
+      for (std::size_t n = 0; n < events.size(); ++n) events[n].t = instants[n];
+    };
+    shift(result[s].sightings);
+    shift(result[s].truth);
+  }
+  for (Recording& recording : result) {
+    const auto outside = [&recording](const auto& event) {
+      return event.t < recording.drive.start() || event.t > recording.drive.t.back();
+    };
+    const auto earlier = [](const auto& a, const auto& b) { return a.t < b.t; };
+    std::erase_if(recording.sightings, outside);
+    std::erase_if(recording.truth, outside);
+    std::stable_sort(recording.sightings.begin(), recording.sightings.end(), earlier);
+    std::stable_sort(recording.truth.begin(), recording.truth.end(), earlier);
+  }
+  return result;
+}
+
+}  // namespace trussmap

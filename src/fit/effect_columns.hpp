@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Effects as columns of the adjustment's border: channel x shape, row by row.
+//
+// Each channel's action stands here, once. With f the shape's value, one unit of a coefficient adds
+//
+//   channel             per row of the drive                  shape taken at
+//   travel              path f                                middle of the row
+//   left, right         half the wheel's travel, and          middle
+//                       -+ travel/wheelbase of turn
+//   wheels              path f, turn f                        middle
+//   difference          (right - left)/4 f, path/wheelbase f  middle
+//   turn, drift, rotate turn f, duration f, f (turn)          middle
+//   advance             f (path)                              middle
+//   creep               path f, to the left                   middle
+//   compass             f                                     the reading's instant
+//   ... per sighting and truth row
+//   lever, lever_left   f ahead, to the left                  its instant
+//   range, range_scale, bearing   f (sightings only)          its instant
+//   delay               -speed f ahead, -turn rate f          its instant
+//
+// Travel and turn are those of the record less its noise, as the fit believes it (fitted_path.hpp):
+// a column that holds the same noise as the residual it is to explain would explain it. So would a
+// smaller map, by shrinking every error, where no survey fixes the scale.
+//
+// All act on the motion as recorded, so the order of effects does not matter. A delay is exact only
+// near its reference: the times of sightings and truth are to be moved back by that (retimed).
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "fit/fitted_path.hpp"
+#include "recording/row_variables.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/channel.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// What the data tell of a coefficient counts only above this share of what its column would tell
+/// if nothing else were unknown: what rounding leaves.
+inline constexpr double kLeastShare = 1e-7;
+/// And only where its standard error is below this share of the channel's plausible size: else more
+/// was known before.
+inline constexpr double kLargestUncertainty = 1.0 / 3.0;
+
+/// Where one coefficient of the border belongs.
+struct Coefficient {
+  std::size_t effect = 0;
+  std::size_t shape = 0;
+  std::size_t place = 0;  ///< in the effect's list of coefficients
+  double largest = 0.0;   ///< |f| over all rows or instants
+};
+
+struct EffectColumns {
+  EffectParameters border;
+  std::vector<Coefficient> coefficients;  ///< one per entry of the border
+};
+
+/// What shapes may speak of, for all sessions.
+class ShapeContext {
+ public:
+  /// Keeps references to the recordings.
+  ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
+               const std::vector<SessionPath>& paths);
+
+  /// Values of a shape per session, per row at its middle or end, per sighting, per truth row.
+  /// Throws std::invalid_argument like evaluate_shape.
+  enum class Instant { middle, end, sighting, truth };
+  [[nodiscard]] std::vector<std::vector<double>> values(const std::string& shape, Instant at) const;
+  [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
+  /// A row's travels, its noise taken out.
+  [[nodiscard]] WheelTravel travel(std::size_t session, std::size_t row) const;
+
+  [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+
+ private:
+  const std::vector<Recording>& recordings_;
+  Robot robot_;
+  std::vector<std::vector<Vector2>> missing_;  ///< per session and row: travel, turn
+  std::vector<RowVariables> middles_, ends_, sightings_, truths_;
+};
+
+/// Where a channel acts, and so where its shapes are taken.
+enum class ActsOn { drives, readings, views };
+[[nodiscard]] ActsOn acts_on(Channel channel);
+
+/// What one unit of a coefficient adds to a row with this travel, where the shape is f.
+[[nodiscard]] DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel,
+                                       double duration, double wheelbase);
+/// And to a view or truth row at this speed (m/s) and turn rate (rad/s).
+[[nodiscard]] ViewPattern view_pattern(Channel channel, double f, double speed, double turn_rate);
+
+/// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
+/// Throws std::invalid_argument on a shape that cannot be evaluated.
+[[nodiscard]] EffectPattern effect_column(Channel channel, const std::string& shape, int session,
+                                          const ShapeContext& context);
+
+/// Columns of all effects, which are resolved (catalogue.hpp). Throws std::invalid_argument, with
+/// the effect's name, on an unknown channel, a shape that cannot be evaluated, or a number of
+/// coefficients that does not match.
+[[nodiscard]] EffectColumns effect_columns(const std::vector<Effect>& effects,
+                                           const ShapeContext& context);
+
+/// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
+/// std::invalid_argument where their number is wrong for so many sessions.
+[[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);
+
+/// Sightings and truth rows moved back by the delays of the effects; those that fall out of the
+/// drive are dropped. Shapes of delays see no path: heading, x and y are 0.
+[[nodiscard]] std::vector<Recording> retimed(const std::vector<Recording>& recordings,
+                                             const std::vector<Effect>& effects,
+                                             const Robot& robot);
+
+/// Any instants of one of the sessions, moved back in the same way.
+[[nodiscard]] std::vector<double> retimed(const std::vector<double>& instants,
+                                          const Recording& recording, std::size_t session,
+                                          std::size_t sessions, const std::vector<Effect>& effects,
+                                          const Robot& robot);
+
+}  // namespace trussmap

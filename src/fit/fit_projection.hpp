@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a fit leaves of its measurements' noise: r = P e (but for the sign, which is nobody's).
+//
+//   P = 1 - J A^-1 J' - Q Q'     J   whitened rows by landmarks and poses, A = J'J
+//                                Q   orthonormal columns of the coefficients fitted, less their
+//                                    projection on J, and of what else is set aside
+//
+// A measurement's own block P_kk costs no solve: its nodes are neighbours in A, whose inverse is
+// known there (truss/selected_inverse.hpp).
+#pragma once
+
+#include "estimation/recording_system.hpp"
+#include "fit/model_fit.hpp"
+#include "linalg/selected_inverse.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// A measurement's whitened rows by its two nodes, as the system has them.
+struct NodeRows {
+  RowsByNode from = RowsByNode::Zero();
+  RowsByNode to = RowsByNode::Zero();
+};
+
+class FitProjection {
+ public:
+  /// `problem` has the fit's measurements, perhaps with other weights; `system` is factorised.
+  /// `aside`: columns that are already free of J. Keeps references to problem and system.
+  FitProjection(const ModelFit& fit, const RecordingProblem& problem, const RecordingSystem& system,
+                const Eigen::MatrixXd& nuisance);
+
+  /// P times the columns.
+  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& columns) const;
+  /// P_kk, rows x rows of the measurement; the unit matrix where it is left out.
+  [[nodiscard]] Eigen::MatrixXd own_block(std::size_t measurement) const;
+  [[nodiscard]] const NodeRows& rows_of(std::size_t measurement) const { return J_[measurement]; }
+  [[nodiscard]] const Eigen::MatrixXd& set_aside() const { return Q_; }
+  [[nodiscard]] bool left_out(std::size_t measurement) const { return left_out_[measurement]; }
+
+ private:
+  const RecordingProblem& problem_;
+  const RecordingSystem& system_;
+  SelectedInverse inverse_;
+  std::vector<bool> left_out_;
+  std::vector<NodeRows> J_;
+  Eigen::MatrixXd Q_;
+};
+
+/// Orthonormal columns that span these.
+[[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
+
+}  // namespace trussmap

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/fitted_path.hpp"
+
+#include "recording/row_variables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+namespace trussmap {
+namespace {
+
+/// One session's rows under the effects.
+class Reckoner {
+ public:
+  Reckoner(const Drive& drive, const Robot& robot, const EffectParameters& border,
+           const Eigen::VectorXd& offsets, int session)
+      : drive_(drive), robot_(robot), border_(border), offsets_(offsets), session_(idx(session)) {}
+
+  /// Motion over part of the drive, in the frame of its start.
+  [[nodiscard]] Pose motion(double from, double to) const {
+    return motion(segment_rows(drive_, from, to, robot_));
+  }
+  [[nodiscard]] Pose motion(const std::vector<SegmentRow>& rows) const {
+    return segment_motion(rows, patterns(), offsets_).motion.displacement;
+  }
+  [[nodiscard]] std::vector<Matrix4> influences(const std::vector<SegmentRow>& rows) const {
+    return row_influences(rows, patterns(), offsets_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<const std::vector<DrivePattern>*> patterns() const {
+    std::vector<const std::vector<DrivePattern>*> result;
+    result.reserve(border_.size());
+    for (const EffectPattern& effect : border_) {
+      result.push_back(effect.drives.empty() ? nullptr : &effect.drives[session_]);
+    }
+    return result;
+  }
+
+  const Drive& drive_;
+  const Robot& robot_;
+  const EffectParameters& border_;
+  const Eigen::VectorXd& offsets_;
+  std::size_t session_;
+};
+
+/// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
+/// what the whole lacks: Q A' (sum A Q A')^-1 e, with A the row's influence and Q its share of
+/// noise.
+std::vector<Vector2> believed_noise(const std::vector<SegmentRow>& rows, const Drive& drive,
+                                    const Robot& robot, const std::vector<Matrix4>& influences,
+                                    const Eigen::Vector3d& lacking) {
+  constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
+  using Influence = Eigen::Matrix<double, 3, 2>;
+  std::vector<Influence> spread(rows.size());
+  Matrix3 total = Matrix3::Zero();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    Influence A;
+    A.col(0) = influences[k].block<3, 1>(0, 0);
+    A.col(1) = influences[k].block<3, 1>(0, 2);
+    const double left = std::abs(rows[k].part * drive.left[rows[k].row]) + kLeastShare;
+    const double right = std::abs(rows[k].part * drive.right[rows[k].row]) + kLeastShare;
+    Matrix2 Q;
+    Q << 0.25 * (left + right), 0.5 * (right - left) / robot.wheelbase,
+        0.5 * (right - left) / robot.wheelbase,
+        (left + right) / (robot.wheelbase * robot.wheelbase);
+    spread[k] = A * Q;
+    total += spread[k] * A.transpose();
+  }
+  const double size = total.trace();
+  total.diagonal().array() += 1e-12 * size;
+  const Eigen::Vector3d pull = total.ldlt().solve(lacking);
+  std::vector<Vector2> noise;
+  noise.reserve(rows.size());
+  for (const Influence& one : spread) noise.emplace_back(one.transpose() * pull);
+  return noise;
+}
+
+/// Fills the ends of the rows that lie between two nodes.
+void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckoner,
+                  const PoseNode& from, const Pose& at_from, const PoseNode& to, const Pose& at_to,
+                  SessionPath& path) {
+  constexpr int kRounds = 3;  // the noise bends the path on which it acts
+  std::vector<SegmentRow> rows = segment_rows(drive, from.t, to.t, robot);
+  if (rows.empty()) return;
+  const Pose wanted = relative(at_from, at_to);
+  std::vector<Vector2> missing(rows.size(), Vector2::Zero());
+  for (int round = 0; round < kRounds; ++round) {
+    const Pose reached = reckoner.motion(rows);
+    const Eigen::Vector3d lacking(wanted.x - reached.x, wanted.y - reached.y,
+                                  wrap_angle(wanted.heading - reached.heading));
+    const std::vector<Vector2> noise =
+        believed_noise(rows, drive, robot, reckoner.influences(rows), lacking);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Vector2 own = rows[k].part * noise[k];
+      rows[k].path += own[0];
+      rows[k].turn += own[1];
+      missing[k] += own;
+    }
+  }
+  Pose pose = at_from;
+  std::vector<Pose> reached;
+  for (const SegmentRow& row : rows) {
+    pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+    reached.push_back(pose);
+  }
+  // What a wheel cannot have done (a slip sideways while standing) is spread evenly.
+  const Vector2 left = at_to.position() - pose.position();
+  const double left_turn = wrap_angle(at_to.heading - pose.heading);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double share = static_cast<double>(k + 1) / static_cast<double>(rows.size());
+    Pose& end = path.ends[rows[k].row];
+    end = reached[k];
+    end.x += share * left.x();
+    end.y += share * left.y();
+    end.heading += share * left_turn;
+    path.missing[rows[k].row] += missing[k];
+  }
+}
+
+/// The pose that a motion leads from to `end`.
+Pose before(const Pose& end, const Pose& motion) {
+  Pose start;
+  start.heading = end.heading - motion.heading;
+  const Vector2 place = end.position() - rotation(start.heading) * motion.position();
+  start.x = place.x();
+  start.y = place.y();
+  return start;
+}
+
+}  // namespace
+
+std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, const Robot& robot,
+                                      const RecordingProblem& problem,
+                                      const EffectParameters& border,
+                                      const Eigen::VectorXd& offsets, const RecordingState& state) {
+  std::vector<SessionPath> paths(recordings.size());
+  std::vector<int> first(recordings.size(), -1);
+  std::vector<int> last(recordings.size(), -1);
+  for (std::size_t k = 0; k < problem.poses.size(); ++k) {
+    const std::size_t session = idx(problem.poses[k].session);
+    if (first[session] < 0) first[session] = static_cast<int>(k);
+    last[session] = static_cast<int>(k);
+  }
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const Drive& drive = recordings[s].drive;
+    const Reckoner reckoner(drive, robot, border, offsets, static_cast<int>(s));
+    SessionPath& path = paths[s];
+    path.ends.resize(drive.rows());
+    path.missing.assign(drive.rows(), Vector2::Zero());
+    if (first[s] < 0) continue;
+    const PoseNode& first_node = problem.poses[idx(first[s])];
+    path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));
+    Pose pose = path.start;
+    for (const SegmentRow& row : segment_rows(drive, drive.start(), first_node.t, robot)) {
+      pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+      path.ends[row.row] = pose;
+    }
+    for (int k = first[s]; k < last[s]; ++k) {
+      fill_between(drive, robot, reckoner, problem.poses[idx(k)], state.poses[idx(k)],
+                   problem.poses[idx(k + 1)], state.poses[idx(k + 1)], path);
+    }
+    pose = state.poses[idx(last[s])];
+    for (const SegmentRow& row :
+         segment_rows(drive, problem.poses[idx(last[s])].t, drive.t.back(), robot)) {
+      pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
+      path.ends[row.row] = pose;
+    }
+  }
+  return paths;
+}
+
+Pose pose_at(const Drive& drive, const SessionPath& path, double t) {
+  const std::size_t row = row_at(drive, t);
+  const Pose& from = row == 0 ? path.start : path.ends[row - 1];
+  const Pose& to = path.ends[row];
+  const double begin = row == 0 ? drive.start() : drive.t[row - 1];
+  const double share = std::clamp((t - begin) / (drive.t[row] - begin), 0.0, 1.0);
+  const double turn = wrap_angle(to.heading - from.heading);
+  return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+          from.heading + share * turn};
+}
+
+}  // namespace trussmap

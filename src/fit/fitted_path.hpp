@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Where the robot was in every row, as an adjustment has it.
+//
+//   node o~~~~~~~~~> * node      rows are reckoned from node to node, with the effects; what is
+//                      ^ missing  missing at the next node is shared out over the rows as white
+//                                 noise of the wheels that adds up to it
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "estimation/recording_problem.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+struct SessionPath {
+  Pose start;              ///< at the drive's start; map frame, heading not wrapped
+  std::vector<Pose> ends;  ///< at the end of each row
+  /// What each row's record lacks of forward travel (m) and turn (rad), as the fit believes: its
+  /// noise. Empty: nothing.
+  std::vector<Vector2> missing = {};
+};
+
+/// One path per session. `offsets` are the coefficients of the border less their references. Before
+/// the first node and after the last the robot is reckoned from there.
+[[nodiscard]] std::vector<SessionPath> fitted_paths(
+    const std::vector<Recording>& recordings, const Robot& robot, const RecordingProblem& problem,
+    const EffectParameters& border, const Eigen::VectorXd& offsets, const RecordingState& state);
+
+/// The pose at time t, along the row.
+[[nodiscard]] Pose pose_at(const Drive& drive, const SessionPath& path, double t);
+
+}  // namespace trussmap

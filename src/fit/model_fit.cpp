@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/model_fit.hpp"
+
+#include "estimation/recording_descent.hpp"
+#include "estimation/recording_start.hpp"
+#include "estimation/segment_noise.hpp"
+#include "fit/noise_free.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kMostDispersion = 4.0;  // chi^2/dof
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Rounds of fitting and looking at the path again.
+class Fitter {
+ public:
+  Fitter(const std::vector<Recording>& recordings, const Model& model,
+         const ModelFitOptions& options)
+      : recorded_(recordings), options_(options) {
+    fit_.model = model;
+    for (Effect& effect : fit_.model.effects) {
+      effect = resolved(effect);
+      effect.coefficients = coefficients_of(effect, recordings.size());
+    }
+    given_ = fit_.model.effects;
+    for (const Effect& effect : fit_.model.effects) {
+      why_not_.emplace_back(effect.coefficients.size());
+    }
+  }
+
+  ModelFit run() {
+    lay_out();
+    start();
+    for (int round = 0; round < options_.max_rounds; ++round) {
+      if (round > 0 && has_delays()) lay_out_again();
+      build_columns();
+      if (round == 0) hold_unobservable();
+      adjust_once();
+      fit_.settled = settled();
+      const bool last = fit_.settled || round + 1 == options_.max_rounds;
+      if ((round == 0 || last) && fix_unobservable()) {
+        fit_.settled = false;
+        continue;
+      }
+      if (fit_.settled) break;
+    }
+    if (fit_.model.effects.empty()) lay_paths();
+    report();
+    return std::move(fit_);
+  }
+
+ private:
+  [[nodiscard]] bool has_delays() const {
+    return std::any_of(
+        fit_.model.effects.begin(), fit_.model.effects.end(),
+        [](const Effect& effect) { return parse_channel(effect.channel) == Channel::delay; });
+  }
+
+  void lay_out() {
+    fit_.recordings = retimed(recorded_, fit_.model.effects, fit_.model.robot);
+    fit_.problem = make_problem(fit_.recordings, fit_.model, problem_options());
+  }
+
+  [[nodiscard]] ProblemOptions problem_options() const {
+    ProblemOptions result = options_.problem;
+    for (std::size_t s = 0; s < result.left_out.size(); ++s) {
+      std::vector<double> ends;
+      for (const TimeSpan& span : result.left_out[s]) {
+        ends.push_back(span.from);
+        ends.push_back(span.to);
+      }
+      ends = retimed(ends, recorded_[s], s, recorded_.size(), fit_.model.effects, fit_.model.robot);
+      for (std::size_t k = 0; k < result.left_out[s].size(); ++k) {
+        result.left_out[s][k] = {ends[2 * k], ends[2 * k + 1]};
+      }
+    }
+    return result;
+  }
+
+  /// The poses of the new instants lie on the old path.
+  void lay_out_again() {
+    std::map<std::string, Vector2> landmarks;
+    for (std::size_t k = 0; k < fit_.problem.landmarks.size(); ++k) {
+      landmarks[fit_.problem.landmarks[k]] = state_.landmarks[k];
+    }
+    lay_out();
+    place(landmarks);
+  }
+
+  void place(const std::map<std::string, Vector2>& landmarks) {
+    state_.landmarks.clear();
+    for (const std::string& name : fit_.problem.landmarks) {
+      state_.landmarks.push_back(landmarks.at(name));
+    }
+    state_.poses.clear();
+    for (const PoseNode& node : fit_.problem.poses) {
+      const std::size_t session = idx(node.session);
+      state_.poses.push_back(pose_at(fit_.recordings[session].drive, fit_.paths[session], node.t));
+    }
+  }
+
+  void start() {
+    if (options_.near != nullptr) {
+      fit_.paths = options_.near->paths;
+      place(landmark_places(*options_.near));
+      return;
+    }
+    StartOptions how;
+    if (options_.gate) how.gate = *options_.gate;
+    static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
+    // A start is laid along unbroken drives.
+    ProblemOptions all = options_.problem;
+    all.left_out.clear();
+    const bool whole = options_.problem.left_out.empty();
+    const RecordingProblem unbroken =
+        whole ? fit_.problem : make_problem(fit_.recordings, fit_.model, all);
+    state_ = start_of(unbroken, how);
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, unbroken, {}, {}, state_);
+    if (whole) return;
+    std::map<std::string, Vector2> landmarks;
+    for (std::size_t k = 0; k < unbroken.landmarks.size(); ++k) {
+      landmarks[unbroken.landmarks[k]] = state_.landmarks[k];
+    }
+    place(landmarks);
+  }
+
+  void build_columns() {
+    if (fit_.model.effects.empty()) return;
+    const ShapeContext context(fit_.recordings, fit_.model.robot, fit_.paths);
+    fit_.columns = effect_columns(fit_.model.effects, context);
+    for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[k];
+      if (!options_.fit_effects || !why_not_[one.effect][one.place].empty()) {
+        fit_.columns.border[k].held = fit_.model.effects[one.effect].coefficients[one.place];
+      }
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd unknown_values() const {
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    Eigen::VectorXd values(static_cast<Eigen::Index>(unknown.size()));
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      values[static_cast<Eigen::Index>(k)] = fit_.model.effects[one.effect].coefficients[one.place];
+    }
+    return values;
+  }
+
+  void hold(int coefficient, const std::string& why) {
+    const Coefficient& one = fit_.columns.coefficients[idx(coefficient)];
+    why_not_[one.effect][one.place] = why;
+    const double value = given_[one.effect].coefficients[one.place];
+    fit_.model.effects[one.effect].coefficients[one.place] = value;
+    fit_.columns.border[idx(coefficient)].held = value;
+  }
+
+  /// Coefficients that no measurement tells from the unknowns, looked for at the best fit without
+  /// them: far from it large residuals make anything look observable.
+  void hold_unobservable() {
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    if (unknown.empty()) return;
+    EffectParameters without = fit_.columns.border;
+    for (const int k : unknown) {
+      const Coefficient& one = fit_.columns.coefficients[idx(k)];
+      without[idx(k)].held = fit_.model.effects[one.effect].coefficients[one.place];
+    }
+    RecordingAdjustmentOptions how;
+    how.gate = options_.gate;
+    fit_.adjustment = adjust_from(state_, fit_.problem, without, how);
+    state_ = fit_.adjustment.state;
+    take_paths();
+    build_columns();
+    while (fix_unobservable()) {
+    }
+  }
+
+  /// The last coefficient that the data tell nothing of, or too little, gives way. Judged at a
+  /// state without noise of its own: noise that a smaller map shrinks is no evidence of a scale.
+  bool fix_unobservable() {
+    const std::vector<int> free = unknown_coefficients(fit_.columns.border);
+    if (free.empty()) return false;
+    const NoiseFree clean(fit_.recordings, fit_.model, fit_.problem, fit_.columns.border,
+                          offsets_of(fit_), state_);
+    RecordingSystem system(clean.problem, clean.border);
+    system.linearise(clean.state, unknown_values());
+    try {
+      system.factorise();
+    } catch (const NotPositiveDefinite& error) {
+      if (error.column() >= 0) throw;
+    }
+    const std::vector<int> lost = find_undetermined(system);
+    if (lost.empty()) return hold_the_implausible(system);
+    give_way(free[idx(lost.back())]);
+    return true;
+  }
+
+  /// The one added last gives way: the others may be determined without it.
+  void give_way(int coefficient) {
+    hold(coefficient, "no measurement tells it from the map, the poses or the rest");
+  }
+
+  void adjust_once() {
+    RecordingAdjustmentOptions how;
+    how.gate = options_.gate;
+    // What misfit without the effects hid may show only now, at the best fit with them.
+    for (;;) {
+      how.coefficients = unknown_values();
+      try {
+        fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+        break;
+      } catch (const UndeterminedError& error) {
+        give_way(unknown_coefficients(fit_.columns.border)[idx(error.coefficients().back())]);
+      }
+    }
+    state_ = fit_.adjustment.state;
+    change_ = 0.0;
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      double& value = fit_.model.effects[one.effect].coefficients[one.place];
+      const auto at = static_cast<Eigen::Index>(k);
+      const double now = fit_.adjustment.coefficients[at];
+      const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+      change_ =
+          std::max(change_, std::abs(now - value) / (1e-9 * std::abs(now) + options_.still * sd));
+      value = now;
+    }
+    take_paths();
+  }
+
+  void take_paths() {
+    // Without effects nothing depends on the path but what asks for it afterwards.
+    const std::vector<SessionPath> before = std::move(fit_.paths);
+    if (!fit_.model.effects.empty()) lay_paths();
+    // What a misfit leaves is no noise to be believed.
+    const bool noise = fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
+    bent_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
+                                offsets_of(fit_), state_)
+                  : 0.0;
+    moved_ = 0.0;
+    for (std::size_t s = 0; s < fit_.paths.size(); ++s) {
+      for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
+        const Pose& a = before[s].ends[row];
+        const Pose& b = fit_.paths[s].ends[row];
+        moved_ = std::max({moved_, (a.position() - b.position()).norm(),
+                           std::abs(wrap_angle(a.heading - b.heading))});
+      }
+    }
+  }
+
+  void lay_paths() {
+    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, fit_.problem, fit_.columns.border,
+                              offsets_of(fit_), state_);
+  }
+
+  /// The last of those that the data tell too little of gives way, as in give_way.
+  bool hold_the_implausible(const RecordingSystem& system) {
+    const Eigen::MatrixXd covariance = system.coefficient_covariance();
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = unknown.size(); k-- > 0;) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      const Effect& effect = fit_.model.effects[one.effect];
+      const auto at = static_cast<Eigen::Index>(k);
+      const double share =
+          1.0 / (covariance(at, at) * std::max(system.border().col(at).squaredNorm(), 1e-300));
+      const double uncertainty = std::sqrt(covariance(at, at)) * one.largest /
+                                 facts_of(*parse_channel(effect.channel)).prior_sd;
+      if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
+      hold(unknown[k], uncertainty > kLargestUncertainty
+                           ? fmt::format("these data leave it uncertain by {:.1f} times its "
+                                         "plausible size",
+                                         uncertainty)
+                           : "next to nothing of it is told from the map and the poses");
+      return true;
+    }
+    return false;
+  }
+
+  /// Neither a coefficient nor the path has moved, from which the columns were made.
+  [[nodiscard]] bool settled() const {
+    constexpr double kStill = 1e-6;  // m and rad
+    if (bent_ > 1e-3) return false;
+    if (fit_.columns.border.empty()) return true;
+    return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill : change_ < 1.0;
+  }
+
+  void report() {
+    for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
+      const Effect& effect = fit_.model.effects[e];
+      EffectEstimate estimate{effect, std::vector<double>(effect.coefficients.size(), 0.0), {}};
+      for (std::size_t place = 0; place < effect.coefficients.size(); ++place) {
+        if (why_not_[e][place].empty()) continue;
+        estimate.sd[place] = kInfinity;
+        estimate.not_fitted.push_back(fmt::format("{} ({}): not fitted, {}", effect.name,
+                                                  effect.shape[place % effect.shape.size()],
+                                                  why_not_[e][place]));
+      }
+      fit_.effects.push_back(std::move(estimate));
+    }
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      const auto at = static_cast<Eigen::Index>(k);
+      fit_.effects[one.effect].sd[one.place] =
+          std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+    }
+    if (!fit_.settled) {
+      fit_.adjustment.warnings.push_back(
+          fmt::format("shapes and path did not settle in {} rounds", options_.max_rounds));
+    }
+  }
+
+  const std::vector<Recording>& recorded_;
+  ModelFitOptions options_;
+  ModelFit fit_;
+  RecordingState state_;
+  std::vector<Effect> given_;                      ///< with the coefficients at first
+  std::vector<std::vector<std::string>> why_not_;  ///< per effect and place; empty: fitted
+  double change_ = 0.0;                            ///< of the coefficients, in what is negligible
+  double bent_ = 0.0;                              ///< of the segments' values, in sds
+  double moved_ = 0.0;                             ///< of the path, m and rad
+};
+
+}  // namespace
+
+std::map<std::string, Vector2> landmark_places(const ModelFit& fit) {
+  std::map<std::string, Vector2> places;
+  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
+    places[fit.problem.landmarks[k]] = fit.adjustment.state.landmarks[k];
+  }
+  return places;
+}
+
+Eigen::VectorXd offsets_of(const ModelFit& fit) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(fit.columns.border.size()));
+  for (std::size_t k = 0; k < fit.columns.border.size(); ++k) {
+    const Coefficient& one = fit.columns.coefficients[k];
+    result[static_cast<Eigen::Index>(k)] =
+        fit.model.effects[one.effect].coefficients[one.place] - fit.columns.border[k].reference;
+  }
+  return result;
+}
+
+ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+                   const ModelFitOptions& options) {
+  return Fitter(recordings, model, options).run();
+}
+
+}  // namespace trussmap

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "linalg/frontal_cholesky.hpp"
+
+#include "geometry/index.hpp"
+#include "linalg/front_kernels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trussmap {
+namespace {
+
+std::size_t area(int rows, int columns) {
+  return idx(rows) * idx(columns);
+}
+
+}  // namespace
+
+FrontalCholesky::FrontalCholesky(FrontTree tree, const std::vector<int>& sizes) {
+  node_begin_.reserve(sizes.size() + 1);
+  int unknowns = 0;
+  for (const int size : sizes) {
+    node_begin_.push_back(unknowns);
+    unknowns += size;
+  }
+  node_begin_.push_back(unknowns);
+  where_.assign(idx(unknowns), 0);
+  number_rows(tree);
+  list_children();
+  find_runs();
+  place_updates();
+}
+
+void FrontalCholesky::number_rows(const FrontTree& tree) {
+  parts_.reserve(tree.fronts.size());
+  for (const Front& front : tree.fronts) {
+    Part part{};
+    part.panel = stored_;
+    part.unknown = node_begin_[idx(front.first)];
+    part.width = front.width;
+    part.rows = front.width + front.height;
+    part.parent = front.parent;
+    part.scalars_begin = static_cast<int>(scalars_.size());
+    for (int k = front.rows_begin; k < front.rows_end; ++k) {
+      const std::size_t node = idx(tree.rows[idx(k)]);
+      for (int u = node_begin_[node]; u < node_begin_[node + 1]; ++u) scalars_.push_back(u);
+    }
+    stored_ += area(part.rows, part.width);
+    most_rows_ = std::max(most_rows_, part.rows);
+    parts_.push_back(part);
+  }
+  for (std::size_t f = parts_.size(); f-- > 0;) {
+    const int parent = parts_[f].parent;
+    parts_[f].depth = parent < 0 ? 0 : parts_[idx(parent)].depth + 1;
+  }
+}
+
+void FrontalCholesky::list_children() {
+  std::vector<int> next(parts_.size() + 1, 0);
+  for (const Part& part : parts_) {
+    if (part.parent >= 0) ++next[idx(part.parent) + 1];
+  }
+  for (std::size_t f = 0; f < parts_.size(); ++f) {
+    parts_[f].children_begin = next[f];
+    next[f + 1] += next[f];
+    parts_[f].children_end = next[f + 1];
+  }
+  children_.resize(idx(next.back()));
+  for (std::size_t f = 0; f < parts_.size(); ++f) {
+    const int parent = parts_[f].parent;
+    if (parent >= 0) children_[idx(next[idx(parent)]++)] = static_cast<int>(f);
+  }
+}
+
+void FrontalCholesky::find_runs() {
+  for (std::size_t f = 0; f < parts_.size(); ++f) {
+    const Part& front = parts_[f];
+    for (int r = 0; r < front.height(); ++r) {
+      where_[idx(scalars_[idx(front.scalars_begin + r)])] = front.width + r;
+    }
+    for (int k = front.children_begin; k < front.children_end; ++k) {
+      Part& child = parts_[idx(children_[idx(k)])];
+      child.runs_begin = static_cast<int>(runs_.size());
+      for (int r = 0; r < child.height(); ++r) {
+        const int unknown = scalars_[idx(child.scalars_begin + r)];
+        const int own = unknown - front.unknown;
+        const int to = own < front.width ? own : where_[idx(unknown)];
+        if (r > 0 && runs_.back().to + runs_.back().length == to) {
+          ++runs_.back().length;
+        } else {
+          runs_.push_back({r, to, 1});
+        }
+      }
+      child.runs_end = static_cast<int>(runs_.size());
+    }
+  }
+}
+
+void FrontalCholesky::place_updates() {
+  std::array<std::size_t, 2> top{};
+  for (Part& front : parts_) {
+    const std::size_t own = idx(front.depth % 2);
+    front.update = top[own];
+    top[own] += area(front.height(), front.height());
+    waiting_size_[own] = std::max(waiting_size_[own], top[own]);
+    if (front.children_end > front.children_begin) {
+      top[1 - own] = parts_[idx(children_[idx(front.children_begin)])].update;
+    }
+  }
+}
+
+void FrontalCholesky::factorise(const SparseMatrix& lower) {
+  if (!panels_) panels_ = std::make_unique_for_overwrite<double[]>(stored_);
+  for (const std::size_t k : {0U, 1U}) {
+    waiting_[k] = std::make_unique_for_overwrite<double[]>(waiting_size_[k]);
+  }
+  for (const Part& front : parts_) {
+    assemble(front, lower);
+    const int failed =
+        eliminate(panels_.get() + front.panel, front.rows, front.width, update_of(front));
+    if (failed >= 0) throw NotPositiveDefinite(front.unknown + failed);
+  }
+  for (auto& stack : waiting_) stack.reset();
+}
+
+void FrontalCholesky::assemble(const Part& front, const SparseMatrix& lower) {
+  double* panel = panels_.get() + front.panel;
+  std::fill_n(panel, area(front.rows, front.width), 0.0);
+  double* update = update_of(front);
+  std::fill_n(update, area(front.height(), front.height()), 0.0);
+  for (int r = 0; r < front.height(); ++r) {
+    where_[idx(scalars_[idx(front.scalars_begin + r)])] = front.width + r;
+  }
+  for (int c = 0; c < front.width; ++c) {
+    const int column = front.unknown + c;
+    double* to = panel + at(0, c, front.rows);
+    for (int k = lower.outerIndexPtr()[column]; k < lower.outerIndexPtr()[column + 1]; ++k) {
+      const int row = lower.innerIndexPtr()[k];
+      const int own = row - front.unknown;
+      to[own < front.width ? own : where_[idx(row)]] = lower.valuePtr()[k];
+    }
+  }
+  for (int k = front.children_begin; k < front.children_end; ++k) {
+    add_update(parts_[idx(children_[idx(k)])], front);
+  }
+}
+
+void FrontalCholesky::add_update(const Part& child, const Part& front) {
+  const double* from = update_of(child);
+  double* panel = panels_.get() + front.panel;
+  double* update = update_of(front);
+  const Run* const end = runs_.data() + child.runs_end;
+  for (const Run* columns = runs_.data() + child.runs_begin; columns != end; ++columns) {
+    for (int k = 0; k < columns->length; ++k) {
+      const int c = columns->from + k;
+      const int column = columns->to + k;
+      const double* source = from + at(0, c, child.height());
+      // Rows of the panel count from its top, those of the update from below the panel's square.
+      double* target = column < front.width
+                           ? panel + at(0, column, front.rows)
+                           : update + at(0, column - front.width, front.height()) - front.width;
+      for (int r = c; r < columns->from + columns->length; ++r) {
+        target[columns->to + r - columns->from] += source[r];
+      }
+      for (const Run* rows = columns + 1; rows != end; ++rows) {
+        for (int r = 0; r < rows->length; ++r) target[rows->to + r] += source[rows->from + r];
+      }
+    }
+  }
+}
+
+void FrontalCholesky::solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const {
+  std::vector<double> local(idx(most_rows_));
+  const auto gather = [&](const Part& front) {
+    std::copy_n(x.data() + front.unknown, front.width, local.begin());
+    const int* rows = scalars_.data() + front.scalars_begin;
+    for (int r = 0; r < front.height(); ++r) local[idx(front.width + r)] = x[rows[r]];
+  };
+  for (const Part& front : parts_) {
+    gather(front);
+    solve_forward(panels_.get() + front.panel, front.rows, front.width, local.data());
+    std::copy_n(local.begin(), front.width, x.data() + front.unknown);
+    const int* rows = scalars_.data() + front.scalars_begin;
+    for (int r = 0; r < front.height(); ++r) x[rows[r]] = local[idx(front.width + r)];
+  }
+  for (auto front = parts_.rbegin(); front != parts_.rend(); ++front) {
+    gather(*front);
+    solve_backward(panels_.get() + front->panel, front->rows, front->width, local.data());
+    std::copy_n(local.begin(), front->width, x.data() + front->unknown);
+  }
+}
+
+Eigen::MatrixXd FrontalCholesky::inverse_blocks() const {
+  int largest = 0;
+  for (std::size_t k = 0; k + 1 < node_begin_.size(); ++k) {
+    largest = std::max(largest, node_begin_[k + 1] - node_begin_[k]);
+  }
+  Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(largest, node_begin_.back());
+  // The inverses of a front and all above it, one after the other.
+  std::vector<std::size_t> begin(parts_.size() + 1, 0);
+  std::size_t most = 0;
+  for (std::size_t f = parts_.size(); f-- > 0;) {
+    const Part& front = parts_[f];
+    if (front.parent >= 0) {
+      const std::size_t above = idx(front.parent);
+      begin[f] = begin[above] + area(parts_[above].rows, parts_[above].rows);
+    }
+    most = std::max(most, begin[f] + area(front.rows, front.rows));
+  }
+  const auto path = std::make_unique_for_overwrite<double[]>(most);
+  std::size_t widest = 16;
+  for (const Part& front : parts_) widest = std::max(widest, area(front.rows, front.width));
+  const auto panel = std::make_unique_for_overwrite<double[]>(widest);
+  const auto space = std::make_unique_for_overwrite<double[]>(widest);
+  std::size_t node = node_begin_.size() - 1;
+  for (std::size_t f = parts_.size(); f-- > 0;) {
+    const Part& front = parts_[f];
+    double* inverse = path.get() + begin[f];
+    if (front.parent >= 0) {
+      const Part& above = parts_[idx(front.parent)];
+      copy_rows(front, path.get() + begin[idx(front.parent)], above.rows, inverse);
+    }
+    std::copy_n(panels_.get() + front.panel, area(front.rows, front.width), panel.get());
+    invert_front(panel.get(), front.rows, front.width, inverse, space.get());
+    while (node > 0 && node_begin_[node - 1] >= front.unknown) {
+      --node;
+      const int first = node_begin_[node];
+      const int size = node_begin_[node + 1] - first;
+      for (int c = 0; c < size; ++c) {
+        const int column = first - front.unknown;
+        const double* from = inverse + at(column, column + c, front.rows);
+        std::copy_n(from, size, blocks.col(first + c).data());
+      }
+    }
+  }
+  return blocks;
+}
+
+/// The part of the parent's inverse that belongs to the front's remaining rows.
+void FrontalCholesky::copy_rows(const Part& front, const double* parent, int above,
+                                double* inverse) const {
+  const Run* const begin = runs_.data() + front.runs_begin;
+  const Run* const end = runs_.data() + front.runs_end;
+  for (const Run* columns = begin; columns != end; ++columns) {
+    for (int k = 0; k < columns->length; ++k) {
+      const double* from = parent + at(0, columns->to + k, above);
+      double* to = inverse + at(front.width, front.width + columns->from + k, front.rows);
+      for (const Run* rows = begin; rows != end; ++rows) {
+        for (int r = 0; r < rows->length; ++r) to[rows->from + r] = from[rows->to + r];
+      }
+    }
+  }
+}
+
+double FrontalCholesky::log_determinant() const {
+  double sum = 0.0;
+  for (const Part& front : parts_) {
+    for (int c = 0; c < front.width; ++c) {
+      sum += 2.0 * std::log(panels_[front.panel + idx(at(c, c, front.rows))]);
+    }
+  }
+  return sum;
+}
+
+double FrontalCholesky::reciprocal_condition() const {
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (const Part& front : parts_) {
+    for (int c = 0; c < front.width; ++c) {
+      const double pivot = panels_[front.panel + idx(at(c, c, front.rows))];
+      least = std::min(least, pivot);
+      most = std::max(most, pivot);
+    }
+  }
+  return most > 0.0 ? (least / most) * (least / most) : 1.0;
+}
+
+}  // namespace trussmap

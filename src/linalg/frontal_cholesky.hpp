@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Sparse Cholesky factorisation front by front: the library's own kernel.
+//
+//   A = L L'    A in the order of its front tree (front_tree.hpp), lower triangle
+//
+//   front   [F11  .  ]   F11 = L11 L11',  L21 = F21 L11^-T,  U = F22 - L21 L21'
+//           [F21  F22]   U is added to the parent's front, row by row
+//
+// Everything is dense algebra on fronts; sparse indices are met only where U is added to the
+// parent. Fast where fronts are many and small, as they are in maps; SparseCholesky (CHOLMOD) is
+// what it is checked against.
+//
+// The inverse where L has entries comes down the tree, from parents to children:
+//   Z_21 = -Z_22 L21 L11^-1,   Z_11 = L11^-T L11^-1 - (L21 L11^-1)' Z_21
+// and Z_22 is found in the parent's front (Takahashi, Fagan & Chin, 1973; by fronts: Campbell &
+// Davis, "Computing the sparse inverse subset: an inverse multifrontal approach", 1995).
+//
+// Memory: L, and one update per front on a path from the root.
+#pragma once
+
+#include "linalg/front_tree.hpp"
+#include "linalg/sparse_cholesky.hpp"
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace trussmap {
+
+class FrontalCholesky {
+ public:
+  FrontalCholesky() = default;
+
+  /// `sizes`: unknowns per place of the tree.
+  FrontalCholesky(FrontTree tree, const std::vector<int>& sizes);
+
+  /// `lower`: in the order of the tree, its pattern within the tree's, each column's diagonal
+  /// first. Throws NotPositiveDefinite.
+  void factorise(const SparseMatrix& lower);
+
+  /// A x = b; `x` holds b before and the solution after. Call after factorise.
+  void solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const;
+
+  /// Diagonal blocks of A^-1: column k of the result is unknown k's, its rows those of the
+  /// unknowns of its node, as many as the largest node has (the rest zero).
+  [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
+
+  [[nodiscard]] double log_determinant() const;
+  /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
+  [[nodiscard]] double reciprocal_condition() const;
+  /// Numbers stored for L.
+  [[nodiscard]] double stored() const { return static_cast<double>(stored_); }
+
+ private:
+  struct Run {  ///< consecutive rows that are consecutive in the parent's front as well
+    int from, to, length;
+  };
+  struct Part {
+    std::size_t panel;   ///< where the front's columns are stored
+    std::size_t update;  ///< where its update waits for its parent
+    int unknown;         ///< first unknown eliminated
+    int rows, width;
+    int parent, depth;
+    int children_begin, children_end;  ///< in children_
+    int runs_begin, runs_end;          ///< in runs_: its rows in the parent's front
+    int scalars_begin;                 ///< in scalars_: unknowns of the rows that remain
+
+    [[nodiscard]] int height() const { return rows - width; }
+  };
+
+  void number_rows(const FrontTree& tree);
+  void list_children();
+  void find_runs();
+  void place_updates();
+  void assemble(const Part& front, const SparseMatrix& lower);
+  void add_update(const Part& child, const Part& front);
+  void copy_rows(const Part& front, const double* parent, int above, double* inverse) const;
+  [[nodiscard]] double* update_of(const Part& front) {
+    return waiting_[static_cast<std::size_t>(front.depth % 2)].get() + front.update;
+  }
+
+  std::vector<Part> parts_;
+  std::vector<int> children_;
+  std::vector<Run> runs_;
+  std::vector<int> scalars_;
+  std::vector<int> node_begin_;  ///< per node its first unknown, and one past the last
+  std::vector<int> where_;       ///< row of the present front that an unknown stands in
+  std::size_t stored_ = 0;
+  int most_rows_ = 0;
+  std::unique_ptr<double[]> panels_;
+  // Updates of even and of odd depths: two stacks, so that a front's own never lies between those
+  // of its children.
+  std::array<std::unique_ptr<double[]>, 2> waiting_;
+  std::array<std::size_t, 2> waiting_size_{};
+};
+
+}  // namespace trussmap

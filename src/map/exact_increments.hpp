@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The exact increment: recursive least squares in the language of the truss.
+//
+//   for each traversal with measured vector z and covariance C, first sight included:
+//     K: the route's bar becomes stiffer by C^-1
+//     K u = f,  f = C^-1 (z - (p_j - p_i)) on j and -f on i,  the first joint held
+//     p += u
+//
+// After every traversal p is the least-squares map of all measurements so far. Or *pooled*, with C
+// the mean over the route's t traversals and the bar's stiffness t C^-1: for errors that grow with
+// the measured length, where measurements that came out short would otherwise count for more and
+// shrink the map; least squares to first order.
+//
+// K's factor is kept alive: a traversal is a rank-2 update, a new joint a row that is added in a
+// place kept free at the end. When these places are used up the factor is built again with new
+// ones, in a new order: a step costs one pass over the factor on average, however the map grows.
+#pragma once
+
+#include "geometry/index.hpp"
+#include "truss/truss.hpp"
+#include "trussmap/planar.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+class ExactIncrements {
+ public:
+  /// Joint 0 is held. Each further joint comes with the bar that ties it.
+  ExactIncrements() = default;
+
+  /// Joint `joints()` is tied to joint i. Bars are numbered in the order in which they come.
+  void add_joint(int i, const Matrix2& stiffness);
+
+  /// Joins two joints. These, and `pull`, throw std::invalid_argument on joints out of range.
+  void add_bar(int i, int j, const Matrix2& stiffness);
+
+  [[nodiscard]] const Matrix2& stiffness(int bar) const;
+
+  /// Changes the stiffness of a bar; both the old and the new one are positive definite.
+  void set_stiffness(int bar, const Matrix2& stiffness);
+
+  /// Displacements of all joints under `force` on j and its opposite on i.
+  [[nodiscard]] std::vector<Vector2> pull(int i, int j, const Vector2& force);
+
+  [[nodiscard]] int joints() const { return joints_; }
+
+ private:
+  void check(int i, int j) const;
+  [[nodiscard]] int unknown(int joint) const { return unknown_[idx(joint)]; }
+  void change_factor(const Bar& change);
+  void add_to_factor(const Bar& tie);
+  void factorise();
+
+  int joints_ = 1;
+  int places_ = 0;         ///< joints that the factor has room for; 0: there is no factor
+  bool factored_ = false;  ///< the factor is that of all bars
+  std::vector<Bar> bars_;
+  std::vector<int> unknown_;  ///< per place: its joint's first unknown; negative: held
+  SparseCholesky cholesky_{Ordering::fixed};
+};
+
+}  // namespace trussmap

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "map/first_sight.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace trussmap {
+
+std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses,
+                                         const Vector2& imposed) {
+  if (stiffnesses.empty()) throw std::invalid_argument("a chain has at least one bar");
+  std::vector<Matrix2> compliances;  // S_1 ... S_n
+  compliances.reserve(stiffnesses.size());
+  Matrix2 sum = Matrix2::Zero();
+  for (const Matrix2& B : stiffnesses) {
+    sum += B.inverse();
+    compliances.push_back(sum);
+  }
+  const Vector2 force = sum.inverse() * imposed;
+  std::vector<Vector2> result;
+  result.reserve(compliances.size());
+  for (const Matrix2& S : compliances) result.push_back(S * force);
+  result.back() = imposed;
+  return result;
+}
+
+void OpenChain::restart(int landmark) {
+  chain_ = {landmark};
+}
+
+void OpenChain::append(int a, int b) {
+  if (chain_.empty() || chain_.back() != a) chain_ = {a};
+  chain_.push_back(b);
+}
+
+OpenChain::Closing OpenChain::closing(int a, int b) const {
+  const std::vector<int> alone{a};
+  const std::vector<int>& chain = chain_.empty() || chain_.back() != a ? alone : chain_;
+  // Up the loops that b hangs on. A landmark of the chain other than its first hangs on nothing
+  // yet, so it is met at the top or not at all; in any other case the loop begins with the first.
+  const auto place = std::find(chain.rbegin(), chain.rend(), top_of(b));
+  const auto begin = place == chain.rend() ? chain.begin() : std::prev(place.base());
+  return {std::vector<int>(begin, chain.end()), *begin == b};
+}
+
+int OpenChain::top_of(int landmark) const {
+  for (auto up = root_.find(landmark); up != root_.end(); up = root_.find(landmark)) {
+    landmark = up->second;
+  }
+  return landmark;
+}
+
+void OpenChain::settle(const Closing& closing, int b) {
+  const int k = closing.landmarks.front();
+  for (std::size_t n = 1; n < closing.landmarks.size(); ++n) root_[closing.landmarks[n]] = k;
+  // Shortcuts, or the way up would grow with the map.
+  const int top = top_of(b);
+  for (auto up = root_.find(b); up != root_.end();) {
+    const int next = std::exchange(up->second, top);
+    up = next == top ? root_.end() : root_.find(next);
+  }
+  if (!closing.closed) {
+    chain_ = {b};
+  } else if (const auto place = std::find(chain_.rbegin(), chain_.rend(), k);
+             place != chain_.rend()) {
+    chain_.erase(place.base(), chain_.end());
+  } else {
+    chain_ = {k};
+  }
+}
+
+}  // namespace trussmap

@@ -1,0 +1,469 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/map_builder.hpp"
+
+#include "geometry/index.hpp"
+#include "map/exact_increments.hpp"
+#include "map/first_sight.hpp"
+#include "map/nearest_landmarks.hpp"
+#include "map/refinement.hpp"
+#include "truss/truss.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/stiffness_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kMoved = 1e-12;          // m
+constexpr double kRounding = 1e-9;        // asymmetry of a covariance, as a share of its size
+constexpr double kNegligibleShare = 0.1;  // of the smallest standard deviation, for eta estimated
+
+/// Displacements of some landmarks, not yet made.
+struct Moves {
+  std::vector<int> landmarks;
+  std::vector<Vector2> displacements;
+  Vector2 shift = Vector2::Zero();  ///< of the whole map, afterwards
+};
+
+/// A part of the map: its landmarks (ascending) and the routes with both ends among them.
+struct Piece {
+  std::vector<int> landmarks;
+  std::vector<int> routes;
+
+  [[nodiscard]] int joint(int landmark) const {
+    const auto place = std::lower_bound(landmarks.begin(), landmarks.end(), landmark);
+    return place != landmarks.end() && *place == landmark
+               ? static_cast<int>(place - landmarks.begin())
+               : -1;
+  }
+};
+
+void check(const Traversal& leg) {
+  const bool finite = leg.displacement.allFinite() && leg.covariance.allFinite();
+  const Matrix2& C = leg.covariance;
+  const double asymmetry = std::abs(C(0, 1) - C(1, 0));
+  if (!finite || leg.displacement.squaredNorm() <= 0.0 || C(0, 0) <= 0.0 ||
+      C.determinant() <= 0.0 || asymmetry > kRounding * C.trace() || !C.inverse().allFinite()) {
+    throw std::invalid_argument(
+        "a leg needs a finite displacement other than zero and a symmetric, positive definite "
+        "covariance whose inverse is finite");
+  }
+}
+
+}  // namespace
+
+class MapBuilder::State {
+ public:
+  explicit State(const MapBuilderOptions& options) : options_(options) { check_options(); }
+
+  void set_options(const MapBuilderOptions& options) {
+    if (options.method != options_.method || options.eta.kind != options_.eta.kind) {
+      throw std::invalid_argument("a map builder keeps its method and its kind of eta");
+    }
+    State(options).check_options();
+    options_ = options;
+  }
+
+  void check_options() const {
+    if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < 2) {
+      throw std::invalid_argument("eta must be 2 landmarks at least");
+    }
+    if (!(options_.gain_limit > 0.0 && options_.gain_limit <= 1.0)) {
+      throw std::invalid_argument("the gain limit must be in (0, 1]");
+    }
+  }
+
+  void start(const std::string& landmark, const Vector2& position) {
+    if (graph_.landmarks() == 0) {
+      here_ = graph_.add_landmark(landmark, position);
+      if (indexed()) nearest_.insert(here_, position);
+    } else if (const auto known = graph_.find(landmark)) {
+      here_ = *known;
+    } else {
+      throw SolveError("landmark " + landmark +
+                       " is tied to nothing: a session must start on a landmark of the map");
+    }
+    chain_.restart(here_);
+  }
+
+  Arrival travel(const std::string& landmark, const Traversal& leg) {
+    if (here_ < 0) throw std::invalid_argument("the robot must start on a landmark first");
+    check(leg);
+    const std::optional<int> known = graph_.find(landmark);
+    if (!known) return discover(landmark, leg);
+    if (*known == here_)
+      throw std::invalid_argument("the robot stands on " + landmark + " already");
+    Arrival arrival;
+    arrival.landmark = *known;
+    arrival.misfit = leg.displacement - (stored(*known) - stored(here_));
+    if (options_.method == Method::gauss_markov) return increment(arrival, leg);
+    if (!graph_.route_between(here_, *known)) return close(arrival, leg);
+    return refine(arrival, leg);
+  }
+
+  double settle(double gain_limit) {
+    double largest = 0.0;
+    for (int number = 0; number < graph_.routes(); ++number) {
+      Arrival arrival;
+      arrival.route = number;
+      make(refinement_moves(graph_.route(number), gain_limit, arrival), arrival);
+      largest = std::max(largest, arrival.largest_move);
+    }
+    return largest;
+  }
+
+  void stand_on(int landmark) { here_ = landmark; }
+
+  [[nodiscard]] Vector2 position(int landmark) const { return stored(landmark) + offset_; }
+
+  [[nodiscard]] LandmarkGraph map() const {
+    LandmarkGraph map = graph_;
+    for (int k = 0; k < map.landmarks(); ++k) map.set_position(k, position(k));
+    return map;
+  }
+
+  [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
+  [[nodiscard]] const LandmarkGraph& graph() const { return graph_; }
+  [[nodiscard]] int here() const { return here_; }
+
+ private:
+  // Positions in the graph are short of the map's by offset_, so that a shift of the whole map
+  // touches no landmark.
+  [[nodiscard]] const Vector2& stored(int landmark) const {
+    return graph_.landmark(landmark).position;
+  }
+
+  [[nodiscard]] bool indexed() const {
+    return options_.eta.kind == Eta::Kind::fixed && options_.method != Method::gauss_markov;
+  }
+
+  /// The paper's stiffness of a route as it lies in the present map.
+  [[nodiscard]] Matrix2 stiffness(const Route& route) const {
+    const double orientation = direction(stored(route.target) - stored(route.source));
+    return bar_stiffness(StiffnessLaw::printed, route.covariance, orientation, route.traversals);
+  }
+
+  Arrival discover(const std::string& name, const Traversal& leg) {
+    const Vector2 position = stored(here_) + leg.displacement;
+    Arrival arrival;
+    arrival.kind = Arrival::Kind::new_landmark;
+    arrival.landmark = graph_.add_landmark(name, position);
+    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    if (options_.method == Method::gauss_markov) {
+      increments_.add_joint(here_, leg.covariance.inverse());  // bar number = route number
+    } else {
+      chain_.append(here_, arrival.landmark);
+    }
+    if (indexed()) nearest_.insert(arrival.landmark, position);
+    return arrival;
+  }
+
+  Arrival increment(Arrival arrival, const Traversal& leg) {
+    const bool known_route = graph_.route_between(here_, arrival.landmark).has_value();
+    arrival.kind = known_route ? Arrival::Kind::refinement : Arrival::Kind::first_sight;
+    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    const Route& route = graph_.route(arrival.route);
+    const Matrix2 one = options_.pooled ? route.covariance.inverse() : leg.covariance.inverse();
+    if (!known_route) {
+      increments_.add_bar(here_, arrival.landmark, one);
+    } else {
+      increments_.set_stiffness(
+          arrival.route, options_.pooled ? Matrix2(route.traversals * one)
+                                         : Matrix2(increments_.stiffness(arrival.route) + one));
+    }
+    Moves moves;
+    moves.displacements = increments_.pull(here_, arrival.landmark, one * arrival.misfit);
+    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
+    make(moves, arrival);
+    return arrival;
+  }
+
+  Arrival close(Arrival arrival, const Traversal& leg) {
+    const OpenChain::Closing closing = chain_.closing(here_, arrival.landmark);
+    std::vector<Matrix2> stiffnesses;
+    for (std::size_t n = 1; n < closing.landmarks.size(); ++n) {
+      const auto route = graph_.route_between(closing.landmarks[n - 1], closing.landmarks[n]);
+      stiffnesses.push_back(stiffness(graph_.route(*route)));
+    }
+    stiffnesses.push_back(
+        bar_stiffness(StiffnessLaw::printed, leg.covariance, direction(leg.displacement), 1.0));
+    Moves moves;
+    moves.landmarks.assign(closing.landmarks.begin() + 1, closing.landmarks.end());
+    moves.displacements = chain_displacements(stiffnesses, -arrival.misfit);
+    moves.displacements.pop_back();  // the end is b, which stays
+
+    arrival.kind = moves.landmarks.empty() ? Arrival::Kind::new_route : Arrival::Kind::first_sight;
+    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    make(moves, arrival);
+    chain_.settle(closing, arrival.landmark);
+    return arrival;
+  }
+
+  Arrival refine(Arrival arrival, const Traversal& leg) {
+    arrival.kind = Arrival::Kind::refinement;
+    arrival.route = *graph_.route_between(here_, arrival.landmark);
+    const Route before = graph_.route(arrival.route);
+    Route& route = graph_.route(arrival.route);
+    average_in(route, route.source == here_ ? leg : reversed(leg));
+    if (!options_.refine) return arrival;
+    try {
+      const Moves moves = refinement_moves(route, options_.gain_limit, arrival);
+      make(moves, arrival);
+    } catch (...) {
+      route = before;
+      throw;
+    }
+    return arrival;
+  }
+
+  [[nodiscard]] std::optional<Matrix2> stiffest_neighbour(int landmark, int except) const {
+    std::optional<Matrix2> stiffest;
+    for (const int number : graph_.routes_at(landmark)) {
+      if (number == except) continue;
+      const Matrix2 B = stiffness(graph_.route(number));
+      if (!stiffest || B.trace() > stiffest->trace()) stiffest = B;
+    }
+    return stiffest;
+  }
+
+  [[nodiscard]] Moves refinement_moves(const Route& route, double gain_limit,
+                                       Arrival& arrival) const {
+    const int i = route.source;
+    const int j = route.target;
+    const Vector2 present = stored(j) - stored(i);
+    const Vector2 target = route.mean_vector();
+    const RefinementLoads loads =
+        refinement_loads(present, target, stiffness(route), stiffest_neighbour(i, arrival.route),
+                         stiffest_neighbour(j, arrival.route));
+    Moves moves = larger_structure(i, j, loads);
+    arrival.eta = static_cast<int>(moves.landmarks.size());
+    if (options_.method == Method::elastic) {
+      const Vector2 obtained = displacement_of(moves, j) - displacement_of(moves, i);
+      const double gain = limited_gain(obtained, target - present, gain_limit);
+      for (Vector2& u : moves.displacements) u *= gain;
+    }
+    // A floating piece that holds the first landmark moves it: count the map as shifted instead.
+    moves.shift = -displacement_of(moves, 0);
+    return moves;
+  }
+
+  [[nodiscard]] static Vector2 displacement_of(const Moves& moves, int landmark) {
+    const auto place = std::lower_bound(moves.landmarks.begin(), moves.landmarks.end(), landmark);
+    if (place == moves.landmarks.end() || *place != landmark) return Vector2::Zero();
+    return moves.displacements[idx(place - moves.landmarks.begin())];
+  }
+
+  [[nodiscard]] Moves larger_structure(int i, int j, const RefinementLoads& loads) const {
+    const int all = graph_.landmarks();
+    if (options_.eta.kind == Eta::Kind::estimated) return growing_structure(i, j, loads);
+    if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < all) {
+      const Vector2 midpoint = 0.5 * (stored(i) + stored(j));
+      std::vector<int> members = nearest_.nearest(midpoint, options_.eta.count);
+      for (const int end : {i, j}) {  // on a long route both ends may be far from its middle
+        const auto place = std::lower_bound(members.begin(), members.end(), end);
+        if (place == members.end() || *place != end) members.insert(place, end);
+      }
+      return deflect(connected_to(i, members), i, j, loads, false);
+    }
+    std::vector<int> members(idx(all));
+    for (int k = 0; k < all; ++k) members[idx(k)] = k;
+    return deflect(piece_of(std::move(members)), i, j, loads, options_.eta.hold_first);
+  }
+
+  /// Ring by ring round the route, until the outer ring hardly moves.
+  [[nodiscard]] Moves growing_structure(int i, int j, const RefinementLoads& loads) const {
+    std::vector<int> members{std::min(i, j), std::max(i, j)};
+    std::vector<int> ring = members;
+    while (true) {
+      ring = next_ring(members, ring);
+      members.insert(members.end(), ring.begin(), ring.end());
+      std::sort(members.begin(), members.end());
+      const bool everything = static_cast<int>(members.size()) == graph_.landmarks();
+      Moves moves = deflect(piece_of(members), i, j, loads, everything && options_.eta.hold_first);
+      if (everything || ring.empty() || hardly_moves(moves, ring)) return moves;
+    }
+  }
+
+  [[nodiscard]] std::vector<int> next_ring(const std::vector<int>& members,
+                                           const std::vector<int>& ring) const {
+    std::vector<int> next;
+    for (const int landmark : ring) {
+      for (const int number : graph_.routes_at(landmark)) {
+        const int other = other_end(graph_.route(number), landmark);
+        if (!std::binary_search(members.begin(), members.end(), other)) next.push_back(other);
+      }
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    return next;
+  }
+
+  [[nodiscard]] bool hardly_moves(const Moves& moves, const std::vector<int>& ring) const {
+    double largest = 0.0;
+    double smallest_variance = std::numeric_limits<double>::infinity();
+    for (const int landmark : ring) {
+      largest = std::max(largest, displacement_of(moves, landmark).norm());
+      for (const int number : graph_.routes_at(landmark)) {
+        const Route& route = graph_.route(number);
+        const Eigen::SelfAdjointEigenSolver<Matrix2> axes(route.covariance);
+        smallest_variance = std::min(smallest_variance, axes.eigenvalues()(0) / route.traversals);
+      }
+    }
+    return largest < kNegligibleShare * std::sqrt(smallest_variance);
+  }
+
+  [[nodiscard]] Piece piece_of(std::vector<int> members) const {
+    Piece piece{std::move(members), {}};
+    for (const int landmark : piece.landmarks) {
+      for (const int number : graph_.routes_at(landmark)) {
+        const Route& route = graph_.route(number);
+        if (route.source == landmark && piece.joint(route.target) >= 0) {
+          piece.routes.push_back(number);
+        }
+      }
+    }
+    return piece;
+  }
+
+  /// Of the members, those that routes among them tie to landmark i.
+  [[nodiscard]] Piece connected_to(int i, const std::vector<int>& members) const {
+    std::vector<int> reached{i};
+    std::vector<bool> seen(members.size(), false);
+    const auto place_of = [&members](int landmark) {
+      const auto place = std::lower_bound(members.begin(), members.end(), landmark);
+      return place != members.end() && *place == landmark ? place - members.begin()
+                                                          : std::ptrdiff_t{-1};
+    };
+    seen[idx(place_of(i))] = true;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+      for (const int number : graph_.routes_at(reached[next])) {
+        const int other = other_end(graph_.route(number), reached[next]);
+        const std::ptrdiff_t place = place_of(other);
+        if (place >= 0 && !seen[idx(place)]) {
+          seen[idx(place)] = true;
+          reached.push_back(other);
+        }
+      }
+    }
+    std::sort(reached.begin(), reached.end());
+    return piece_of(std::move(reached));
+  }
+
+  /// The loads on a piece of the map: `held` at the first landmark, or floating.
+  [[nodiscard]] Moves deflect(const Piece& piece, int i, int j, const RefinementLoads& loads,
+                              bool held) const {
+    std::vector<Bar> bars;
+    bars.reserve(piece.routes.size());
+    for (const int number : piece.routes) {
+      const Route& route = graph_.route(number);
+      bars.push_back({piece.joint(route.source), piece.joint(route.target), stiffness(route)});
+    }
+    const std::vector<Load> forces{{piece.joint(i), loads.force_i},
+                                   {piece.joint(j), loads.force_j}};
+    const int joints = static_cast<int>(piece.landmarks.size());
+    Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
+                                 : solve_floating_truss(joints, bars, forces);
+    return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
+  }
+
+  void make(const Moves& moves, Arrival& arrival) {
+    for (std::size_t n = 0; n < moves.landmarks.size(); ++n) {
+      const int landmark = moves.landmarks[n];
+      const Vector2 from = stored(landmark);
+      const Vector2 to = from + moves.displacements[n];
+      graph_.set_position(landmark, to);
+      if (indexed()) nearest_.move(landmark, from, to);
+      const double move = (moves.displacements[n] + moves.shift).norm();
+      if (move > kMoved) ++arrival.landmarks_moved;
+      arrival.largest_move = std::max(arrival.largest_move, move);
+    }
+    offset_ += moves.shift;
+  }
+
+  MapBuilderOptions options_;
+  LandmarkGraph graph_;
+  Vector2 offset_ = Vector2::Zero();
+  OpenChain chain_;
+  ExactIncrements increments_;
+  NearestLandmarks nearest_;
+  int here_ = -1;
+};
+
+MapBuilder::MapBuilder(const MapBuilderOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+MapBuilder::~MapBuilder() = default;
+MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
+MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
+
+void MapBuilder::start(const std::string& landmark, const Vector2& position) {
+  state_->start(landmark, position);
+}
+
+Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
+  Arrival arrival = state_->travel(landmark, leg);
+  state_->stand_on(arrival.landmark);
+  return arrival;
+}
+
+Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_here) {
+  return state_->travel(landmark, from_here);
+}
+
+double MapBuilder::settle(double gain_limit) {
+  return state_->options().method == Method::elastic ? state_->settle(gain_limit) : 0.0;
+}
+
+const MapBuilderOptions& MapBuilder::options() const {
+  return state_->options();
+}
+void MapBuilder::set_options(const MapBuilderOptions& options) {
+  state_->set_options(options);
+}
+
+int MapBuilder::here() const {
+  return state_->here();
+}
+int MapBuilder::landmarks() const {
+  return state_->graph().landmarks();
+}
+
+std::optional<int> MapBuilder::find(const std::string& landmark) const {
+  return state_->graph().find(landmark);
+}
+
+Vector2 MapBuilder::position(int landmark) const {
+  return state_->position(landmark);
+}
+
+std::optional<Route> MapBuilder::route_between(int a, int b) const {
+  const auto number = state_->graph().route_between(a, b);
+  if (!number) return std::nullopt;
+  return state_->graph().route(*number);
+}
+
+LandmarkGraph MapBuilder::map() const {
+  return state_->map();
+}
+
+std::string name_of(Method method) {
+  switch (method) {
+    case Method::elastic:
+      return "elastic";
+    case Method::elastic_printed:
+      return "elastic_printed";
+    case Method::gauss_markov:
+      return "gauss_markov";
+  }
+  return "unknown";
+}
+
+}  // namespace trussmap

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/survey_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace trussmap {
+namespace {
+
+constexpr double kMedians = 10.0;
+constexpr double kRms = 10.0;
+constexpr std::size_t kFewest = 3;
+
+struct Common {
+  std::vector<std::string> names;
+  std::vector<Vector2> in_map;
+  std::vector<Vector2> surveyed;
+};
+
+Common common_landmarks(const LandmarkPositions& map, const std::vector<SurveyPoint>& survey,
+                        const std::vector<std::string>& leave_out) {
+  Common common;
+  for (const SurveyPoint& point : survey) {
+    const auto found = map.find(point.landmark);
+    if (found == map.end()) continue;
+    if (std::find(leave_out.begin(), leave_out.end(), point.landmark) != leave_out.end()) continue;
+    common.names.push_back(point.landmark);
+    common.in_map.push_back(found->second);
+    common.surveyed.emplace_back(point.x, point.y);
+  }
+  return common;
+}
+
+std::vector<double> distances(const Common& common, const Alignment& alignment) {
+  std::vector<double> result;
+  result.reserve(common.names.size());
+  for (std::size_t k = 0; k < common.names.size(); ++k) {
+    result.push_back((alignment.apply(common.in_map[k]) - common.surveyed[k]).norm());
+  }
+  return result;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The pair's alignment whose median distance is least.
+Alignment robust_alignment(const Common& common) {
+  Alignment best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < common.names.size(); ++i) {
+    for (std::size_t j = i + 1; j < common.names.size(); ++j) {
+      const Alignment candidate = align_rigidly({common.in_map[i], common.in_map[j]},
+                                                {common.surveyed[i], common.surveyed[j]});
+      const double middle = median(distances(common, candidate));
+      if (middle < least) {
+        least = middle;
+        best = candidate;
+      }
+    }
+  }
+  return best;
+}
+
+Common subset(const Common& common, const std::vector<bool>& keep) {
+  Common result;
+  for (std::size_t k = 0; k < common.names.size(); ++k) {
+    if (!keep[k]) continue;
+    result.names.push_back(common.names[k]);
+    result.in_map.push_back(common.in_map[k]);
+    result.surveyed.push_back(common.surveyed[k]);
+  }
+  return result;
+}
+
+/// Which landmarks agree with the survey.
+std::vector<bool> agreeing(const Common& common) {
+  const std::size_t count = common.names.size();
+  std::vector<bool> all(count, true);
+  std::vector<bool> keep = all;
+  Alignment alignment = robust_alignment(common);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<double> off = distances(common, alignment);
+    const double middle = median(off);
+    double sum = 0.0;
+    double kept = 0.0;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (off[k] > kMedians * middle) continue;
+      sum += off[k] * off[k];
+      kept += 1.0;
+    }
+    const double limit = std::max(kMedians * middle, kRms * std::sqrt(sum / kept));
+    for (std::size_t k = 0; k < count; ++k) keep[k] = off[k] <= limit;
+    const auto left_out = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
+    if (3 * left_out > count || count - left_out < kFewest) return all;
+    const Common inner = subset(common, keep);
+    alignment = align_rigidly(inner.in_map, inner.surveyed);
+  }
+  return keep;
+}
+
+}  // namespace
+
+LandmarkPositions positions_of(const LandmarkGraph& map) {
+  LandmarkPositions positions;
+  for (int k = 0; k < map.landmarks(); ++k) {
+    positions[map.landmark(k).name] = map.landmark(k).position;
+  }
+  return positions;
+}
+
+SurveyComparison compare_with_survey(const LandmarkPositions& map,
+                                     const std::vector<SurveyPoint>& survey) {
+  SurveyComparison result;
+  const Common common = common_landmarks(map, survey, {});
+  result.landmarks = static_cast<int>(common.names.size());
+  if (common.names.size() < kFewest) return result;
+  const std::vector<bool> keep = agreeing(common);
+  const Common inner = subset(common, keep);
+  result.landmarks = static_cast<int>(inner.names.size());
+  result.rigid = align_rigidly(inner.in_map, inner.surveyed);
+  result.similarity = align_by_similarity(inner.in_map, inner.surveyed);
+  result.rms_all = align_rigidly(common.in_map, common.surveyed).rms;
+
+  std::vector<std::size_t> outside;
+  for (std::size_t k = 0; k < keep.size(); ++k) {
+    if (!keep[k]) outside.push_back(k);
+  }
+  const double near = kMedians * std::max(result.rigid.rms, 1e-9);
+  for (const std::size_t a : outside) {
+    result.contradicting.push_back(common.names[a]);
+    for (const std::size_t b : outside) {
+      if (b <= a) continue;
+      const Vector2 off_a = result.rigid.apply(common.in_map[a]) - common.surveyed[b];
+      const Vector2 off_b = result.rigid.apply(common.in_map[b]) - common.surveyed[a];
+      if (off_a.norm() <= near && off_b.norm() <= near) {
+        result.exchanged.emplace_back(common.names[a], common.names[b]);
+      }
+    }
+  }
+  return result;
+}
+
+double survey_rms(const LandmarkPositions& map, const std::vector<SurveyPoint>& survey,
+                  const std::vector<std::string>& leave_out) {
+  const Common common = common_landmarks(map, survey, leave_out);
+  return common.names.size() < 2 ? 0.0 : align_rigidly(common.in_map, common.surveyed).rms;
+}
+
+}  // namespace trussmap

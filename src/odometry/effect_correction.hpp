@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Recordings freed from the effects that the model knows, before a map is built from them.
+#pragma once
+
+#include "trussmap/dead_reckoning.hpp"
+#include "trussmap/model.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Dead-reckoned pose at the end of each row, from the first compass heading (else 0) at the
+/// origin.
+[[nodiscard]] std::vector<Pose> row_path(const Drive& drive, const Model& model);
+
+/// Each recording as corrected_recording.hpp makes it. Shapes that speak of heading, x or y see the
+/// dead-reckoned path of the corrected recording itself, which two passes give. Throws
+/// std::invalid_argument as corrected_recording and resolved do.
+[[nodiscard]] std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
+                                                     const Model& model);
+
+}  // namespace trussmap

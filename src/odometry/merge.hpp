@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Rows of a drive merged into arcs of constant curvature, so that covariance costs one closed form
+// per arc, not one per row.
+//
+//   q   (R - L)/(|R| + |L|) of a row's wheel travels, in [-1, 1]: its curvature, times B/2 while
+//       both wheels turn the same way; +-1 where one stands, and for any turn on the spot
+//
+// A row joins the arc before it while it is the same kind of motion (forward, backward, turning on
+// the spot left or right, standing) and its q lies within 0.1 of the arc's, or within what wheel
+// noise explains, and while the arc ends within 1 % of its length of where its rows end. The rows'
+// own displacements are not merged: their exact composition is what odometry measured.
+#pragma once
+
+#include "trussmap/arc.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+struct DriveArc {
+  WheelTravel travel;     ///< m, sums over the rows
+  double duration = 0.0;  ///< s
+};
+
+/// A row, or the part of it inside a span of time.
+struct DriveRow {
+  std::size_t row = 0;
+  double part = 1.0;      ///< share of the row's travel
+  double duration = 0.0;  ///< s
+  bool ends = true;       ///< the span holds the row's end, where the compass was read
+};
+
+/// The rows between two times, first and last cut to fit. `from` <= `to`; times outside of the
+/// drive are cut to it.
+[[nodiscard]] std::vector<DriveRow> rows_between(const Drive& drive, double from, double to);
+
+[[nodiscard]] WheelTravel travel_of(const Drive& drive, const DriveRow& row);
+
+/// The arcs of these rows, in order.
+[[nodiscard]] std::vector<DriveArc> merge_rows(const Drive& drive,
+                                               const std::vector<DriveRow>& rows, double wheelbase,
+                                               const WheelNoise& noise);
+
+}  // namespace trussmap

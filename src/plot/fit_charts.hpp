@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The charts that pages on a model's fit have in common.
+//
+//   truss_chart     the map: bars by their force, landmarks with 95 % ellipses, the path
+//   response_chart  the signature: a channel's error along a variable, with curves
+//   ladder_chart    what each step takes off the held-out legs' error
+//   source_chart    is each source of noise as large as stated?
+//   quantile_chart  do its errors scatter as they should?
+//   held_out_chart  how many held-out legs end within which distance
+//   legs_chart      stretch or orientation error of all legs, in time
+//   worst_chart     the legs with most chi^2
+#pragma once
+
+#include "criticism/comparison.hpp"
+#include "criticism/response.hpp"
+#include "estimation/source_residuals.hpp"
+#include "fit/fitted_map.hpp"
+#include "plot/chart.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+/// Charts and pages show % for "", degrees for rad, mm for m.
+struct ShownUnit {
+  double factor = 1.0;
+  std::string name;
+};
+[[nodiscard]] ShownUnit shown_unit(const std::string& unit);
+/// A value with the unit it is shown in: "2.1 mm", "0.31 deg", "4 %". Two digits.
+[[nodiscard]] std::string shown(double value, const std::string& unit);
+/// "turn rate" for turn_rate, and so on.
+[[nodiscard]] std::string variable_in_words(const std::string& variable);
+/// What a channel's error is called: "turning", "compass reading" ...
+[[nodiscard]] std::string channel_in_words(const std::string& channel);
+
+/// The strongest bars are drawn one by one (the others as one faint net). `loudest` is the force
+/// that has the strongest colour.
+[[nodiscard]] Chart truss_chart(const std::string& id, const std::string& title,
+                                const FittedMap& map, const std::vector<RouteMisfit>& routes,
+                                double loudest);
+/// For one map alone: its strongest force, but so that mere noise looks calm.
+[[nodiscard]] double loudest_force(const Comparison& comparison);
+
+/// A curve beside the response's own: a rival's, say.
+struct NamedCurve {
+  std::string name;
+  std::vector<Vector2> points;  ///< variable, g
+};
+[[nodiscard]] Chart response_chart(const std::string& id, const std::string& title,
+                                   const std::string& caption, const Response& response,
+                                   const std::string& curve_name,
+                                   const std::vector<NamedCurve>& rivals = {});
+
+/// A model on the way from the nominal one: "without effects", "+ hard iron" ...
+struct LadderStep {
+  std::string name;
+  double arrival_rms = 0.0;  ///< m, of held-out legs
+  double chi2 = 0.0;
+  int dof = 0;
+};
+[[nodiscard]] Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps);
+
+using NamedSources = std::pair<std::string, std::vector<SourceCalibration>>;
+[[nodiscard]] Chart source_chart(const std::string& id, const std::vector<NamedSources>& models);
+
+/// Standardised residuals against those that a normal distribution would have (Q-Q).
+[[nodiscard]] Chart quantile_chart(const std::string& id, const std::string& title,
+                                   const std::vector<SourceResiduals>& sources);
+
+/// A name for each set: "nominal", "with hard iron".
+using NamedHeldOut = std::pair<std::string, HeldOut>;
+[[nodiscard]] Chart held_out_chart(const std::string& id, const std::vector<NamedHeldOut>& models);
+
+enum class LegError { stretch, orientation };
+[[nodiscard]] Chart legs_chart(const std::string& id, const std::vector<LegMisfit>& legs,
+                               LegError which);
+[[nodiscard]] Chart worst_chart(const std::string& id, const std::vector<LegMisfit>& legs,
+                                std::size_t count);
+
+}  // namespace trussmap

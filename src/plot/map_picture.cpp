@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/map_picture.hpp"
+
+#include "text/xml_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kWidth = 800.0;  // pixels
+constexpr double kMargin = 40.0;
+constexpr double kHeader = 76.0;             // title and legend
+constexpr std::size_t kMostNamesDrawn = 80;  // beyond that names only clutter
+
+/// Metres to pixels, y upwards.
+class Frame {
+ public:
+  void include(const Vector2& point) {
+    low_ = low_.cwiseMin(point);
+    high_ = high_.cwiseMax(point);
+  }
+
+  void finish() {
+    const Vector2 size = (high_ - low_).cwiseMax(1e-6);
+    scale_ = std::min((kWidth - 2.0 * kMargin) / size.x(), kWidth / size.y());
+    height_ = kHeader + 2.0 * kMargin + scale_ * size.y();
+  }
+
+  [[nodiscard]] double x(const Vector2& point) const {
+    return kMargin + scale_ * (point.x() - low_.x());
+  }
+  [[nodiscard]] double y(const Vector2& point) const {
+    return height_ - kMargin - scale_ * (point.y() - low_.y());
+  }
+  [[nodiscard]] double height() const { return height_; }
+  [[nodiscard]] double scale() const { return scale_; }
+
+ private:
+  Vector2 low_ = Vector2::Constant(std::numeric_limits<double>::infinity());
+  Vector2 high_ = Vector2::Constant(-std::numeric_limits<double>::infinity());
+  double scale_ = 1.0;
+  double height_ = 0.0;
+};
+
+std::string line(const Frame& view, const Vector2& a, const Vector2& b, const char* kind,
+                 double width) {
+  return fmt::format(
+      "<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
+      "stroke-width=\"{:.2f}\"/>\n",
+      kind, view.x(a), view.y(a), view.x(b), view.y(b), width);
+}
+
+std::string cross(const Frame& view, const Vector2& at) {
+  constexpr double r = 4.5;
+  const double x = view.x(at);
+  const double y = view.y(at);
+  return fmt::format(
+      "<path class=\"truth\" d=\"M{:.2f} {:.2f}l{:.1f} {:.1f}m{:.1f} 0l{:.1f} {:.1f}\"/>\n", x - r,
+      y - r, 2 * r, 2 * r, -2 * r, 2 * r, -2 * r);
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is at most `length`.
+double round_length(double length) {
+  const double power = std::pow(10.0, std::floor(std::log10(length)));
+  const double digits = length / power;
+  return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
+}
+
+std::string header(const MapPicture& picture, const Frame& view) {
+  std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n", kMargin,
+                                xml_escaped(picture.title));
+  double x = kMargin;
+  const auto entry = [&](const std::string& mark, const char* label, double width) {
+    svg += fmt::format(
+        "<g transform=\"translate({:.1f},54)\">{}<text x=\"30\" y=\"5\">{}</text>"
+        "</g>\n",
+        x, mark, label);
+    x += width;
+  };
+  const std::string bar =
+      "<line class=\"{}\" x1=\"0\" y1=\"0\" x2=\"24\" y2=\"0\" "
+      "stroke-width=\"2\"/>";
+  if (!picture.before.empty()) {
+    entry(fmt::format(fmt::runtime(bar), "before"), "before correction", 170.0);
+  }
+  entry(fmt::format(fmt::runtime(bar), "after"), "corrected map", 150.0);
+  if (!picture.truth.empty()) {
+    entry("<path class=\"truth\" d=\"M7.5 -4.5l9 9m-9 0l9 -9\"/>", "true position", 140.0);
+  }
+  const double length = round_length(0.2 * kWidth / view.scale());
+  const double pixels = length * view.scale();
+  svg += fmt::format(
+      "<g transform=\"translate({:.1f},54)\"><path class=\"scale\" d=\"M0 -4v8M0 0h{:.1f}M{:.1f} "
+      "-4v8\"/><text x=\"{:.1f}\" y=\"-8\" text-anchor=\"middle\">{:g} m</text></g>\n",
+      kWidth - kMargin - pixels, pixels, pixels, 0.5 * pixels, length);
+  return svg;
+}
+
+constexpr const char* kMapStyle =
+    "<style>text{font:13px system-ui,sans-serif;fill:#222}.title{font-size:17px;font-weight:600}"
+    ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.after{stroke:#111}"
+    ".joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:1.6;fill:none}"
+    ".scale{stroke:#222;fill:none}</style>\n";
+
+}  // namespace
+
+std::string draw_map(const MapPicture& picture) {
+  const Alignment& lay = picture.map_onto_truth;
+  const auto after = [&](int k) { return lay.apply(picture.map.landmark(k).position); };
+  const auto before = [&](int k) { return picture.before.find(picture.map.landmark(k).name); };
+  Frame view;
+  for (int k = 0; k < picture.map.landmarks(); ++k) {
+    view.include(after(k));
+    if (before(k) != picture.before.end()) view.include(lay.apply(before(k)->second));
+  }
+  for (const auto& [name, position] : picture.truth) view.include(position);
+  view.finish();
+
+  std::string body;
+  for (int number = 0; number < picture.map.routes(); ++number) {
+    const Route& route = picture.map.route(number);
+    const auto a = before(route.source);
+    const auto b = before(route.target);
+    if (a == picture.before.end() || b == picture.before.end()) continue;
+    body += line(view, lay.apply(a->second), lay.apply(b->second), "before", 1.5);
+  }
+  for (int number = 0; number < picture.map.routes(); ++number) {
+    const Route& route = picture.map.route(number);
+    const double width = std::min(0.8 + 0.4 * std::log2(route.traversals), 3.0);
+    body += line(view, after(route.source), after(route.target), "after", width);
+  }
+  for (int k = 0; k < picture.map.landmarks(); ++k) {
+    body += fmt::format("<circle class=\"joint\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.6\"/>\n",
+                        view.x(after(k)), view.y(after(k)));
+  }
+  for (const auto& [name, position] : picture.truth) body += cross(view, position);
+  const auto count = static_cast<std::size_t>(picture.map.landmarks());
+  for (int k = 0; picture.names && count <= kMostNamesDrawn && k < picture.map.landmarks(); ++k) {
+    body += fmt::format("<text class=\"name\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",
+                        view.x(after(k)) + 6.0, view.y(after(k)) - 6.0,
+                        xml_escaped(picture.map.landmark(k).name));
+  }
+  return fmt::format(
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+             "width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n"
+             "{3}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+             kWidth, view.height(), xml_escaped(picture.title), kMapStyle) +
+         header(picture, view) + body + "</svg>\n";
+}
+
+}  // namespace trussmap

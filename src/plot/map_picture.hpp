@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A map as a picture (SVG): before correction grey, after black, true positions as crosses, like
+// Figures 7 and 8 of Golfarelli, Maio & Rizzi (1998). Routes are drawn straight; a route's width
+// grows with its traversals.
+#pragma once
+
+#include "trussmap/alignment.hpp"
+#include "trussmap/landmark_map.hpp"
+#include "trussmap/survey_comparison.hpp"
+
+#include <map>
+#include <string>
+
+namespace trussmap {
+
+struct MapPicture {
+  std::string title;
+  LandmarkGraph map;         ///< after correction
+  LandmarkPositions before;  ///< may be empty, or lack landmarks
+  LandmarkPositions truth;   ///< may be empty
+  Alignment map_onto_truth;  ///< laid over map and before alike
+  bool names = true;         ///< write the landmarks' names beside them
+};
+
+/// The picture as SVG text; names are escaped. 800 pixels wide.
+[[nodiscard]] std::string draw_map(const MapPicture& picture);
+
+}  // namespace trussmap

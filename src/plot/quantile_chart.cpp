@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/fit_charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <boost/math/distributions/normal.hpp>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kMostPoints = 120;  // of a source
+constexpr std::size_t kFewest = 5;        // values that make a line
+
+double normal_quantile(std::size_t k, std::size_t count) {
+  return boost::math::quantile(boost::math::normal(),
+                               (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+}
+
+/// Places in a sorted sample: all, or some evenly spread over the axis of quantiles, both ends
+/// among them.
+std::vector<std::size_t> drawn_places(std::size_t count) {
+  std::vector<std::size_t> places;
+  if (count <= kMostPoints) {
+    for (std::size_t k = 0; k < count; ++k) places.push_back(k);
+    return places;
+  }
+  const double end = normal_quantile(count - 1, count);
+  for (std::size_t k = 0; k < kMostPoints; ++k) {
+    const double z =
+        end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostPoints - 1) - 1.0);
+    const double share = boost::math::cdf(boost::math::normal(), z);
+    const auto place = static_cast<std::size_t>(std::clamp(
+        std::floor(share * static_cast<double>(count)), 0.0, static_cast<double>(count - 1)));
+    if (places.empty() || places.back() != place) places.push_back(place);
+  }
+  return places;
+}
+
+}  // namespace
+
+Chart quantile_chart(const std::string& id, const std::string& title,
+                     const std::vector<SourceResiduals>& sources) {
+  Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.caption =
+      "Every error over its standard deviation, as the model states it, against where a normal "
+      "distribution would have it. On the line: as stated. Steeper: more noise than stated, or an "
+      "effect is missing. Straight, but for a few at the ends: those are outliers.";
+  chart.x.title = "expected [standard deviations]";
+  chart.y.title = "seen [standard deviations]";
+  chart.height = 300.0;
+  double reach = 1.0;
+  for (const SourceResiduals& one : sources) {
+    if (one.standardised.size() < kFewest) continue;
+    reach = std::max(reach, normal_quantile(one.standardised.size() - 1, one.standardised.size()));
+  }
+  ChartLayer line{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
+  for (ChartColumn& column : line.columns) column.numbers = {-reach, reach};
+  chart.layers.push_back(std::move(line));
+  int colour = 0;
+  for (const SourceResiduals& one : sources) {
+    const std::size_t count = one.standardised.size();
+    if (count < kFewest) continue;
+    ChartLayer dots{LayerKind::dots,
+                    one.source,
+                    {{chart.x.title}, {chart.y.title}},
+                    std::to_string(1 + colour++ % 8)};
+    dots.size = 3.0;
+    for (const std::size_t k : drawn_places(count)) {
+      dots.columns[0].numbers.push_back(normal_quantile(k, count));
+      dots.columns[1].numbers.push_back(one.standardised[k]);
+    }
+    chart.layers.push_back(std::move(dots));
+  }
+  return chart;
+}
+
+}  // namespace trussmap

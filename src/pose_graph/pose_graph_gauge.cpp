@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "pose_graph/pose_graph_gauge.hpp"
+
+#include "geometry/index.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kNamed = 3;       // vertices named per part, and
+constexpr std::size_t kPartsNamed = 4;  // parts, before "and so on"
+
+/// Disjoint sets of vertices, each represented by its first.
+class Parts {
+ public:
+  explicit Parts(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0); }
+
+  int root(int vertex) {
+    while (up_[idx(vertex)] != vertex) {
+      int& up = up_[idx(vertex)];
+      up = up_[idx(up)];
+      vertex = up;
+    }
+    return vertex;
+  }
+
+  void join(int a, int b) {
+    a = root(a);
+    b = root(b);
+    up_[idx(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> up_;
+};
+
+struct Part {
+  std::vector<int> vertices;
+  int fixed_poses = 0;
+  int fixed_points = 0;
+  bool has_displacements = false;
+  std::optional<int> first_pose;
+};
+
+std::vector<Part> find_parts(const PoseGraph& graph) {
+  Parts sets(graph.vertices.size());
+  const auto join = [&sets](const auto& edge, int a, int b) {
+    if (!edge.information.isZero(0.0)) sets.join(a, b);
+  };
+  for (const PoseEdge& edge : graph.pose_edges) join(edge, edge.from, edge.to);
+  for (const PointEdge& edge : graph.point_edges) join(edge, edge.pose, edge.point);
+  for (const DisplacementEdge& edge : graph.displacement_edges) join(edge, edge.from, edge.to);
+
+  std::vector<Part> parts;
+  std::vector<int> number(graph.vertices.size(), -1);
+  for (std::size_t v = 0; v < graph.vertices.size(); ++v) {
+    const int vertex = static_cast<int>(v);
+    int& part = number[idx(sets.root(vertex))];
+    if (part < 0) {
+      part = static_cast<int>(parts.size());
+      parts.emplace_back();
+    }
+    Part& mine = parts[idx(part)];
+    mine.vertices.push_back(vertex);
+    const bool pose = is_pose(graph.vertices[v]);
+    if (pose && !mine.first_pose) mine.first_pose = vertex;
+    if (graph.vertices[v].fixed) ++(pose ? mine.fixed_poses : mine.fixed_points);
+  }
+  for (const DisplacementEdge& edge : graph.displacement_edges) {
+    parts[idx(number[idx(sets.root(edge.from))])].has_displacements = true;
+  }
+  return parts;
+}
+
+std::string name_vertices(const PoseGraph& graph, const Part& part) {
+  std::string names = part.vertices.size() == 1 ? "vertex " : "vertices ";
+  for (std::size_t k = 0; k < std::min(kNamed, part.vertices.size()); ++k) {
+    if (k > 0) names += ", ";
+    names += std::to_string(graph.vertices[idx(part.vertices[k])].id);
+  }
+  if (part.vertices.size() > kNamed) {
+    names += fmt::format(" and {} more", part.vertices.size() - kNamed);
+  }
+  return names;
+}
+
+[[noreturn]] void refuse(const PoseGraph& graph, const std::vector<Part>& parts) {
+  const std::int64_t first = graph.vertices[idx(parts.front().vertices.front())].id;
+  std::string message = fmt::format(
+      "the graph falls into {} parts that no measurement ties together: ", parts.size());
+  for (std::size_t k = 1; k < std::min(parts.size(), kPartsNamed); ++k) {
+    if (k > 1) message += "; ";
+    const bool one = parts[k].vertices.size() == 1;
+    message += fmt::format("{} {} tied to nothing that is tied to vertex {}",
+                           name_vertices(graph, parts[k]), one ? "is" : "are", first);
+  }
+  if (parts.size() > kPartsNamed) message += "; and so on";
+  throw SolveError(message + " (tie them by an edge, or fix a vertex of each part)");
+}
+
+void hold(const PoseGraph& graph, const Part& part, std::vector<std::uint8_t>& held) {
+  const bool has_poses = part.first_pose.has_value();
+  const bool turns = has_poses && !part.has_displacements;
+  if (part.fixed_poses > 0 || part.fixed_points > 1) return;
+  if (part.fixed_points == 0) {
+    const int first = part.vertices.front();
+    const bool whole = is_pose(graph.vertices[idx(first)]) && turns;
+    held[idx(first)] |= whole ? held_all : held_position;
+    if (whole) return;
+  }
+  if (turns) held[idx(*part.first_pose)] |= held_heading;
+}
+
+template <typename Matrix>
+int rank(const Matrix& information) {
+  constexpr double kZero = 1e-9;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information, Eigen::EigenvaluesOnly);
+  const double size = information.cwiseAbs().maxCoeff();
+  return static_cast<int>((eigen.eigenvalues().array() > kZero * kZero * size).count());
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> choose_gauge(const PoseGraph& graph) {
+  const std::vector<Part> parts = find_parts(graph);
+  const bool loose = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
+    return part.fixed_poses + part.fixed_points == 0;
+  });
+  if (parts.size() > 1 && loose) refuse(graph, parts);
+
+  std::vector<std::uint8_t> held(graph.vertices.size(), held_nothing);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if (graph.vertices[v].fixed) held[v] = held_all;
+  }
+  for (const Part& part : parts) hold(graph, part, held);
+  return held;
+}
+
+int count_unknowns(const PoseGraph& graph, const std::vector<std::uint8_t>& held) {
+  int unknowns = 0;
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    if ((held[v] & held_position) == 0) unknowns += 2;
+    if (is_pose(graph.vertices[v]) && (held[v] & held_heading) == 0) unknowns += 1;
+  }
+  return unknowns;
+}
+
+int count_measurements(const PoseGraph& graph) {
+  int count = 0;
+  for (const PoseEdge& edge : graph.pose_edges) count += rank(edge.information);
+  for (const PointEdge& edge : graph.point_edges) count += rank(edge.information);
+  for (const DisplacementEdge& edge : graph.displacement_edges) count += rank(edge.information);
+  return count;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Stops and legs: how a recording falls into drives between landmarks.
+//
+//   stop   the sightings that share a time; its reference is the landmark the robot stands on,
+//          else the nearest one it sees
+//   leg    the drive between two stops with different references that are at least `min_drive` of
+//          driven path apart: from each leg's end, the first stop that qualifies ends the next
+//
+//   t ----S1-------S2-S3--------S4----->      S3 is nearer than min_drive to S2, or has the same
+//          \--leg--/ \---leg----/             reference: a sighting in between
+#pragma once
+
+#include "trussmap/recording.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+inline constexpr double kDefaultMinDrive = 0.25;  // m
+
+struct Stop {
+  double t = 0.0;         ///< s
+  std::size_t first = 0;  ///< its sightings are first ... first + count - 1
+  std::size_t count = 0;
+  std::size_t reference = 0;  ///< the reference landmark's sighting
+};
+
+struct Leg {
+  std::size_t from = 0;  ///< stop
+  std::size_t to = 0;    ///< stop
+};
+
+/// Stops in order of time. Sightings must be in order of time.
+[[nodiscard]] std::vector<Stop> stops_of(const std::vector<Sighting>& sightings);
+
+/// Driven path of the axle's centre from the drive's start to the end of each row, m.
+[[nodiscard]] std::vector<double> driven_path(const Drive& drive);
+
+/// The path at time t, linear within a row. `path` is driven_path(drive).
+[[nodiscard]] double path_at(const Drive& drive, const std::vector<double>& path, double t);
+
+/// Legs in order. A recording without sightings has none.
+[[nodiscard]] std::vector<Leg> legs_of(const Recording& recording, const std::vector<Stop>& stops,
+                                       double min_drive = kDefaultMinDrive);
+
+}  // namespace trussmap

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a shape may speak of: the state of the drive in every row.
+//
+//   speed, turn_rate, acceleration   m/s (signed), rad/s, m/s^2
+//   heading, x, y                    of an estimated path, at the row's middle    rad, m
+//   t, distance                      since the recording's start, at the middle   s, m
+//   session                          0, 1, ...
+//   starts, spins                    1 in the first row of a drive after standing or spinning, of a
+//                                    turn on the spot
+//   reverses_left, reverses_right    1 in the row in which that wheel goes over to the other sense
+//   any covariate column             under its own name
+//
+// Rates are smoothed over about a second, never across a change between driving, turning on the
+// spot and standing: single rows carry the same encoder noise as the residuals that they are to
+// explain.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+enum class MotionKind { standing, spinning, driving };
+
+/// Kind of motion of each row.
+[[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
+
+/// A column of numbers, one per row, per variable.
+using RowVariables = std::map<std::string, std::vector<double>, std::less<>>;
+
+/// Names that a covariate may not have, and a shape may always use.
+[[nodiscard]] const std::vector<std::string>& reserved_variables();
+
+/// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
+/// is not the drive's.
+[[nodiscard]] RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
+                                         const std::vector<Pose>& path, int session);
+
+/// The same at any instants, in any order, with the pose there: what a compass reading at the end
+/// of its row, or a sighting, is made at. Rates are the mean of those of the two rows that meet at
+/// a row's end, within one kind of motion; events and covariates are those of the row.
+[[nodiscard]] RowVariables instant_variables(const Drive& drive, double wheelbase,
+                                             const std::vector<double>& instants,
+                                             const std::vector<Pose>& poses, int session);
+
+/// The row that contains time t; the last one that does where two meet.
+[[nodiscard]] std::size_t row_at(const Drive& drive, double t);
+
+}  // namespace trussmap

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The pages of calibrations: squares with a tape measure, one path driven often, drives with truth.
+#pragma once
+
+#include "calibration/truth_holdout.hpp"
+#include "calibration/wheel_calibration.hpp"
+#include "report/page.hpp"
+#include "trussmap/umbmark.hpp"
+#include "trussmap/wheel_noise.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// A round of squares, with what it called for.
+struct SquareRound {
+  SquareRuns runs;
+  SquareClusters clusters;
+  SquareSolution exact;
+  SquareSolution formulas;
+};
+
+struct SquareCalibration {
+  std::vector<SquareRound> rounds;
+  double side = 4.0;      ///< m
+  Estimate wheelbase;     ///< m: to use from now on
+  Estimate left_factor;   ///< likewise
+  Estimate right_factor;  ///< likewise
+  std::vector<std::string> doubts;
+};
+[[nodiscard]] Page square_page(const SquareCalibration& found, const std::string& subject);
+
+struct NoiseCalibration {
+  EndErrors errors;
+  NoiseEstimate estimate;
+  NoiseFit fit;
+  double path = 0.0;  ///< m, its length
+  std::vector<std::string> doubts;
+};
+[[nodiscard]] Page noise_page(const NoiseCalibration& found, const std::string& subject);
+
+struct TruthCalibration {
+  WheelCalibration wheels;
+  ArrivalErrors nominal;     ///< of held-out legs
+  ArrivalErrors calibrated;  ///< of the same
+  std::string verdict;       ///< one sentence
+};
+[[nodiscard]] Page truth_page(const TruthCalibration& found, const std::string& subject);
+
+}  // namespace trussmap

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The stiffness method for a pin-jointed plane truss: plain structural mechanics, no robots.
+//
+//        f_j ->  o j
+//               /         bar force at j: B (u_j - u_i), at i the opposite
+//              / B          B      2x2 stiffness of the bar in map axes          force/m
+//             /             u      displacement of a joint                       m
+//     i o----'              f      load on a joint
+//     /////  support        K u = f + reactions,  K = sum over bars of [B -B; -B B]
+//
+// A bar resists the displacement of its ends against each other both along its axis and across
+// it (axial and rotational spring), so a connected truss held at one joint is determined. A bar
+// carries the force B (u_j - u_i) at joint j and the opposite at i.
+//
+// Strain energy of the deformation: 1/2 sum (u_j - u_i)' B (u_j - u_i) = 1/2 u' K u.
+// Cost: one sparse Cholesky factorisation (two unknowns per free joint).
+#pragma once
+
+#include "linalg/sparse_cholesky.hpp"
+#include "trussmap/planar.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct Bar {
+  int i = 0;                            ///< joint
+  int j = 0;                            ///< joint, not i
+  Matrix2 stiffness = Matrix2::Zero();  ///< B, symmetric, in map axes
+};
+
+/// A joint held at a given displacement (zero = fixed).
+struct Support {
+  int joint = 0;
+  Vector2 displacement = Vector2::Zero();  ///< m
+};
+
+struct Load {
+  int joint = 0;
+  Vector2 force = Vector2::Zero();
+};
+
+struct Deflection {
+  std::vector<Vector2> displacements;  ///< per joint, m
+  std::vector<Vector2> reactions;      ///< per joint: K u - f; zero at free joints
+  std::vector<Vector2> bar_forces;     ///< per bar: B (u_j - u_i), the force it exerts through j
+  double strain_energy = 0.0;          ///< 1/2 u' K u
+};
+
+/// A joint that nothing holds: its part of the truss has no support, or its bars leave it free to
+/// slide. The message speaks of "joint N"; callers who know better names use joint().
+class UnsupportedJoint : public std::runtime_error {
+ public:
+  UnsupportedJoint(int joint, const std::string& why)
+      : std::runtime_error("joint " + std::to_string(joint) + " " + why), joint_(joint) {}
+  [[nodiscard]] int joint() const { return joint_; }
+
+ private:
+  int joint_;
+};
+
+/// Displacements under loads and imposed displacements. Joints are 0 ... joints-1; a joint may
+/// carry several loads (they add up) but one support. Throws std::invalid_argument on indices out
+/// of range, UnsupportedJoint where the problem is undetermined.
+[[nodiscard]] Deflection solve_truss(int joints, const std::vector<Bar>& bars,
+                                     const std::vector<Support>& supports,
+                                     const std::vector<Load>& loads);
+
+/// A truss held by nothing, under loads of which only the part that does not move it as a whole is
+/// applied (each connected part's mean load is taken off); the displacement of least norm.
+[[nodiscard]] Deflection solve_floating_truss(int joints, const std::vector<Bar>& bars,
+                                              const std::vector<Load>& loads);
+
+/// The 4x4 stiffness matrix of one bar, degrees of freedom (u_ix, u_iy, u_jx, u_jy).
+[[nodiscard]] Eigen::Matrix4d bar_matrix(const Matrix2& stiffness);
+
+/// Lower triangle of K over the free joints: `unknown[j]` numbers the free joints from 0, -1 where
+/// a joint is held. The pattern holds every bar's block even where its value is zero.
+[[nodiscard]] SparseMatrix assemble(const std::vector<Bar>& bars, const std::vector<int>& unknown,
+                                    int free_joints);
+
+}  // namespace trussmap

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A Kalman filter that follows the robot through one session, with the map as known, and how its
+// estimate would move with further effects.
+//
+//   every step   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate
+//   by
+//                                          c    the step's whitened rows by the coefficient
+//                                          dl   what it moves the step's landmark by
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "estimation/measurement_rows.hpp"
+#include "estimation/recording_problem.hpp"
+#include "validation/held_out.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+class HeldOutFilter {
+ public:
+  /// Keeps references to all but the map, whose unknown landmarks are NaN.
+  HeldOutFilter(const RecordingProblem& problem, const EffectParameters& border,
+                const Eigen::VectorXd& offsets, const RecordingState& map,
+                const std::vector<Matrix2>& map_covariances)
+      : problem_(problem),
+        border_(border),
+        offsets_(offsets),
+        state_(map),
+        covariances_(map_covariances) {}
+
+  void start(int node, const Pose& pose);
+  [[nodiscard]] const Pose& pose(int node) const {
+    return state_.poses[idx(node - problem_.landmark_count())];
+  }
+  /// Along a segment: its compass innovation first, which shares noise with its motion.
+  FilterStep drive(std::size_t segment);
+  /// A sighting of a known landmark, or a truth row.
+  FilterStep see(std::size_t measurement);
+  /// What a sighting or truth row says at the present estimate, of its pose.
+  [[nodiscard]] MeasurementRows rows(std::size_t measurement) const;
+
+ private:
+  Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
+
+  const RecordingProblem& problem_;
+  const EffectParameters& border_;
+  const Eigen::VectorXd& offsets_;
+  RecordingState state_;
+  const std::vector<Matrix2>& covariances_;
+  Matrix3 P_ = Matrix3::Zero();
+};
+
+}  // namespace trussmap

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/diagnosis.hpp"
+#include "effects/shape.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+bool has_variable(const Effect& effect, const std::string& name) {
+  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const std::string& shape) {
+    const std::vector<std::string> names = variables_of(shape);
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+}
+
+bool is_constant(const Effect& effect) {
+  return effect.shape.size() == 1 && variables_of(effect.shape.front()).empty();
+}
+
+/// What kind of trace an effect leaves, as far as a drive can tell kinds apart.
+bool is_turn(const Effect& effect) {
+  return effect.channel == "turn" || effect.channel == "rotate";
+}
+
+bool is_stretch(const Effect& effect) {
+  return effect.channel == "travel" || effect.channel == "wheels" || effect.channel == "advance";
+}
+
+struct Separation {
+  bool (*one)(const Effect&);
+  bool (*other)(const Effect&);
+  const char* drive;
+};
+
+const Separation kSeparations[] = {
+    {[](const Effect& e) { return e.channel == "compass" && is_constant(e); },
+     [](const Effect& e) { return e.channel == "creep"; },
+     "no drive between landmarks tells these apart: measure the direction of travel against the "
+     "body, or sight landmarks with a bearing sensor fixed to it"},
+    {[](const Effect& e) { return e.channel == "lever"; }, is_turn,
+     "no drive that stands on landmarks tells these apart: measure where the sensor sits"},
+    {[](const Effect& e) { return e.channel == "compass"; },
+     [](const Effect& e) { return e.channel == "compass"; },
+     "turn on the spot with other loads and at other places, read the compass at rest, then with "
+     "the wheels lifted and driven"},
+    {[](const Effect& e) { return e.channel == "compass"; },
+     [](const Effect& e) { return e.channel == "creep"; },
+     "turn on the spot by two full turns (only the compass shows there), and drive the same routes "
+     "elsewhere or with the site turned"},
+    {is_turn, is_turn,
+     "turn on the spot by two full turns each way, at two clearly different rates, and in several "
+     "shorter turns"},
+    {is_stretch, is_stretch,
+     "drive legs of clearly different length, each at two different speeds"},
+    {[](const Effect& e) { return e.channel == "difference"; }, is_turn,
+     "drive squares in both directions"},
+    {[](const Effect& e) { return e.channel == "difference"; },
+     [](const Effect& e) { return e.channel == "drift"; },
+     "let the robot stand for a minute, several times"},
+    {is_turn, [](const Effect& e) { return e.channel == "compass"; },
+     "turn on the spot by two full turns each way, at two clearly different rates"},
+};
+
+}  // namespace
+
+std::string separating_drive(const Effect& one, const Effect& other) {
+  for (const char* const slow : {"temperature", "t", "distance"}) {
+    const bool first = has_variable(one, slow);
+    const bool second = has_variable(other, slow);
+    if (first != second && (has_variable(one, "t") || has_variable(one, "distance") ||
+                            has_variable(other, "t") || has_variable(other, "distance"))) {
+      return "stand for some minutes between tours, and drive fast and slow ones: time, distance "
+             "and temperature then go apart";
+    }
+  }
+  if (has_variable(one, "x") || has_variable(other, "x")) {
+    return "visit the place again on other headings, at another time and with another load, and "
+           "drive the same headings elsewhere";
+  }
+  for (const Separation& rule : kSeparations) {
+    if ((rule.one(one) && rule.other(other)) || (rule.one(other) && rule.other(one))) {
+      return rule.drive;
+    }
+  }
+  return fmt::format(
+      "drive so that what \"{}\" goes with and what \"{}\" goes with vary "
+      "independently",
+      one.name, other.name);
+}
+
+Unobservable why_unobservable(const Effect& effect, const ModelFit& fit, const Score& score) {
+  Unobservable result{effect, "", ""};
+  const bool surveyed = std::any_of(
+      fit.problem.measurements.begin(), fit.problem.measurements.end(), [](const Measurement& one) {
+        return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
+      });
+  const bool never = std::all_of(score.largest.begin(), score.largest.end(),
+                                 [](double most) { return most == 0.0; });
+  const bool nothing = std::all_of(score.share.begin(), score.share.end(),
+                                   [](double share) { return share < kLeastShare; });
+  if (never) {
+    result.why = "what it goes with never occurs in these data";
+    result.remedy = "drive so that it does: with starts, spins and changes of direction";
+  } else if (!surveyed && nothing) {
+    result.why = "without measured positions the map turns, grows and shrinks with it";
+    result.remedy = "measure the positions of a few landmarks (survey.csv)";
+  } else if (nothing) {
+    result.why = "the map and the poses take its whole trace up";
+    result.remedy =
+        "vary the drive: legs of different length, turns both ways, spins, landmarks met on "
+        "several headings";
+  } else {
+    result.why = "only an implausibly large one would be seen";
+    result.remedy = surveyed ? "collect more data in which what it goes with varies"
+                             : "measure the positions of a few landmarks (survey.csv)";
+  }
+  return result;
+}
+
+}  // namespace trussmap

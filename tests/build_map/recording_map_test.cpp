@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Maps from simulated recordings: what further sessions add, and what ties them to the map.
+#include "build_map/recording_map.hpp"
+
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/random_stream.hpp"
+#include "trussmap/survey_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+/// Two tours of a 4x4 mesh.
+Recording drive_about(bool compass, std::uint64_t seed) {
+  const Mesh mesh = even_mesh({4, 4}, 5.0);
+  auto random = random_stream(seed, Stream::walk);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
+  WheeledRobot robot;
+  robot.compass = compass;
+  Recording recording = simulate_drive(mesh, tours.walk, {}, robot, seed).recording;
+  recording.survey = survey(mesh, 1e-6, seed);
+  return recording;
+}
+
+/// The recording from the given sighting on, as a session of its own.
+Recording from_sighting(const Recording& whole, std::size_t first) {
+  const double t = whole.sightings[first].t;
+  Recording part = whole;
+  part.name = "part";
+  part.sightings.erase(part.sightings.begin(),
+                       part.sightings.begin() + static_cast<std::ptrdiff_t>(first));
+  const auto row = std::upper_bound(whole.drive.t.begin(), whole.drive.t.end(), t + 1e-9) -
+                   whole.drive.t.begin();
+  const auto cut = [row](std::vector<double>& column) {
+    if (!column.empty()) column.erase(column.begin(), column.begin() + row);
+  };
+  cut(part.drive.t);
+  cut(part.drive.left);
+  cut(part.drive.right);
+  cut(part.drive.heading);
+  return part;
+}
+
+Recording up_to_sighting(Recording whole, std::size_t last) {
+  whole.sightings.resize(last + 1);
+  return whole;
+}
+
+double error_of(const RecordingMap& result, const Recording& surveyed) {
+  return compare_with_survey(positions_of(result.map), surveyed.survey).rigid.rms;
+}
+
+class Sessions : public ::testing::TestWithParam<bool> {};
+
+/// A session that wakes up in the midst of the map, looking anywhere, is worth as much as the same
+/// drive without the interruption (seeds 1 to 5; both maps' errors are of one size).
+TEST_P(Sessions, AnInterruptedDriveGivesAsGoodAMap) {
+  double whole_sum = 0.0;
+  double parts_sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Recording whole = drive_about(GetParam(), seed);
+    for (const std::size_t cut : {30U, 41U}) {  // the first tour has 32 legs
+      const Recording again = from_sighting(whole, cut);
+      whole_sum += error_of(map_recordings({whole}, Model{}), whole);
+      parts_sum += error_of(map_recordings({up_to_sighting(whole, cut), again}, Model{}), whole);
+    }
+  }
+  EXPECT_LE(parts_sum, 1.3 * whole_sum);
+  EXPECT_LE(parts_sum / 10.0, 0.2);  // m
+}
+
+INSTANTIATE_TEST_SUITE_P(Compass, Sessions, ::testing::Values(false, true));
+
+/// A robot that starts where no landmark of the map is begins at the first one it meets.
+TEST(RecordingMap, ASessionThatStartsElsewhereJoinsWhereItMeetsTheMap) {
+  const Recording whole = drive_about(false, 7);
+  Recording elsewhere = from_sighting(whole, 20);
+  elsewhere.sightings.front().landmark = "never seen before";
+  const RecordingMap joined = map_recordings({up_to_sighting(whole, 32), elsewhere}, Model{});
+  EXPECT_LE(error_of(joined, whole), 0.2);
+}
+
+TEST(RecordingMap, ASessionThatMeetsNothingOfTheMapIsTiedToNothing) {
+  const Recording whole = drive_about(false, 8);
+  Recording foreign = whole;
+  foreign.name = "abroad";
+  for (Sighting& sighting : foreign.sightings) sighting.landmark += " abroad";
+  try {
+    (void)map_recordings({whole, foreign}, Model{});
+    FAIL();
+  } catch (const SolveError& error) {
+    EXPECT_NE(std::string(error.what()).find("abroad is tied to nothing"), std::string::npos)
+        << error.what();
+  }
+}
+
+/// Where one session has a compass the map's +x axis is the compass's, whoever comes first.
+TEST(RecordingMap, TheCompassGivesTheDirection) {
+  Recording with = drive_about(true, 9);
+  for (double& reading : with.drive.heading) reading += 1.0;  // the mesh lies askew to its north
+  const Recording without = drive_about(false, 10);
+  const RecordingMap result = map_recordings({without, with}, Model{});
+  const Alignment laid = compare_with_survey(positions_of(result.map), with.survey).rigid;
+  EXPECT_NEAR(laid.angle, -1.0, 0.05);
+}
+
+TEST(RecordingMap, RefusesARecordingWithoutSightings) {
+  Recording nothing = drive_about(true, 11);
+  nothing.sightings.clear();
+  EXPECT_THROW((void)map_recordings({nothing}, Model{}), InputError);
+  EXPECT_THROW((void)map_recordings({}, Model{}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/measurement_rows.hpp"
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+/// Two landmarks (nodes 0, 1) and two poses (nodes 2, 3).
+RecordingProblem small_problem() {
+  RecordingProblem problem;
+  problem.landmarks = {"A", "B"};
+  problem.poses = {{0, 1.0}, {0, 2.0}};
+  problem.sessions = {"s"};
+  return problem;
+}
+
+Measurement measurement(MeasurementKind kind, int from, int to, int rows) {
+  Measurement one;
+  one.kind = kind;
+  one.from = from;
+  one.to = to;
+  one.rows = rows;
+  one.value << 0.7, -0.3, 0.4, 1.1;
+  return one;
+}
+
+struct Everything {
+  RecordingState state;
+  ViewPattern view;
+};
+
+Everything random_values(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-2.0, 2.0);
+  const auto draw = [&] { return uniform(random); };
+  Everything all;
+  all.state.landmarks = {{draw(), draw()}, {draw(), draw()}};
+  all.state.poses = {{draw(), draw(), 2.0 * draw()}, {draw(), draw(), 2.0 * draw()}};
+  all.view = {0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw()};
+  return all;
+}
+
+double* coordinate(Everything& all, int node, int k) {
+  if (node < 2) return &all.state.landmarks[idx(node)][k];
+  Pose& pose = all.state.poses[idx(node - 2)];
+  return k == 0 ? &pose.x : k == 1 ? &pose.y : &pose.heading;
+}
+
+double* view_entry(Everything& all, int k) {
+  ViewPattern& view = all.view;
+  double* const entries[] = {&view.ahead, &view.left,        &view.heading,
+                             &view.range, &view.range_scale, &view.bearing};
+  return entries[k];
+}
+
+Vector4 difference(const Measurement& one, Everything all,
+                   const std::function<double*(Everything&)>& entry) {
+  constexpr double kStep = 1e-6;
+  const RecordingProblem problem = small_problem();
+  const auto error = [&](double change) {
+    Everything moved = all;
+    *entry(moved) += change;
+    return measurement_rows(problem, one, moved.state, one.value, moved.view).error;
+  };
+  return (error(kStep) - error(-kStep)) / (2.0 * kStep);
+}
+
+TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
+  using Kind = MeasurementKind;
+  const std::vector<Measurement> kinds = {
+      measurement(Kind::segment, 2, 3, 4),  measurement(Kind::segment, 3, 2, 3),
+      measurement(Kind::standing, 2, 1, 2), measurement(Kind::view, 3, 0, 2),
+      measurement(Kind::view, 3, 1, 1),     measurement(Kind::cartesian_view, 2, 0, 2),
+      measurement(Kind::survey, 1, -1, 2),  measurement(Kind::truth, 3, -1, 3)};
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Everything all = random_values(seed);
+    for (const Measurement& one : kinds) {
+      const MeasurementRows rows =
+          measurement_rows(small_problem(), one, all.state, one.value, all.view);
+      for (int k = 0; k < 3; ++k) {
+        const auto check = [&](int node, const RowsByNode& found) {
+          if (node < 0 || (node < 2 && k == 2)) return;
+          const Vector4 expected =
+              difference(one, all, [&](Everything& at) { return coordinate(at, node, k); });
+          EXPECT_LT((found.col(k) - expected).norm(), 1e-7)
+              << "kind " << static_cast<int>(one.kind) << " node " << node << " entry " << k;
+        };
+        check(one.from, rows.by_from);
+        check(one.to, rows.by_to);
+      }
+      for (int k = 0; k < 6; ++k) {
+        const Vector4 expected =
+            difference(one, all, [&](Everything& at) { return view_entry(at, k); });
+        EXPECT_LT((rows.by_view.col(k) - expected).norm(), 1e-7)
+            << "kind " << static_cast<int>(one.kind) << " view entry " << k;
+      }
+    }
+  }
+}
+
+TEST(MeasurementRows, WhatFitsHasNoError) {
+  const RecordingProblem problem = small_problem();
+  RecordingState state;
+  state.landmarks = {{1.0, 3.0}, {0.0, 0.0}};
+  state.poses = {{1.0, 1.0, std::acos(0.0)}, {1.0, 1.0, 0.0}};
+  Measurement one = measurement(MeasurementKind::view, 2, 0, 2);
+  one.value << 2.0, 0.0, 0.0, 0.0;  // straight ahead
+  EXPECT_LT(measurement_rows(problem, one, state, one.value, {}).error.norm(), 1e-15);
+  one.kind = MeasurementKind::cartesian_view;
+  EXPECT_LT(measurement_rows(problem, one, state, one.value, {}).error.norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Coefficients of effects, eliminated as a dense border.
+#include "estimation/recording_descent.hpp"
+#include "estimation/recording_start.hpp"
+#include "estimation/simulated_recordings.hpp"
+#include "trussmap/error.hpp"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+using testing::simulate_recording;
+using testing::SimulatedRecording;
+
+/// Wheelbase and compass offset in the data: what the robot records if its wheels stand
+/// (1 + turn) apart relative to the nominal, and its compass is off.
+void disturb(Drive& drive, double wheelbase, double turn, double offset) {
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    // True turn = recorded turn (1 + g): the wheels went less far apart than they should have.
+    const double path = 0.5 * (drive.left[row] + drive.right[row]);
+    const double angle = (drive.right[row] - drive.left[row]) / wheelbase / (1.0 + turn);
+    drive.left[row] = path - 0.5 * wheelbase * angle;
+    drive.right[row] = path + 0.5 * wheelbase * angle;
+  }
+  for (double& reading : drive.heading) reading = wrap_angle(reading + offset);
+}
+
+struct Case {
+  RecordingProblem problem;
+  EffectParameters border;
+};
+
+Case two_effects(std::uint64_t seed, double turn, double offset) {
+  SimulatedRecording simulated = simulate_recording({}, seed);
+  disturb(simulated.recording.drive, simulated.model.robot.wheelbase, turn, offset);
+  const std::vector<Recording> recordings = {simulated.recording};
+  return {make_problem(recordings, simulated.model),
+          {plain_effect(PlainEffect::turn, recordings, simulated.model.robot),
+           plain_effect(PlainEffect::compass, recordings, simulated.model.robot)}};
+}
+
+/// All unknowns at once: rows of J and M side by side, one dense factorisation.
+Eigen::MatrixXd dense_rows(const RecordingSystem& system, const RecordingProblem& problem) {
+  Eigen::MatrixXd rows(system.rows(),
+                       system.normal_equations().unknowns() + system.border().cols());
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    rows.middleRows(system.first_row(k), problem.measurements[k].rows) =
+        system.transposed_rows(k).transpose();
+  }
+  return rows;
+}
+
+TEST(RecordingEffectParameters, StepAndCovarianceAreThoseOfADenseJointSolve) {
+  const Case one = two_effects(1, -0.02, 0.05);
+  RecordingSystem system(one.problem, one.border);
+  system.linearise(start_of(one.problem), Eigen::Vector2d(0.01, 0.02));
+  const RecordingSystem::Step step = system.solve_step();
+  const Eigen::MatrixXd rows = dense_rows(system, one.problem);
+  const Eigen::MatrixXd normal = rows.transpose() * rows;
+  const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+  const Eigen::VectorXd dense = factor.solve(-rows.transpose() * system.residuals());
+  const Eigen::Index n = dense.size() - 2;
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(step.coefficients[k], dense[n + k], 1e-8 * std::abs(dense[n + k]));
+  }
+  EXPECT_LT((step.nodes - dense.head(n)).norm(), 1e-8 * dense.norm());
+  const Eigen::MatrixXd inverse =
+      factor.solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  system.factorise();
+  const Matrix2 corner = inverse.bottomRightCorner<2, 2>();
+  EXPECT_LT((system.coefficient_covariance() - corner).norm(), 1e-8 * corner.norm());
+  const Eigen::Index at = system.normal_equations().offset(3);  // a landmark
+  const std::vector<Eigen::Index> entries = {at, at + 1, n, n + 1};
+  const Eigen::MatrixXd joint = system.joint_covariance({3});
+  for (Eigen::Index r = 0; r < 4; ++r) {
+    for (Eigen::Index c = 0; c < 4; ++c) {
+      EXPECT_NEAR(joint(r, c), inverse(entries[idx(r)], entries[idx(c)]), 1e-8 * joint.norm());
+    }
+  }
+}
+
+TEST(RecordingEffectParameters, BothEffectsAreFoundWithinTheirErrors) {
+  const Case one = two_effects(7, -0.02, 0.05);
+  const RecordingAdjustment fit = adjust(one.problem, one.border);
+  EXPECT_TRUE(fit.converged);
+  const Eigen::Vector2d sd = fit.coefficient_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT(sd[0], 0.002);
+  EXPECT_NEAR(fit.coefficients[0], -0.02, 4.0 * sd[0]);
+  EXPECT_NEAR(fit.coefficients[1], 0.05, 4.0 * sd[1]);
+  // Without them the misfit shows.
+  EXPECT_LT(adjust(one.problem).p_value, 1e-6);
+  EXPECT_GT(fit.p_value, 1e-4);
+}
+
+TEST(RecordingEffectParameters, ViewPatternsActLikeTheSensorsOffsets) {
+  SimulatedRecording simulated = simulate_recording({true, true, true, 1}, 3);
+  constexpr double kOffset = 0.07;  // rad, bearing reads too much
+  for (Sighting& sighting : simulated.recording.sightings) {
+    if (!sighting.standing()) sighting.bearing = wrap_angle(sighting.bearing + kOffset);
+  }
+  EffectPattern bearing;
+  bearing.name = "bearing";
+  bearing.sightings = {std::vector<ViewPattern>(simulated.recording.sightings.size())};
+  for (ViewPattern& view : bearing.sightings[0]) view.bearing = 1.0;
+  const RecordingProblem problem = make_problem({simulated.recording}, simulated.model);
+  const RecordingAdjustment fit = adjust(problem, {bearing});
+  const double sd = std::sqrt(fit.coefficient_covariance(0, 0));
+  EXPECT_LT(sd, 0.005);
+  EXPECT_NEAR(fit.coefficients[0], kOffset, 4.0 * sd);
+}
+
+TEST(RecordingEffectParameters, AnUndeterminedCoefficientIsNamed) {
+  // Without a survey a constant compass offset only turns the map.
+  SimulatedRecording simulated = simulate_recording({true, false, false, 1}, 2);
+  const std::vector<Recording> recordings = {simulated.recording};
+  const RecordingProblem problem = make_problem(recordings, simulated.model);
+  const EffectParameters border = {
+      plain_effect(PlainEffect::turn, recordings, simulated.model.robot),
+      plain_effect(PlainEffect::compass, recordings, simulated.model.robot)};
+  try {
+    static_cast<void>(adjust(problem, border));
+    FAIL() << "should be refused";
+  } catch (const SolveError& error) {
+    EXPECT_NE(std::string(error.what()).find("compass"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("turn,"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SlowRecordingEffectParameters, StandardErrorsAreTheScatterOfSimulations) {
+  // sd of a sample's sd over n = 500 runs: 1/sqrt(2 n) = 3.2 %; 10 % is three of them.
+  constexpr int kRuns = 500;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
+  Eigen::Vector2d variances = Eigen::Vector2d::Zero();
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const Case one = two_effects(seed, 0.0, 0.0);
+    const RecordingAdjustment fit = adjust(one.problem, one.border);
+    sum += fit.coefficients;
+    squares += fit.coefficients.cwiseAbs2();
+    variances += fit.coefficient_covariance.diagonal();
+  }
+  for (int k = 0; k < 2; ++k) {
+    const double mean = sum[k] / kRuns;
+    const double scatter = std::sqrt(squares[k] / kRuns - mean * mean);
+    const double stated = std::sqrt(variances[k] / kRuns);
+    EXPECT_NEAR(scatter / stated, 1.0, 0.1) << k;
+    EXPECT_LT(std::abs(mean), 4.0 * stated / std::sqrt(kRuns)) << k;
+  }
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The simulator turns the physics round, the adjustment has it the right way round; neither knows
+// the other. Without noise they must meet at chi^2 = 0 and at the coefficients that were given.
+#include "effects/shape.hpp"
+#include "estimation/recording_adjustment.hpp"
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+struct Simulated {
+  SimulatedDrive drive;
+  WheeledRobot robot;
+};
+
+Simulated simulate(const Effect& effect) {
+  const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
+  std::mt19937_64 random(3);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
+  Simulated result;
+  result.robot.range_sensor = true;
+  result.robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  DrivingStyle style;
+  style.standing = 0.0;
+  style.rest_share = 0.2;
+  style.full_spins = 2;
+  style.ramp = 1.0;
+  result.drive = simulate_drive(mesh, tours.walk, style, result.robot, 3, {{effect}});
+  return result;
+}
+
+/// What one unit of g does to a row, by the table of channels.
+DrivePattern drive_pattern(const std::string& channel, const Drive& drive, std::size_t row,
+                           double wheelbase) {
+  const double left = drive.left[row];
+  const double right = drive.right[row];
+  const double path = 0.5 * (left + right);
+  const double turn = (right - left) / wheelbase;
+  const double duration = drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
+  if (channel == "travel") return {path, 0.0, 0.0, 0.0};
+  if (channel == "left") return {0.5 * left, 0.0, -left / wheelbase, 0.0};
+  if (channel == "right") return {0.5 * right, 0.0, right / wheelbase, 0.0};
+  if (channel == "wheels") return {path, 0.0, turn, 0.0};
+  if (channel == "difference") return {0.25 * (right - left), 0.0, path / wheelbase, 0.0};
+  if (channel == "turn") return {0.0, 0.0, turn, 0.0};
+  if (channel == "drift") return {0.0, 0.0, duration, 0.0};
+  if (channel == "advance") return {1.0, 0.0, 0.0, 0.0};
+  if (channel == "rotate") return {0.0, 0.0, 1.0, 0.0};
+  if (channel == "creep") return {0.0, path, 0.0, 0.0};
+  if (channel == "compass") return {0.0, 0.0, 0.0, 1.0};
+  return {};
+}
+
+ViewPattern view_pattern(const std::string& channel) {
+  ViewPattern pattern;
+  if (channel == "lever") pattern.ahead = 1.0;
+  if (channel == "lever_left") pattern.left = 1.0;
+  if (channel == "range") pattern.range = 1.0;
+  if (channel == "range_scale") pattern.range_scale = 1.0;
+  if (channel == "bearing") pattern.bearing = 1.0;
+  return pattern;
+}
+
+/// A coefficient of the model per shape; shapes are constant where a view is concerned.
+EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
+  const Drive& drive = simulated.drive.recording.drive;
+  const TrueMotion& motion = simulated.drive.motion;
+  std::vector<Pose> path;
+  for (const TrueRow& row : motion.rows) path.push_back(row.pose);
+  RowVariables variables = row_variables(drive, simulated.robot.wheelbase, motion.start, path, 0);
+  if (effect.channel == "compass") {
+    for (std::size_t row = 0; row < path.size(); ++row) {
+      variables["heading"][row] = path[row].heading;
+      variables["x"][row] = path[row].x;
+      variables["y"][row] = path[row].y;
+    }
+  }
+  EffectParameters border;
+  for (const std::string& shape : effect.shape) {
+    const std::vector<double> f = evaluate_shape(shape, variables);
+    EffectPattern& pattern = border.emplace_back();
+    pattern.name = effect.name;
+    std::vector<DrivePattern>& rows = pattern.drives.emplace_back();
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      const DrivePattern unit =
+          drive_pattern(effect.channel, drive, row, simulated.robot.wheelbase);
+      rows.push_back(
+          {f[row] * unit.advance, f[row] * unit.slip, f[row] * unit.turn, f[row] * unit.compass});
+    }
+    pattern.sightings.emplace_back(simulated.drive.recording.sightings.size(),
+                                   view_pattern(effect.channel));
+  }
+  return border;
+}
+
+TEST(SimulatedEffects, AFitFindsTheCoefficientsThatWereGiven) {
+  const std::vector<Effect> effects = {{"wheel diameter ratio", "", {}, {0.01}, false},
+                                       {"wheelbase", "", {}, {-0.02}, false},
+                                       {"travel scale", "", {}, {0.015}, false},
+                                       {"wheel scale", "", {}, {-0.01}, false},
+                                       {"cross-slope creep", "", {}, {0.02, -0.03}, false},
+                                       {"slope", "", {}, {0.01, 0.02}, false},
+                                       {"slip with speed", "", {}, {-0.02}, false},
+                                       {"loss per start", "", {}, {-0.008}, false},
+                                       {"turn scrub", "", {}, {-0.045}, false},
+                                       {"turn asymmetry", "", {}, {0.02}, false},
+                                       {"twist per spin", "", {}, {0.01}, false},
+                                       {"load on one wheel (payload_kg)", "", {}, {4e-4}, false},
+                                       {"tyre drift (distance)", "", {}, {-2e-5}, false},
+                                       {"missed ticks (v0=0.5)", "", {}, {0.1}, false},
+                                       {"sampling skew", "", {}, {0.01}, false},
+                                       {"heading drift", "", {}, {0.002}, false},
+                                       {"compass offset", "", {}, {0.1}, false},
+                                       {"hard iron", "", {}, {0.15, -0.1}, false},
+                                       {"compass lag", "", {}, {-0.1}, false},
+                                       {"motor current", "", {}, {0.1, 0.05}, false},
+                                       {"slippery patch (x=4, y=3, r=3)", "", {}, {-0.03}, false},
+                                       {"lever arm", "", {}, {0.12}, false},
+                                       {"lever arm to the left", "", {}, {-0.08}, false},
+                                       {"range bias", "", {}, {0.05}, false},
+                                       {"range scale", "", {}, {-0.02}, false},
+                                       {"bearing offset", "", {}, {0.03}, false}};
+  for (const Effect& named : effects) {
+    const Effect effect = resolved(named);
+    const Simulated simulated = simulate(effect);
+    const RecordingProblem problem = make_problem({simulated.drive.recording}, Model{});
+    const double without = adjust(problem).chi2;
+    const RecordingAdjustment with = adjust(problem, border_of(effect, simulated));
+    EXPECT_GT(without, 1.0) << effect.name;
+    EXPECT_LT(with.chi2, 1e-8 * without) << effect.name;
+    for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+      EXPECT_NEAR(with.coefficients[static_cast<Eigen::Index>(k)], effect.coefficients[k],
+                  1e-6 * std::abs(effect.coefficients[k]))
+          << effect.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trussmap
