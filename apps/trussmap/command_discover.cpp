@@ -89,7 +89,7 @@ void print(const Discovery& result) {
                   {},
                   true,
                   2};
-  table.rows.push_back({"model", "chi2", "dof", "promised", "held out [mm]", "promised", "legs"});
+  table.rows.push_back({"model", "chi2", "dof", "predicted", "held out [mm]", "predicted", "legs"});
   for (const DiscoveryStep& step : result.steps) {
     std::string name = step.added ? "+ " + step.added->name : "as given";
     for (const std::string& dropped : step.dropped) name += ", - " + dropped;
@@ -233,9 +233,8 @@ void setup_discover(CLI::App& app) {
   add_html_option(*command, options->page);
   add_plots_option(*command, options->page);
   command->footer(
-      "The ladder has one line per model, always over the same held-out legs. \"Promised\" is "
-      "what\n"
-      "the diagnosis foretold before the fit. The page (--html) shows it with each effect's "
+      "The ladder has one line per model, always over the same held-out legs. \"Predicted\" is\n"
+      "what the diagnosis expected before the fit. The page (--html) shows it with each effect's\n"
       "curve.");
   command->callback([options] { run_discover(*options); });
 }

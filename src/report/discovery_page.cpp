@@ -52,10 +52,13 @@ std::string gone_text(const Discovery& discovery) {
 
 PageTable step_table(const Discovery& discovery) {
   PageTable table;
-  table.caption = "The steps: what each promised before its fit, and what it kept";
-  table.headings = {
-      "model",        "chi\u00b2", "degrees of freedom", "promised chi\u00b2", "legs end off [mm]",
-      "promised [mm]"};
+  table.caption = "The steps: what was predicted before each fit, and what came of it";
+  table.headings = {"model",
+                    "chi\u00b2",
+                    "degrees of freedom",
+                    "predicted chi\u00b2",
+                    "legs end off [mm]",
+                    "predicted [mm]"};
   for (std::size_t k = 0; k < discovery.steps.size(); ++k) {
     const DiscoveryStep& step = discovery.steps[k];
     const bool legs = !step.held_out.legs.empty();

@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -97,16 +95,6 @@ TEST(UmbmarkCommand, RoundsMultiplyWhetherTogetherOrThroughAModel) {
   EXPECT_LT(result["E_max_syst_m"].get<double>(),
             0.1 * result["rounds"][0]["E_max_syst_m"].get<double>());
   EXPECT_NEAR(result["c_left"].get<double>() + result["c_right"].get<double>(), 2.0, 1e-12);
-}
-
-TEST(UmbmarkCommand, SaysOfTheExampleWhatTheReadmeShows) {
-  const std::filesystem::path source = TRUSSMAP_SOURCE_DIR;
-  const Ran ran = run_trussmap("umbmark " + (source / "maps/square_runs.csv").string() +
-                               " --side 4 --wheelbase 0.34");
-  ASSERT_EQ(ran.status, 0) << ran.output;
-  std::ostringstream readme;
-  readme << std::ifstream(source / "README.md").rdbuf();
-  EXPECT_NE(readme.str().find(ran.output), std::string::npos) << ran.output;
 }
 
 TEST(NoiseCommand, WritesWhatTheFormatsPromise) {
