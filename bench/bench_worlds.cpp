@@ -11,24 +11,20 @@
 namespace trussmap::bench {
 namespace {
 
-Subject catalogued(const std::string& name) {
-  Effect effect;
-  effect.name = name;
-  Subject subject{resolved(effect)};
-  subject.effect.coefficients.clear();
-  subject.needs_compass = subject.effect.channel == "compass";
-  subject.needs_range = subject.effect.channel == "range" ||
-                        subject.effect.channel == "range_scale" ||
-                        subject.effect.channel == "bearing";
-  return subject;
+Subject subject_of(Effect effect) {
+  const Channel channel = effect.channel;
+  return {
+      std::move(effect), channel == Channel::compass,
+      channel == Channel::range || channel == Channel::range_scale || channel == Channel::bearing};
 }
 
-Subject own(const std::string& channel, const std::vector<std::string>& shape) {
-  Effect effect;
-  effect.name = channel + " x " + shape.front();
-  effect.channel = channel;
-  effect.shape = shape;
-  return {effect, channel == "compass", false};
+Subject catalogued(const std::string& name) {
+  return subject_of(catalogue_effect(name));
+}
+
+Subject own(Channel channel, const std::vector<Shape>& shape) {
+  return subject_of(
+      {fmt::format("{} x {}", name_of(channel), shape.front().text()), channel, shape, {}});
 }
 
 }  // namespace
@@ -154,14 +150,14 @@ std::vector<Subject> subjects(const World& world) {
 
 std::vector<Subject> odd_subjects(const World& world) {
   const double end = 8.0 * static_cast<double>(world.walk.size());
-  return {own("wheels", {"payload_kg^2"}),
-          own("turn", {"payload_kg^2"}),
-          own("compass", {"payload_kg*sin(heading)", "payload_kg*cos(heading)"}),
-          own("creep", {"payload_kg*sin(heading)", "payload_kg*cos(heading)"}),
-          own("travel", {fmt::format("max(0, speed-{:.2f})", 0.5 * world.style.fastest)}),
-          own("turn", {fmt::format("(1+sign(t-{:.0f}))/2", 0.6 * end)}),
-          own("travel", {fmt::format("(1+sign(t-{:.0f}))/2", 0.4 * end)}),
-          own("compass", {fmt::format("(1+sign(t-{:.0f}))/2", 0.5 * end)})};
+  return {own(Channel::wheels, {"payload_kg^2"}),
+          own(Channel::turn, {"payload_kg^2"}),
+          own(Channel::compass, {"payload_kg*sin(heading)", "payload_kg*cos(heading)"}),
+          own(Channel::creep, {"payload_kg*sin(heading)", "payload_kg*cos(heading)"}),
+          own(Channel::travel, {fmt::format("max(0, speed-{:.2f})", 0.5 * world.style.fastest)}),
+          own(Channel::turn, {fmt::format("(1+sign(t-{:.0f}))/2", 0.6 * end)}),
+          own(Channel::travel, {fmt::format("(1+sign(t-{:.0f}))/2", 0.4 * end)}),
+          own(Channel::compass, {fmt::format("(1+sign(t-{:.0f}))/2", 0.5 * end)})};
 }
 
 }  // namespace trussmap::bench

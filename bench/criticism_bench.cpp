@@ -59,12 +59,12 @@ std::vector<double> sized(const Subject& subject, const World& world, const Scor
   std::normal_distribution<double> normal;
   for (double& d : direction) d = normal(random);
   // A loss is one.
-  if (subject.effect.channel == "advance") direction = -direction.cwiseAbs();
+  if (subject.effect.channel == Channel::advance) direction = -direction.cwiseAbs();
   const double size = (score.projected * direction).norm();
   if (!(size > 0.0)) return {};
   direction *= times * std::sqrt(kDetectableScore) / size;
   // What would have to be implausibly large counts as not shown.
-  const double prior_sd = facts_of(*parse_channel(subject.effect.channel)).prior_sd;
+  const double prior_sd = facts_of(subject.effect.channel).prior_sd;
   for (Eigen::Index k = 0; k < direction.size(); ++k) {
     if (std::abs(direction[k]) * score.largest[static_cast<std::size_t>(k)] > prior_sd) return {};
   }
@@ -281,13 +281,12 @@ void odd(const Options& options) {
       ++shown;
       const Diagnosis result = diagnose({record_in(world, {truth})}, world.model);
       std::string word = "payload_kg";
-      if (truth.shape.front().find("speed") != std::string::npos) word = "speed";
-      if (truth.shape.front().find("(t-") != std::string::npos) word = "t";
+      if (truth.shape.front().speaks_of("speed")) word = "speed";
+      if (truth.shape.front().speaks_of("t")) word = "t";
       const auto says = [&](const Effect& one) {
         if (one.channel != truth.channel) return false;
-        return std::any_of(one.shape.begin(), one.shape.end(), [&](const std::string& shape) {
-          return shape.find(word == "t" ? "t-" : word) != std::string::npos || shape == word;
-        });
+        return std::any_of(one.shape.begin(), one.shape.end(),
+                           [&](const Shape& shape) { return shape.speaks_of(word); });
       };
       bool ok = false;
       if (result.verdict == Diagnosis::Verdict::missing) {

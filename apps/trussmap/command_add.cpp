@@ -3,7 +3,6 @@
 //
 // trussmap add: an effect into a model.
 #include "commands.hpp"
-#include "effects/shape.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
@@ -27,6 +26,28 @@ struct AddOptions {
   std::string out;
 };
 
+/// The catalogue's effect of this name, or the user's own.
+Effect effect_of(const AddOptions& options) {
+  Effect effect;
+  effect.name = options.effect;
+  effect.per_session = options.per_session;
+  std::string of_effect;
+  try {
+    if (options.channel.empty()) {
+      const Effect known = catalogue_effect(options.effect);
+      effect.channel = known.channel;
+      effect.shape = known.shape;
+      return effect;
+    }
+    of_effect = "effect \"" + options.effect + "\": ";
+    effect.channel = channel_named(options.channel);
+    effect.shape.assign(options.shape.begin(), options.shape.end());
+    return effect;
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(of_effect + error.what());
+  }
+}
+
 void run_add(const AddOptions& options) {
   Model model = read_model(options.model);
   const auto same = [&options](const Effect& one) { return one.name == options.effect; };
@@ -37,23 +58,11 @@ void run_add(const AddOptions& options) {
   if (options.channel.empty() != options.shape.empty()) {
     throw UsageError("--channel and --shape go together, expected both or a catalogue name alone");
   }
-  Effect effect;
-  effect.name = options.effect;
-  effect.channel = options.channel;
-  effect.shape = options.shape;
-  effect.per_session = options.per_session;
-  try {
-    effect = resolved(effect);
-    for (const std::string& shape : effect.shape) static_cast<void>(variables_of(shape));
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(error.what());
-  }
+  const Effect effect = effect_of(options);
   model.effects.push_back(effect);
   write_file(options.out, format_model(model));
-  std::string shapes;
-  for (const std::string& shape : effect.shape) shapes += (shapes.empty() ? "" : ", ") + shape;
-  fmt::print("{}: {} x {}, not fitted yet; see trussmap fit\n", effect.name, effect.channel,
-             shapes);
+  fmt::print("{}: {} x {}, not fitted yet; see trussmap fit\n", effect.name,
+             name_of(effect.channel), fmt::join(texts_of(effect.shape), ", "));
 }
 
 }  // namespace

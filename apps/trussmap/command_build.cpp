@@ -275,7 +275,7 @@ void run_build(const BuildOptions& options) {
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
   }
-  const Model model = read_model(options.model);
+  const Model model = read_model(options.model, recordings);
   if (!model.effects.empty()) {
     try {
       recordings = without_effects(recordings, model);

@@ -269,7 +269,7 @@ void run_calibrate(const CalibrateOptions& options) {
   }
   std::vector<Recording> unseen;
   for (const std::string& folder : options.test) unseen.push_back(read_recording(folder));
-  const Model model = read_model(options.model);
+  const Model model = read_model(options.model, recordings);
   WheelCalibration found;
   HeldOut held;
   std::optional<Tested> test;

@@ -59,8 +59,8 @@ ordered_json json(const Comparison& result) {
   for (const Trend& trend : result.trends) {
     trends.push_back({{"residual", trend.kind},
                       {"against", trend.against},
-                      {"channel", trend.effect.channel},
-                      {"shape", trend.effect.shape},
+                      {"channel", name_of(trend.effect.channel)},
+                      {"shape", texts_of(trend.effect.shape)},
                       {"coefficients", trend.effect.coefficients},
                       {"score", trend.score},
                       {"dof", trend.dof},

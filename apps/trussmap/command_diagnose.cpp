@@ -133,7 +133,8 @@ void print_verdict(const Diagnosis& result) {
                                               in_words(effect, one.joint_sd))));
     for (const LookAlike& rival : one.look_alikes) {
       fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
-                 rival.effect.channel, fmt::join(rival.effect.shape, ", "), rival.cosine);
+                 name_of(rival.effect.channel), fmt::join(texts_of(rival.effect.shape), ", "),
+                 rival.cosine);
     }
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
@@ -183,12 +184,13 @@ void print(const Diagnosis& result, const DiagnoseOptions& options) {
   for (std::size_t k = 0; k < std::min(options.list, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
     const Effect& effect = one.candidate.effect;
-    table.rows.push_back(
-        {shortened(effect.name, kWidestCell),
-         shortened(fmt::format("{} x {}", effect.channel, fmt::join(effect.shape, ", ")),
-                   kWidestCell),
-         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
-         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
+    table.rows.push_back({shortened(effect.name, kWidestCell),
+                          shortened(fmt::format("{} x {}", name_of(effect.channel),
+                                                fmt::join(texts_of(effect.shape), ", ")),
+                                    kWidestCell),
+                          fmt::format("{:.1f} ({})", one.score, one.dof),
+                          probability_text(one.p_adjusted),
+                          fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
   }
   fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
              table_text(table));

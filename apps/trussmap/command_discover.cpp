@@ -106,8 +106,8 @@ void print(const Discovery& result) {
   for (const DiscoveryStep& step : result.steps) {
     for (const LookAlike& rival : step.look_alikes) {
       fmt::print("  instead of {} it could be: {} ({} x {}), cosine {:.3f}\n", step.added->name,
-                 rival.effect.name, rival.effect.channel, fmt::join(rival.effect.shape, ", "),
-                 rival.cosine);
+                 rival.effect.name, name_of(rival.effect.channel),
+                 fmt::join(texts_of(rival.effect.shape), ", "), rival.cosine);
     }
   }
   for (const std::string& warning : result.fit.adjustment.warnings) {

@@ -99,9 +99,9 @@ void print(const FitResult& result) {
     TextTable table{{Align::left, Align::right, Align::right}, {}, false, 4};
     for (std::size_t k = 0; k < one.effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(one.effect.coefficients[k], one.sd[k]);
-      const std::string& shape = one.effect.shape[k % one.effect.shape.size()];
-      table.rows.push_back({one.effect.channel + " x " + shape, text.value,
-                            text.error.empty() ? "" : "+- " + text.error});
+      const Shape& shape = one.effect.shape[k % one.effect.shape.size()];
+      table.rows.push_back({fmt::format("{} x {}", name_of(one.effect.channel), shape.text()),
+                            text.value, text.error.empty() ? "" : "+- " + text.error});
     }
     fmt::print("{}", table_text(table));
     for (const std::string& why : one.not_fitted) fmt::print("    {}\n", why);

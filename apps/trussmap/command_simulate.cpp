@@ -103,7 +103,7 @@ DrivingStyle make_style(const SimulateOptions& options, const std::vector<Effect
   style.ramp = options.ramp;
   style.covariates = options.covariates;
   const bool delayed = std::any_of(effects.begin(), effects.end(),
-                                   [](const Effect& one) { return one.channel == "delay"; });
+                                   [](const Effect& one) { return one.channel == Channel::delay; });
   style.overrun = options.overrun >= 0.0 ? options.overrun : delayed ? kDelayOverrun : 0.0;
   style.standing = options.noise_free ? 0.0 : options.sighting_noise;
   style.rest_share = options.rests ? kRestShare : 0.0;

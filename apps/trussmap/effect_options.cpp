@@ -45,21 +45,24 @@ Effect named_effect(const std::string& option) {
     throw UsageError(
         fmt::format("--effect \"{}\": expected NAME=VALUE or NAME=VALUE,VALUE", option));
   }
-  Effect effect;
-  effect.name = option.substr(0, equals);
-  effect.coefficients = numbers(option, std::string_view(option).substr(equals + 1));
-  if (find_entry(effect.name) == nullptr) {
+  const std::string name = option.substr(0, equals);
+  std::vector<double> values = numbers(option, std::string_view(option).substr(equals + 1));
+  if (find_entry(name) == nullptr) {
     throw UsageError(
         fmt::format("--effect \"{}\": \"{}\" is not in the catalogue, whose names "
                     "trussmap simulate --help lists",
-                    option, effect.name));
+                    option, name));
   }
-  return effect;
+  try {
+    return catalogue_effect(name, std::move(values));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
 }
 
 /// Throws std::invalid_argument.
 Effect applicable(const Effect& effect) {
-  Effect result = resolved(effect);
+  Effect result = effect;
   const auto refuse = [&result](const std::string& what) {
     throw std::invalid_argument(fmt::format("effect \"{}\" {}", result.name, what));
   };
@@ -110,16 +113,14 @@ std::string catalogue_text() {
     std::string name(entry.name);
     if (entry.of_covariate()) name = name_of(entry, "COLUMN");
     if (entry.has_parameters()) {
-      std::string inner;
-      for (const ShapeParameter& one : entry.parameters) {
-        inner += fmt::format("{}{}=..", inner.empty() ? "" : ", ", one.name);
+      std::string open;
+      for (const OpenParameter& one : entry.parameters) {
+        open += fmt::format("{}{}=..", open.empty() ? "" : ", ", one.name);
       }
-      name = name_of(entry, inner);
+      name = name_of(entry, open);
     }
-    std::string shapes;
-    for (const std::string& shape : entry.shape) shapes += (shapes.empty() ? "" : "; ") + shape;
     text += fmt::format("  {:<42} {:<10} {} x {}\n", name, entry.unit.empty() ? "-" : entry.unit,
-                        facts_of(entry.channel).name, shapes);
+                        name_of(entry.channel), fmt::join(entry.pattern, "; "));
   }
   return text;
 }
@@ -128,8 +129,8 @@ nlohmann::ordered_json effects_json(const std::vector<Effect>& effects) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Effect& effect : effects) {
     list.push_back({{"name", effect.name},
-                    {"channel", effect.channel},
-                    {"shape", effect.shape},
+                    {"channel", name_of(effect.channel)},
+                    {"shape", texts_of(effect.shape)},
                     {"coefficients", effect.coefficients}});
   }
   return list;

@@ -21,7 +21,9 @@ ordered_json numbers_or_null(const std::vector<double>& values) {
 }
 
 ordered_json effect_json(const Effect& effect) {
-  return {{"effect", effect.name}, {"channel", effect.channel}, {"shape", effect.shape}};
+  return {{"effect", effect.name},
+          {"channel", name_of(effect.channel)},
+          {"shape", texts_of(effect.shape)}};
 }
 
 ordered_json estimate_json(const EffectEstimate& estimate) {

@@ -2,41 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "model_recordings.hpp"
 
-#include "odometry/effect_correction.hpp"
 #include "option_checks.hpp"
-#include "trussmap/catalogue.hpp"
-#include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
 namespace trussmap::app {
-namespace {
-
-/// One effect after the other, so that the one at fault is known by its line.
-void check_effects(const Model& model, const std::vector<Recording>& recordings,
-                   const std::string& file) {
-  if (model.effects.empty()) return;
-  std::vector<SessionPath> paths;
-  for (const Recording& recording : recordings) {
-    paths.push_back({Pose(), row_path(recording.drive, model)});
-  }
-  const ShapeContext context(recordings, model.robot, paths);
-  for (const Effect& effect : model.effects) {
-    try {
-      static_cast<void>(effect_columns({resolved(effect)}, context));
-    } catch (const std::invalid_argument& error) {
-      throw InputError(file, effect.line, error.what());
-    }
-  }
-}
-
-}  // namespace
-
 void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
   command.add_option("RECORDING", options.recordings, "Folders of CSV streams, one per session")
       ->required();
@@ -76,8 +50,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   for (const std::string& folder : options.recordings) {
     result.recordings.push_back(read_recording(folder));
   }
-  result.model = read_model(options.model);
-  check_effects(result.model, result.recordings, options.model);
+  result.model = read_model(options.model, result.recordings);
   return result;
 }
 

@@ -7,8 +7,11 @@
 //   difference        left (1 - g/2), right (1 + g/2) turn                  dtheta (1 + g)
 //   drift             dtheta + g dt                   advance, rotate       ds + g; dtheta + g
 //   creep             slips to its left by g ds       lever, lever_left     sensor's point on the
-//   robot compass           reading = heading + g           range, bearing        reading + g
-//   range_scale       range (1 + g)                   delay                 stamped g late
+//   compass           reading = heading + g                                 robot
+//   range, bearing    reading + g                     range_scale           range (1 + g)
+//   delay             stamped g late
+//
+// In code a channel is this enumeration; its name stands in files, options and reports alone.
 #pragma once
 
 #include <optional>
@@ -49,7 +52,11 @@ struct ChannelFacts {
 /// All of them, in the order above.
 [[nodiscard]] const std::vector<ChannelFacts>& channels();
 [[nodiscard]] const ChannelFacts& facts_of(Channel channel);
+[[nodiscard]] std::string_view name_of(Channel channel);
 [[nodiscard]] std::optional<Channel> parse_channel(std::string_view name);
+
+/// The same; throws std::invalid_argument, listing all names, where there is none of this name.
+[[nodiscard]] Channel channel_named(std::string_view name);
 
 /// Their names, separated by commas.
 [[nodiscard]] std::string channel_names();

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // What is believed of a robot: its geometry, its noise, and the physical effects in its odometry.
-// The TOML file of the same shape is read and written by io/model_toml.
+// model_file.hpp reads and writes it as a TOML file.
 #pragma once
+
+#include "trussmap/channel.hpp"
+#include "trussmap/shape.hpp"
 
 #include <string>
 #include <vector>
@@ -32,14 +35,18 @@ struct Noise {
   double travel_per_s = 0.0;     ///< m/s^(1/2)
 };
 
-/// Channel x shape: each coefficient scales one shape expression.
+/// Channel x shape: each coefficient scales one shape. One of the catalogue comes from
+/// catalogue_effect (catalogue.hpp).
 struct Effect {
   std::string name;
-  std::string channel;
-  std::vector<std::string> shape;
+  Channel channel = Channel::travel;
+  std::vector<Shape> shape;
   std::vector<double> coefficients;  ///< empty until fitted
   bool per_session = false;          ///< one set of coefficients per recording
   int line = 0;                      ///< of the model file that it came from, 0: of none
+
+  /// Whether its one coefficient is g itself, everywhere: shape "1".
+  [[nodiscard]] bool is_constant() const { return shape.size() == 1 && shape.front() == "1"; }
 };
 
 struct Model {

@@ -15,7 +15,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,6 +41,10 @@ struct Drive {
   [[nodiscard]] bool has_compass() const { return !heading.empty(); }
   /// Start of the first interval: it is as long as the second.
   [[nodiscard]] double start() const { return rows() > 1 ? t[0] - (t[1] - t[0]) : t[0]; }
+  /// How long a row lasts, s.
+  [[nodiscard]] double duration(std::size_t row) const {
+    return t[row] - (row == 0 ? start() : t[row - 1]);
+  }
 };
 
 struct Sighting {
@@ -71,5 +77,8 @@ struct Recording {
   std::vector<SurveyPoint> survey;
   std::vector<TruthRow> truth;  ///< in order of time
 };
+
+/// What shapes speak of: a column of numbers, one per row, per variable.
+using RowVariables = std::map<std::string, std::vector<double>, std::less<>>;
 
 }  // namespace trussmap

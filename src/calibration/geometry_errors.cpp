@@ -29,19 +29,16 @@ struct Sinc {
   double slope;
 };
 
-double coefficient(const Effect& effect, const char* channel) {
-  if (effect.channel.empty() && effect.shape.empty()) {  // a catalogue name alone
-    return effect.coefficients.empty() ? 0.0 : effect.coefficients.front();
-  }
-  if (effect.channel != channel || effect.shape.size() != 1 || effect.shape.front() != "1" ||
-      effect.per_session) {
-    throw std::invalid_argument("effect \"" + effect.name + "\" is not channel \"" + channel +
+double coefficient(const Effect& effect, Channel channel) {
+  if (effect.channel != channel || !effect.is_constant() || effect.per_session) {
+    throw std::invalid_argument("effect \"" + effect.name + "\" is not channel \"" +
+                                std::string(name_of(channel)) +
                                 "\" with shape [\"1\"], expected that or another name");
   }
   return effect.coefficients.empty() ? 0.0 : effect.coefficients.front();
 }
 
-void set_effect(Model& model, const char* name, const char* channel, double value) {
+void set_effect(Model& model, const char* name, Channel channel, double value) {
   const Effect effect{name, channel, {"1"}, {value}, false};
   const auto same = [&](const Effect& one) { return one.name == name; };
   const auto found = std::find_if(model.effects.begin(), model.effects.end(), same);
@@ -63,7 +60,7 @@ GeometryErrors geometry_errors(const Model& model) {
   GeometryErrors errors;
   for (const Effect& effect : model.effects) {
     if (effect.name == kRatio) {
-      const double g = coefficient(effect, "difference");
+      const double g = coefficient(effect, Channel::difference);
       if (std::abs(g) >= 2.0) {
         throw std::invalid_argument(
             "effect \"wheel diameter ratio\" has a coefficient of 2 or "
@@ -71,7 +68,7 @@ GeometryErrors geometry_errors(const Model& model) {
       }
       errors.diameter_ratio = (1.0 + g / 2.0) / (1.0 - g / 2.0);
     } else if (effect.name == kWheelbaseEffect) {
-      const double g = coefficient(effect, "turn");
+      const double g = coefficient(effect, Channel::turn);
       if (g <= -1.0) {
         throw std::invalid_argument(
             "effect \"wheelbase\" has a coefficient of -1 or less, "
@@ -85,8 +82,8 @@ GeometryErrors geometry_errors(const Model& model) {
 
 void set_geometry_errors(Model& model, const GeometryErrors& errors) {
   const double e_d = errors.diameter_ratio;
-  set_effect(model, kRatio, "difference", 2.0 * (e_d - 1.0) / (e_d + 1.0));
-  set_effect(model, kWheelbaseEffect, "turn", 1.0 / errors.wheelbase_ratio - 1.0);
+  set_effect(model, kRatio, Channel::difference, 2.0 * (e_d - 1.0) / (e_d + 1.0));
+  set_effect(model, kWheelbaseEffect, Channel::turn, 1.0 / errors.wheelbase_ratio - 1.0);
 }
 
 PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {

@@ -19,10 +19,8 @@ namespace {
 
 constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
 
-constexpr std::array<PlainEffect, 3> kEffects{PlainEffect::difference, PlainEffect::turn,
-                                              PlainEffect::wheels};
 constexpr std::array<const char*, 3> kNames{"wheel diameter ratio", "wheelbase", "wheel scale"};
-constexpr std::array<const char*, 3> kChannels{"difference", "turn", "wheels"};
+constexpr std::array<Channel, 3> kChannels{Channel::difference, Channel::turn, Channel::wheels};
 
 bool is_one_of_three(const Effect& effect) {
   return std::find(kNames.begin(), kNames.end(), effect.name) != kNames.end();
@@ -34,7 +32,7 @@ EffectParameters border_of(const std::array<bool, 3>& wanted,
                            const WheelCalibrationOptions& options, const TruthAlignment& believed) {
   EffectParameters border;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (wanted[k]) border.push_back(plain_effect(kEffects[k], recordings, robot));
+    if (wanted[k]) border.push_back(plain_effect(kChannels[k], recordings, robot));
   }
   if (!options.problem.truth) return border;
   for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, believed)) {

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/candidates.hpp"
 
+#include "effects/place_patterns.hpp"
+#include "recording/row_variables.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>
@@ -32,7 +35,7 @@ struct Spread {
 };
 
 constexpr std::size_t kThinned = 2000;
-constexpr int kQuickRounds = 10;  // of refining inner values
+constexpr int kQuickRounds = 10;  // of refining shape parameters
 constexpr int kExactRounds = 7;
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
 
@@ -80,18 +83,6 @@ std::vector<std::string> covariates_of(const ShapeContext& context) {
     if (in_all_sessions(one.name, context)) names.push_back(one.name);
   }
   return names;
-}
-
-std::string number(double value) {
-  return value < 0.0 ? fmt::format("({:.6g})", value) : fmt::format("{:.6g}", value);
-}
-
-std::string filled(std::string text, const std::string& name, const std::string& value) {
-  const std::string open = "{" + name + "}";
-  for (std::size_t at = text.find(open); at != std::string::npos; at = text.find(open)) {
-    text.replace(at, open.size(), value);
-  }
-  return text;
 }
 
 bool has_word(const std::string& text, std::initializer_list<const char*> words) {
@@ -147,9 +138,6 @@ Area driven_area(const ModelFit& fit) {
   }
   return area;
 }
-
-constexpr const char* kBell = "exp(-((x-{x})^2+(y-{y})^2)/(2*{r}^2))";
-constexpr const char* kDisc = "(1+sign({r}^2-(x-{x})^2-(y-{y})^2))/2";
 
 /// Gathers the candidates.
 class Gatherer {
@@ -216,8 +204,8 @@ class Gatherer {
 
   void add(Candidate one) {
     one.effect.coefficients.clear();
-    std::string key = one.effect.channel;
-    for (const std::string& shape : one.effect.shape) key += "|" + shape;
+    std::string key(name_of(one.effect.channel));
+    for (const Shape& shape : one.effect.shape) key += "|" + shape.text();
     // The catalogue may have two names for one thing; all else is tried once.
     if (!seen_.insert(key).second && one.form != Form::catalogue) return;
     candidates_.push_back(std::move(one));
@@ -227,25 +215,19 @@ class Gatherer {
     for (const CatalogueEntry& entry : catalogue()) {
       if (!is_possible(entry.channel)) continue;
       Candidate one;
-      one.effect.channel = facts_of(entry.channel).name;
-      one.effect.shape = entry.shape;
       if (entry.of_covariate()) {
         std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
         names.insert(names.end(), covariates_.begin(), covariates_.end());
         for (const std::string& name : names) {
-          one.effect.name = name_of(entry, name);
+          one.effect = catalogue_effect(entry, name);
           one.variable = name;
           one.log_prior = suits(entry, name);
-          one.effect.shape.clear();
-          for (const std::string& shape : entry.shape) {
-            one.effect.shape.push_back(filled(shape, "", name));
-          }
           add(one);
         }
       } else if (entry.has_parameters()) {
         take_catalogue_family(entry);
       } else {
-        one.effect.name = entry.name;
+        one.effect = catalogue_effect(entry);
         add(one);
       }
     }
@@ -254,23 +236,21 @@ class Gatherer {
   void take_catalogue_family(const CatalogueEntry& entry) {
     Candidate one;
     one.effect.name = std::string(entry.name);
-    one.effect.channel = facts_of(entry.channel).name;
+    one.effect.channel = entry.channel;
     one.family = std::string(entry.name);
-    one.pattern = entry.shape;
-    for (const ShapeParameter& parameter : entry.parameters) {
-      one.inner_names.emplace_back(parameter.name);
-      one.inner_least.push_back(parameter.smallest);
-      one.inner_most.push_back(parameter.largest);
+    one.pattern = entry.pattern;
+    for (const OpenParameter& parameter : entry.parameters) {
+      one.parameters.push_back({std::string(parameter.name), parameter.usual});
     }
     if (entry.parameters.size() == 3) {
       one.variable = "place";
       take_places(one, {0.75, 1.5});
       // A patch may have no sharp edge, an anomaly may have one.
       Candidate other = one;
-      other.pattern = {entry.shape.front() == kDisc ? kBell : kDisc};
-      const bool disc = other.pattern.front() == kDisc;
+      const bool disc = entry.pattern.front() != kDiscPattern;
+      other.pattern = {disc ? kDiscPattern : kBellPattern};
       other.effect.name =
-          fmt::format("{} {}", one.effect.channel, disc ? "within a circle" : "at a place");
+          fmt::format("{} {}", name_of(entry.channel), disc ? "within a circle" : "at a place");
       other.family = other.effect.name;
       other.form = Form::place;
       other.log_prior = -1.0;
@@ -283,12 +263,12 @@ class Gatherer {
 
   void take_places(Candidate one, const std::vector<double>& radii) {
     if (!(area_.step > 0.0)) return;
-    one.inner_least = {area_.low.x(), area_.low.y(), 0.1 * area_.step};
-    one.inner_most = {area_.high.x(), area_.high.y(), 4.0 * area_.step};
-    one.inner_step = {area_.step, area_.step, 0.5 * area_.step};
+    one.search = {{area_.step, area_.low.x(), area_.high.x()},
+                  {area_.step, area_.low.y(), area_.high.y()},
+                  {0.5 * area_.step, 0.1 * area_.step, 4.0 * area_.step}};
     for (const double radius : radii) {
       for (const Vector2& centre : area_.centres) {
-        add(with_inner(one, {centre.x(), centre.y(), radius * area_.step}));
+        add(with_parameters(one, {centre.x(), centre.y(), radius * area_.step}));
       }
     }
   }
@@ -297,25 +277,23 @@ class Gatherer {
     for (const Spread& u : variables_) {
       if (u.name != name || u.distinct < 3) continue;
       const double range = u.most - u.least;
-      one.inner_least = {u.least + 0.02 * range};
-      one.inner_most = {u.most - 0.02 * range};
-      one.inner_step = {0.2 * range};
+      one.search = {{0.2 * range, u.least + 0.02 * range, u.most - 0.02 * range}};
       std::set<double> tried;
       for (const double share : {0.15, 0.3, 0.5, 0.7, 0.85}) {
         const double c = u.quantile(share);
-        if (c > one.inner_least[0] && c < one.inner_most[0] && tried.insert(c).second) {
-          add(with_inner(one, {c}));
+        if (c > one.search[0].least && c < one.search[0].most && tried.insert(c).second) {
+          add(with_parameters(one, {c}));
         }
       }
     }
   }
 
   [[nodiscard]] static Candidate plain(Channel channel, const Spread& u, Form form,
-                                       std::vector<std::string> shapes, const std::string& said,
+                                       std::vector<Shape> shapes, const std::string& said,
                                        double log_prior) {
     Candidate one;
-    one.effect.name = fmt::format("{} with {}", facts_of(channel).name, said);
-    one.effect.channel = facts_of(channel).name;
+    one.effect.name = fmt::format("{} with {}", name_of(channel), said);
+    one.effect.channel = channel;
     one.effect.shape = std::move(shapes);
     one.form = form;
     one.variable = u.name;
@@ -336,13 +314,13 @@ class Gatherer {
                 {"sin(heading)", "cos(heading)", "sin(2*heading)", "cos(2*heading)"},
                 "a curve of heading", -3.0));
       Candidate bell;
-      bell.effect.channel = facts_of(channel).name;
-      bell.effect.name = fmt::format("{} at a place", bell.effect.channel);
+      bell.effect.channel = channel;
+      bell.effect.name = fmt::format("{} at a place", name_of(channel));
       bell.form = Form::place;
       bell.variable = "place";
       bell.family = bell.effect.name;
-      bell.pattern = {kBell};
-      bell.inner_names = {"x", "y", "r"};
+      bell.pattern = {kBellPattern};
+      bell.parameters = {{"x", 0.0}, {"y", 0.0}, {"r", 0.0}};
       bell.log_prior = -3.0;
       if (channel != Channel::compass) take_places(bell, {1.0});
     }
@@ -367,7 +345,8 @@ class Gatherer {
     // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
     const double middle = 0.5 * (u.least + u.most);
     const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
-    const std::string v = centred ? fmt::format("({}-{})", n, number(u.mean)) : n;
+    const double mean = centred ? rounded_within(u.mean, u.most - u.least) : 0.0;
+    const std::string v = centred ? filled("(" + n + "-{mean})", {{"mean", mean}}) : n;
     add(plain(channel, u, Form::line, {v}, n, covariate ? -1.0 : -2.0));
     if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
       add(plain(channel, u, Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"},
@@ -384,23 +363,26 @@ class Gatherer {
     Candidate step = plain(channel, u, Form::step, {}, "a step in " + n, -2.5);
     step.family = step.effect.name;
     step.pattern = {"(1+sign(" + n + "-{c}))/2"};
-    step.inner_names = {"c"};
+    step.parameters = {{"c", 0.0}};
     take_thresholds(step, n);
     if (covariate || n == "speed") {
       Candidate threshold = plain(channel, u, Form::threshold, {}, n + " above a threshold", -2.5);
       threshold.family = threshold.effect.name;
       threshold.pattern = {"max(0, " + n + "-{c})"};
-      threshold.inner_names = {"c"};
+      threshold.parameters = {{"c", 0.0}};
       take_thresholds(threshold, n);
     }
     if (u.distinct < 6) return;
-    std::vector<std::string> bells;
+    std::vector<Shape> bells;
     const double low = u.quantile(0.03);
     const double high = u.quantile(0.97);
     const double width = (high - low) / 3.0;
     if (!(width > 0.0)) return;
     for (int k = 0; k < 4; ++k) {
-      bells.push_back(fmt::format("exp(-(({}-{})/{:.6g})^2)", n, number(low + k * width), width));
+      bells.emplace_back(
+          "exp(-((" + n + "-{centre})/{width})^2)",
+          std::vector<ShapeParameter>{{"centre", rounded_within(low + k * width, width)},
+                                      {"width", rounded_within(width, width)}});
     }
     add(plain(channel, u, Form::curve, bells, "a curve of " + n, -3.0));
   }
@@ -421,8 +403,8 @@ class Gatherer {
     }
     if (context_.recordings().size() > 1) {
       Candidate one;
-      one.effect.channel = facts_of(channel).name;
-      one.effect.name = fmt::format("{} of its own in each session", one.effect.channel);
+      one.effect.channel = channel;
+      one.effect.name = fmt::format("{} of its own in each session", name_of(channel));
       one.effect.shape = {"1"};
       one.effect.per_session = true;
       one.form = Form::curve;
@@ -445,20 +427,18 @@ class Gatherer {
 
 }  // namespace
 
-Candidate with_inner(const Candidate& candidate, const std::vector<double>& inner) {
+Candidate with_parameters(const Candidate& candidate, const std::vector<double>& values) {
   Candidate one = candidate;
-  one.inner = inner;
-  one.effect.shape.clear();
-  for (std::string shape : candidate.pattern) {
-    for (std::size_t k = 0; k < inner.size(); ++k) {
-      shape = filled(shape, candidate.inner_names[k], number(inner[k]));
-    }
-    one.effect.shape.push_back(std::move(shape));
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    one.parameters[k].value = rounded_within(values[k], candidate.search[k].step);
   }
   if (one.form == Form::catalogue) {
-    std::vector<double> rounded;
-    for (const double value : inner) rounded.push_back(std::stod(fmt::format("{:.6g}", value)));
-    one.effect.name = name_of(*find_entry(candidate.effect.name), rounded);
+    one.effect = catalogue_effect(*find_entry(candidate.effect.name), one.parameters);
+    return one;
+  }
+  one.effect.shape.clear();
+  for (const std::string& pattern : candidate.pattern) {
+    one.effect.shape.emplace_back(pattern, one.parameters);
   }
   return one;
 }
@@ -469,7 +449,14 @@ std::vector<Candidate> candidates_for(const ModelFit& fit, const ShapeContext& c
 
 namespace {
 
-/// Goes to better inner values, `step` apart, and halves the step where there are none.
+std::vector<double> values_of(const std::vector<ShapeParameter>& parameters) {
+  std::vector<double> values;
+  values.reserve(parameters.size());
+  for (const ShapeParameter& one : parameters) values.push_back(one.value);
+  return values;
+}
+
+/// Goes to better parameters, `step` apart, and halves the step where there are none.
 Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vector<double> step,
                   int rounds, Resolution resolution) {
   Candidate best = candidate;
@@ -479,11 +466,13 @@ Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vecto
     std::vector<Effect> effects;
     for (std::size_t k = 0; k < step.size(); ++k) {
       for (const double sign : {-1.0, 1.0}) {
-        std::vector<double> inner = best.inner;
-        inner[k] = std::clamp(inner[k] + sign * step[k], best.inner_least[k], best.inner_most[k]);
-        if (inner[k] == best.inner[k]) continue;
-        around.push_back(with_inner(candidate, inner));
-        effects.push_back(around.back().effect);
+        std::vector<double> values = values_of(best.parameters);
+        values[k] = std::clamp(values[k] + sign * step[k], candidate.search[k].least,
+                               candidate.search[k].most);
+        Candidate next = with_parameters(candidate, values);
+        if (next.parameters == best.parameters) continue;
+        effects.push_back(next.effect);
+        around.push_back(std::move(next));
       }
     }
     bool better = false;
@@ -500,18 +489,20 @@ Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vecto
   return best;
 }
 
-std::vector<double> times(double factor, std::vector<double> steps) {
-  for (double& step : steps) step *= factor;
+/// The search's steps, times a factor.
+std::vector<double> steps_of(const Candidate& candidate, double factor) {
+  std::vector<double> steps;
+  for (const SearchRange& one : candidate.search) steps.push_back(factor * one.step);
   return steps;
 }
 
 }  // namespace
 
 Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
-  if (candidate.inner.empty()) return candidate;
+  if (candidate.parameters.empty()) return candidate;
   const Candidate near =
-      climbed(tests, candidate, times(0.5, candidate.inner_step), kQuickRounds, Resolution::quick);
-  return climbed(tests, near, times(0.0625, candidate.inner_step), kExactRounds, Resolution::exact);
+      climbed(tests, candidate, steps_of(candidate, 0.5), kQuickRounds, Resolution::quick);
+  return climbed(tests, near, steps_of(candidate, 0.0625), kExactRounds, Resolution::exact);
 }
 
 }  // namespace trussmap

@@ -11,7 +11,7 @@
 //   with heading  u sin, u cos of the heading
 //   bell, disc    a place
 //
-// Forms with something open inside (a place, a threshold) are tried at many values; the best member
+// Forms with shape parameters (a place, a threshold) are tried at many values; the best member
 // of such a family stands for it, refined, and the number tried is counted.
 #pragma once
 
@@ -35,18 +35,22 @@ enum class Form {
   place
 };
 
+/// Where a search for a shape parameter goes.
+struct SearchRange {
+  double step = 0.0;  ///< between the members tried
+  double least = 0.0;
+  double most = 0.0;
+};
+
 struct Candidate {
-  Effect effect;  ///< resolved, without coefficients
+  Effect effect;  ///< without coefficients
   Form form = Form::catalogue;
   std::string variable;  ///< what it goes with: "speed", "payload_kg", "place", ""
-  /// Candidates of the same family (not empty) differ in `inner` alone.
+  /// Candidates of the same family (not empty) differ in `parameters` alone.
   std::string family;
-  std::vector<std::string> pattern;  ///< shapes, "{x}" and so on for the inner parameters
-  std::vector<std::string> inner_names;
-  std::vector<double> inner;       ///< values
-  std::vector<double> inner_step;  ///< between the members tried
-  std::vector<double> inner_least;
-  std::vector<double> inner_most;
+  std::vector<std::string> pattern;        ///< shapes, "{x}" and so on for the parameters
+  std::vector<ShapeParameter> parameters;  ///< of the shapes
+  std::vector<SearchRange> search;         ///< one per parameter
   /// Log of the belief in it before any data, against a catalogue effect's.
   double log_prior = 0.0;
 };
@@ -56,10 +60,12 @@ struct Candidate {
 [[nodiscard]] std::vector<Candidate> candidates_for(const ModelFit& fit,
                                                     const ShapeContext& context);
 
-/// The same candidate with other inner values, its name and shapes made anew.
-[[nodiscard]] Candidate with_inner(const Candidate& candidate, const std::vector<double>& inner);
+/// The same candidate with other parameters, its name and shapes made anew. They are numbers of few
+/// digits: a search cannot tell finer ones apart.
+[[nodiscard]] Candidate with_parameters(const Candidate& candidate,
+                                        const std::vector<double>& values);
 
-/// The candidate with inner values near its own that explain the most (itself, where it has none).
+/// The candidate with parameters near its own that explain the most (itself, where it has none).
 [[nodiscard]] Candidate refined(const ScoreTest& tests, const Candidate& candidate);
 
 }  // namespace trussmap

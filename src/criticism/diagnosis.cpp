@@ -3,6 +3,7 @@
 #include "criticism/diagnosis.hpp"
 
 #include "criticism/local_dispersion.hpp"
+#include "recording/slow_covariates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +36,8 @@ struct Tested {
   Score score;
   Eigen::MatrixXd slopes;  ///< of the held-out legs
   int tried = 1;
-  /// Of the score, what the members tried had found before inner values were refined: all that is
-  /// paid for by their number, and so all that speaks for there being an effect.
+  /// Of the score, what the members tried had found before shape parameters were refined: all that
+  /// is paid for by their number, and so all that speaks for there being an effect.
   double share_found = 1.0;
   double dispersion = 1.0;  ///< of the rows that speak for it
   double evidence = 0.0;
@@ -136,10 +137,10 @@ class Diagnostician {
     return dof * (kLogRange + 0.5 * std::log(1.0 + score / std::max(1, dof)));
   }
 
-  /// The same for inner parameters: found on a grid, then refined.
-  [[nodiscard]] static double inner_penalty(double score, const Tested& one) {
+  /// The same for shape parameters: found on a grid, then refined.
+  [[nodiscard]] static double search_penalty(double score, const Tested& one) {
     return std::log(static_cast<double>(one.tried)) +
-           0.5 * static_cast<double>(one.candidate.inner.size()) * std::log(1.0 + score);
+           0.5 * static_cast<double>(one.candidate.parameters.size()) * std::log(1.0 + score);
   }
 
   /// p-values against the dispersion that each would leave, as a whole and where it acts; evidence
@@ -171,16 +172,16 @@ class Diagnostician {
       // effect moves as well is as large as it is.
       const double net = one.score.score / least;
       one.evidence = 0.5 * net - penalty(net, one.score.dof) + one.candidate.log_prior;
-      if (!one.candidate.inner.empty()) one.evidence -= inner_penalty(net, one);
+      if (!one.candidate.parameters.empty()) one.evidence -= search_penalty(net, one);
       if (one.score.dof == 0) one.evidence = -1e300;
     }
   }
 
-  /// Looks for better inner values of the most promising families.
+  /// Looks for better shape parameters of the most promising families.
   void refine_families() {
     std::vector<Tested*> families;
     for (Tested& one : tested_) {
-      if (!one.candidate.inner.empty() && one.score.dof > 0 && one.p_adjusted < 0.5) {
+      if (!one.candidate.parameters.empty() && one.score.dof > 0 && one.p_adjusted < 0.5) {
         families.push_back(&one);
       }
     }
@@ -196,7 +197,7 @@ class Diagnostician {
 
   void refine(Tested& tested) {
     const Candidate better = refined(tests_, tested.candidate);
-    if (better.inner == tested.candidate.inner) return;
+    if (better.parameters == tested.candidate.parameters) return;
     Score score = tests_.test({better.effect}).front();
     const double found = tested.score.score;
     take(tested, better, score);
@@ -206,8 +207,8 @@ class Diagnostician {
   /// What would have to be far larger than anything known is none, but for a plain factor: a
   /// wheelbase may be given quite wrong.
   [[nodiscard]] static bool implausible(const Tested& one) {
-    if (one.candidate.effect.shape == std::vector<std::string>{"1"}) return false;
-    const double prior_sd = facts_of(*parse_channel(one.candidate.effect.channel)).prior_sd;
+    if (one.candidate.effect.is_constant()) return false;
+    const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd;
     for (std::size_t k = 0; k < one.score.coefficients.size(); ++k) {
       if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kLargestPriorSd * prior_sd) {
         return true;
@@ -468,8 +469,7 @@ class Diagnostician {
 
   /// Not seen, but would be where the model explained the rest.
   [[nodiscard]] static bool hidden_by_misfit(const Tested& one) {
-    const double prior_sd =
-        facts_of(*parse_channel(one.candidate.effect.channel)).prior_sd * kLargestUncertainty;
+    const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd * kLargestUncertainty;
     for (std::size_t k = 0; k < one.score.share.size(); ++k) {
       if (one.score.largest[k] > 0.0 && one.score.share[k] > kLeastShare &&
           one.score.largest[k] < prior_sd * std::sqrt(one.score.information[k])) {
@@ -529,7 +529,8 @@ class Diagnostician {
       result_.missing = first.candidate.effect.name;
       result_.p_value = first.p_adjusted;
       for (const LookAlike& rival : first.look_alikes) {
-        result_.next_drive = separating_drive(first.candidate.effect, rival.effect);
+        result_.next_drive = separating_drive(first.candidate.effect, rival.effect,
+                                              slow_covariates(fit_.recordings));
         if (!result_.next_drive.empty()) break;
       }
     } else if (result_.p_value < 0.01) {

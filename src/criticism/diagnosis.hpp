@@ -109,8 +109,10 @@ struct DiagnosisOptions {
 [[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
                                  const DiagnosisOptions& options);
 
-/// What to drive to tell two effects apart.
-[[nodiscard]] std::string separating_drive(const Effect& one, const Effect& other);
+/// What to drive to tell two effects apart, where `slow` are the covariates that vary slowly over
+/// the recordings (slow_covariates.hpp).
+[[nodiscard]] std::string separating_drive(const Effect& one, const Effect& other,
+                                           const std::vector<std::string>& slow);
 
 /// What the data lack to show an effect.
 [[nodiscard]] Unobservable why_unobservable(const Effect& effect, const ModelFit& fit,

@@ -141,7 +141,7 @@ class Discoverer {
     }
     found_.push_back(trials[best].candidate);
     result_.fit = std::move(trials[best].fit);
-    seek_inner_anew();
+    seek_parameters_anew();
     std::vector<std::string> dropped = eliminate_backward();
     DiscoveryStep& step = record();
     step.added = result_.fit.model.effects.back();
@@ -161,7 +161,7 @@ class Discoverer {
     const auto cost = [](const Trial& one) {
       return one.fit.adjustment.chi2 - 2.0 * one.candidate.log_prior +
              4.0 * static_cast<double>(one.candidate.effect.shape.size() +
-                                       one.candidate.inner.size());
+                                       one.candidate.parameters.size());
     };
     std::size_t best = 0;
     for (std::size_t k = 1; k < trials.size(); ++k) {
@@ -176,14 +176,14 @@ class Discoverer {
   }
 
   /// Places and thresholds of all effects found, each with the others in the model.
-  void seek_inner_anew() {
+  void seek_parameters_anew() {
     for (std::size_t k = given_; k < found_.size(); ++k) {
-      if (found_[k].inner.empty()) continue;
+      if (found_[k].parameters.empty()) continue;
       std::vector<Effect> others = result_.fit.model.effects;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
       const ModelFit without = fitted(others);
       const Candidate better = refined(ScoreTest(without), found_[k]);
-      if (better.inner == found_[k].inner) continue;
+      if (better.parameters == found_[k].parameters) continue;
       std::vector<Effect> effects = result_.fit.model.effects;
       effects[k] = better.effect;
       ModelFit fit = fitted(effects);

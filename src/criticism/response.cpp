@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/response.hpp"
 
-#include "effects/shape.hpp"
-#include "trussmap/catalogue.hpp"
+#include "effects/place_patterns.hpp"
 #include "wording/effect_words.hpp"
 
 #include <algorithm>
@@ -29,20 +28,20 @@ double in_one_turn(double heading) {
   return rest < 0.0 ? rest + kTurn : rest;
 }
 
-/// The variable as a formula.
-std::string formula_of(const std::string& variable, const Effect& effect) {
-  if (variable != kPlace) return variable;
+/// The variable as a formula; nothing without one, or without a place.
+std::optional<Shape> formula_of(const std::string& variable, const Effect& effect) {
+  if (variable.empty()) return std::nullopt;
+  if (variable != kPlace) return Shape(variable);
   const std::optional<Vector2> place = place_of(effect);
-  if (!place) return {};
-  return fmt::format("sqrt((x-({:.9g}))^2+(y-({:.9g}))^2)", place->x(), place->y());
+  if (!place) return std::nullopt;
+  return Shape(kDistancePattern, {{"x", place->x()}, {"y", place->y()}});
 }
 
 /// A formula in all rows in which a wheel turns, in order.
-std::vector<double> values_of(const std::string& formula, const ModelFit& fit,
-                              const ScoreTest& tests) {
+std::vector<double> values_of(const Shape& formula, const ModelFit& fit, const ScoreTest& tests) {
   for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
     const RowVariables& rows = tests.context().variables(s, ShapeContext::Instant::middle);
-    for (const std::string& name : variables_of(formula)) {
+    for (const std::string& name : formula.variables()) {
       if (!rows.contains(name)) return {};
     }
   }
@@ -84,7 +83,7 @@ std::vector<double> edges_of(const std::vector<double>& values) {
 
 struct Bins {
   std::vector<ResponseBin> bins;
-  std::vector<std::string> shapes;
+  std::vector<Shape> shapes;
 };
 
 Bins heading_bins(const std::vector<double>& values) {
@@ -103,13 +102,14 @@ Bins heading_bins(const std::vector<double>& values) {
     if (count == 0) continue;
     result.bins.push_back(
         {middle + sum / count, middle - 0.5 * width, middle + 0.5 * width, 0.0, 0.0});
-    result.shapes.push_back(
-        fmt::format("(1+sign(cos(heading-({:.9g}))-({:.9g})))/2", middle, std::cos(0.5 * width)));
+    result.shapes.emplace_back(
+        "(1+sign(cos(heading-{middle})-{edge}))/2",
+        std::vector<ShapeParameter>{{"middle", middle}, {"edge", std::cos(0.5 * width)}});
   }
   return result;
 }
 
-Bins bins_of(const std::string& variable, const std::vector<double>& values) {
+Bins bins_of(const Shape& variable, const std::vector<double>& values) {
   if (variable == "heading") return heading_bins(values);
   Bins result;
   if (!(values.back() > values.front())) return result;
@@ -121,8 +121,9 @@ Bins bins_of(const std::string& variable, const std::vector<double>& values) {
     double sum = 0.0;
     for (auto at = from; at != to; ++at) sum += *at;
     result.bins.push_back({sum / static_cast<double>(to - from), edges[k], edges[k + 1], 0.0, 0.0});
-    result.shapes.push_back(fmt::format("(sign({0}-({1:.9g}))-sign({0}-({2:.9g})))/2", variable,
-                                        edges[k], edges[k + 1]));
+    result.shapes.emplace_back(
+        fmt::format("(sign({0}-{{low}})-sign({0}-{{high}}))/2", variable.text()),
+        std::vector<ShapeParameter>{{"low", edges[k]}, {"high", edges[k + 1]}});
     from = to;
   }
   return result;
@@ -192,7 +193,7 @@ EffectRange range_of(const Effect& effect, const ShapeContext& context) {
   EffectRange range;
   bool first = true;
   std::vector<std::vector<std::vector<double>>> shapes;
-  for (const std::string& shape : effect.shape) {
+  for (const Shape& shape : effect.shape) {
     shapes.push_back(context.values(shape, ShapeContext::Instant::middle));
   }
   for (std::size_t s = 0; s < sessions; ++s) {
@@ -214,15 +215,22 @@ EffectRange range_of(const Effect& effect, const ShapeContext& context) {
 
 std::string natural_variable(const Effect& effect) {
   std::set<std::string> names;
-  for (const std::string& shape : effect.shape) {
-    for (std::string& name : variables_of(shape)) names.insert(std::move(name));
+  for (const Shape& shape : effect.shape) {
+    names.insert(shape.variables().begin(), shape.variables().end());
   }
   names.erase("session");
   if (names.contains("x") || names.contains("y")) return {};
   if (!names.empty()) return *names.begin();
-  const std::string& channel = effect.channel;
-  if (channel == "turn" || channel == "drift" || channel == "rotate") return "turn_rate";
-  return channel == "compass" ? "heading" : "speed";
+  switch (effect.channel) {
+    case Channel::turn:
+    case Channel::drift:
+    case Channel::rotate:
+      return "turn_rate";
+    case Channel::compass:
+      return "heading";
+    default:
+      return "speed";
+  }
 }
 
 std::vector<Vector2> effect_curve(const Effect& effect, const std::string& variable, double low,
@@ -241,11 +249,11 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
     variables[variable] = at;
   }
   for (std::size_t shape = 0; shape < effect.shape.size(); ++shape) {
-    for (const std::string& name : variables_of(effect.shape[shape])) {
+    for (const std::string& name : effect.shape[shape].variables()) {
       if (!variables.contains(name)) return {};
     }
     try {
-      const std::vector<double> f = evaluate_shape(effect.shape[shape], variables);
+      const std::vector<double> f = effect.shape[shape].values(variables);
       for (std::size_t k = 0; k < f.size() && k < curve.size(); ++k) {
         curve[k].y() += effect.coefficients[shape] * f[k];
       }
@@ -280,19 +288,19 @@ std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
 
 Response response_along(const std::string& variable, const Effect& effect, const ModelFit& fit,
                         const ScoreTest& tests, const std::vector<Effect>& rivals) {
-  const ChannelFacts& facts = facts_of(parse_channel(effect.channel).value());
+  const ChannelFacts& facts = facts_of(effect.channel);
   Response result;
   result.channel = effect.channel;
   result.unit = facts.unit;
   result.variable = variable;
-  const std::string formula = formula_of(variable, effect);
-  if (formula.empty()) return result;
-  const std::vector<double> values = values_of(formula, fit, tests);
+  const std::optional<Shape> formula = formula_of(variable, effect);
+  if (!formula) return result;
+  const std::vector<double> values = values_of(*formula, fit, tests);
   if (values.empty()) return result;
-  Bins bins = bins_of(formula, values);
+  Bins bins = bins_of(*formula, values);
   if (bins.bins.empty()) return result;
   Effect probe;
-  probe.name = effect.channel + " along " + variable;
+  probe.name = std::string(facts.name) + " along " + variable;
   probe.channel = effect.channel;
   probe.shape = std::move(bins.shapes);
   const std::vector<Score> scores = tests.test({probe});

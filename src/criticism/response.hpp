@@ -36,7 +36,7 @@ struct ResponseBin {
 };
 
 struct Response {
-  std::string channel;
+  Channel channel = Channel::travel;
   std::string unit;      ///< of g; "" = none
   std::string variable;  ///< heading (0 to 2 pi), speed, payload_kg ...
   std::vector<ResponseBin> bins;

@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/score_test.hpp"
 
-#include "effects/shape.hpp"
+#include "recording/row_variables.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -33,12 +32,10 @@ Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
 
 /// Whether its shapes speak of what a second's middle says nothing about.
 bool changes_within_a_second(const Effect& effect) {
-  static const std::set<std::string> brief{"starts", "spins", "reverses_left", "reverses_right",
-                                           "acceleration"};
-  return std::any_of(effect.shape.begin(), effect.shape.end(), [](const std::string& shape) {
-    const std::vector<std::string> names = variables_of(shape);
-    return std::any_of(names.begin(), names.end(),
-                       [](const std::string& name) { return brief.contains(name); });
+  return std::any_of(effect.shape.begin(), effect.shape.end(), [](const Shape& shape) {
+    return std::any_of(
+        shape.variables().begin(), shape.variables().end(),
+        [](const std::string& name) { return is_event(name) || name == "acceleration"; });
   });
 }
 
@@ -103,7 +100,7 @@ void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
 Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& largest,
                           Eigen::MatrixXd columns, Eigen::MatrixXd projected) const {
   const Eigen::Index count = projected.cols();
-  const double prior_sd = facts_of(*parse_channel(effect.channel)).prior_sd;
+  const double prior_sd = facts_of(effect.channel).prior_sd;
   Score result;
   result.coefficients.assign(static_cast<std::size_t>(count), 0.0);
   result.sd.assign(static_cast<std::size_t>(count), kInfinity);

@@ -60,7 +60,7 @@ class ScoreTest {
   /// Keeps a reference to the fit. A copy shares all but what was taken out.
   explicit ScoreTest(const ModelFit& fit);
 
-  /// Tests several candidates at once (resolved, their coefficients at 0). Throws
+  /// Tests several candidates at once (their coefficients at 0). Throws
   /// std::invalid_argument like effect_columns.
   [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,
                                         Resolution resolution = Resolution::exact) const;
@@ -68,7 +68,7 @@ class ScoreTest {
   /// The chi^2 that adding all of these together would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
-  /// Whitened columns of an effect (resolved), M.
+  /// Whitened columns of an effect, M.
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
     return builders_->exact.columns(effect);
   }

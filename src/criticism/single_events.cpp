@@ -252,7 +252,8 @@ class Collector {
       for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto column = static_cast<Eigen::Index>(c);
         Effect effect;
-        effect.name = effect.channel = facts_of(channels[c]).name;
+        effect.name = name_of(channels[c]);
+        effect.channel = channels[c];
         effect.shape = {"1"};
         M.col(column) = tests_.columns(effect);
         prior_sd[column] = facts_of(channels[c]).prior_sd;

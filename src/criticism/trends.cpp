@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "criticism/comparison.hpp"
-#include "effects/shape.hpp"
+#include "effects/place_patterns.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
 struct Variable {
   std::string name;
-  std::vector<std::string> shapes;
+  std::vector<Shape> shapes;
 };
 
 bool varies(const ModelFit& fit, const std::string& covariate) {
@@ -45,13 +44,15 @@ Variable place_variable(const ModelFit& fit) {
   }
   Variable place{"place", {}};
   const Vector2 step = (high - low) / kAcross;
-  const double radius = 0.6 * step.maxCoeff();
-  if (!(radius > 0.0)) return place;
+  if (!(step.maxCoeff() > 0.0)) return place;
+  const auto rounded = [&step](double value) { return rounded_within(value, step.maxCoeff()); };
+  const double radius = rounded(0.6 * step.maxCoeff());
   for (int i = 0; i < kAcross; ++i) {
     for (int j = 0; j < kAcross; ++j) {
       const Vector2 at = low + Vector2((i + 0.5) * step.x(), (j + 0.5) * step.y());
-      place.shapes.push_back(fmt::format("exp(-((x-({:.4g}))^2+(y-({:.4g}))^2)/(2*{:.4g}^2))",
-                                         at.x(), at.y(), radius));
+      place.shapes.emplace_back(kBellPattern,
+                                std::vector<ShapeParameter>{
+                                    {"x", rounded(at.x())}, {"y", rounded(at.y())}, {"r", radius}});
     }
   }
   return place;
@@ -79,26 +80,28 @@ std::vector<Variable> variables_of(const ModelFit& fit) {
 
 struct Kind {
   std::string name;
-  std::string channel;
+  Channel channel = Channel::travel;
 };
 
 std::vector<Kind> kinds_of(const ModelFit& fit) {
-  std::vector<Kind> kinds{
-      {"stretch", "travel"}, {"orientation", "creep"}, {"turn", "turn"}, {"bend", "difference"}};
+  std::vector<Kind> kinds{{"stretch", Channel::travel},
+                          {"orientation", Channel::creep},
+                          {"turn", Channel::turn},
+                          {"bend", Channel::difference}};
   const auto has = [&fit](auto&& what) {
     return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(), what);
   };
   if (has([](const Measurement& one) {
         return one.kind == MeasurementKind::segment && one.rows == 4;
       })) {
-    kinds.push_back({"compass", "compass"});
+    kinds.push_back({"compass", Channel::compass});
   }
   if (has([](const Measurement& one) { return one.kind == MeasurementKind::view; })) {
-    kinds.push_back({"sighting range", "range"});
-    kinds.push_back({"sighting bearing", "bearing"});
+    kinds.push_back({"sighting range", Channel::range});
+    kinds.push_back({"sighting bearing", Channel::bearing});
   }
-  kinds.push_back({"sighting ahead", "lever"});
-  kinds.push_back({"sighting to the left", "lever_left"});
+  kinds.push_back({"sighting ahead", Channel::lever});
+  kinds.push_back({"sighting to the left", Channel::lever_left});
   return kinds;
 }
 
@@ -145,7 +148,7 @@ std::vector<Trend> find_trends(const ModelFit& fit, const ScoreTest& tests) {
       trend.effect.name = kind.name + " against " + variable.name;
       trend.effect.channel = kind.channel;
       trend.effect.shape = variable.shapes;
-      trend.unit = facts_of(*parse_channel(kind.channel)).unit;
+      trend.unit = facts_of(kind.channel).unit;
       effects.push_back(trend.effect);
       trends.push_back(std::move(trend));
     }
@@ -161,7 +164,7 @@ std::vector<Trend> find_trends(const ModelFit& fit, const ScoreTest& tests) {
     trend.p_value = scores[k].p_value;
     trend.effect.coefficients = scores[k].coefficients;
     std::vector<std::vector<std::vector<double>>> values;
-    for (const std::string& shape : trend.effect.shape) {
+    for (const Shape& shape : trend.effect.shape) {
       values.push_back(tests.context().values(shape, ShapeContext::Instant::middle));
     }
     trend.size = rms_of(trend.effect.coefficients, values);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 
+#include "text/number_text.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -13,12 +15,13 @@
 namespace trussmap {
 namespace {
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
-    text.replace(at, what.size(), by);
-    at += by.size();
+/// A pattern with a covariate's name in its "{}"s.
+std::string of_covariate(std::string pattern, std::string_view covariate) {
+  constexpr std::string_view kOpen = "{}";
+  for (std::size_t at = pattern.find(kOpen); at != std::string::npos; at = pattern.find(kOpen)) {
+    pattern.replace(at, kOpen.size(), covariate);
   }
-  return text;
+  return pattern;
 }
 
 /// "load on both wheels (payload_kg)" -> "load on both wheels", "payload_kg".
@@ -50,7 +53,7 @@ std::string_view trimmed(std::string_view text) {
 std::string expected_name(const CatalogueEntry& entry) {
   if (entry.of_covariate()) return fmt::format("{} (COLUMN)", entry.name);
   std::string text;
-  for (const ShapeParameter& one : entry.parameters) {
+  for (const OpenParameter& one : entry.parameters) {
     text += text.empty() ? "" : ", ";
     text += one.usual == 0.0 ? fmt::format("{}=...", one.name)
                              : fmt::format("{}={:g}", one.name, one.usual);
@@ -58,16 +61,15 @@ std::string expected_name(const CatalogueEntry& entry) {
   return fmt::format("{} ({})", entry.name, text);
 }
 
-/// The shapes with the parameters that stand in the brackets.
-std::vector<std::string> with_parameters(const CatalogueEntry& entry, const Effect& effect) {
+/// The parameters that stand in a name's brackets.
+std::vector<ShapeParameter> parameters_in(std::string_view effect, const CatalogueEntry& entry) {
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(
         fmt::format("effect \"{}\" {}, expected \"{}\"; or a channel and a shape of its own",
-                    effect.name, why, expected_name(entry)));
+                    effect, why, expected_name(entry)));
   };
-  std::vector<std::string> shapes = entry.shape;
-  std::vector<std::string_view> given;
-  std::string_view rest = taken_apart(effect.name).brackets;
+  std::vector<ShapeParameter> given;
+  std::string_view rest = taken_apart(effect).brackets;
   while (!trimmed(rest).empty()) {
     const std::size_t comma = std::min(rest.find(','), rest.size());
     const std::string_view item = rest.substr(0, comma);
@@ -75,9 +77,9 @@ std::vector<std::string> with_parameters(const CatalogueEntry& entry, const Effe
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string_view name = trimmed(item.substr(0, equals));
     const std::string_view number = trimmed(item.substr(std::min(equals + 1, item.size())));
-    const auto is_it = [name](const ShapeParameter& one) { return one.name == name; };
+    const auto is_it = [name](const auto& one) { return one.name == name; };
     if (std::none_of(entry.parameters.begin(), entry.parameters.end(), is_it) ||
-        std::find(given.begin(), given.end(), name) != given.end()) {
+        std::any_of(given.begin(), given.end(), is_it)) {
       refuse(fmt::format("has no parameter \"{}\", or has it twice", name));
     }
     double value = 0.0;
@@ -86,31 +88,16 @@ std::vector<std::string> with_parameters(const CatalogueEntry& entry, const Effe
         !std::isfinite(value)) {
       refuse(fmt::format("has {} = \"{}\", which is no number", name, number));
     }
-    given.push_back(name);
-    const std::string text = value < 0.0 ? fmt::format("({})", number) : std::string(number);
-    for (std::string& shape : shapes) shape = replaced(shape, fmt::format("{{{}}}", name), text);
+    given.push_back({std::string(name), value});
   }
   if (given.size() < entry.parameters.size()) refuse("lacks a place or threshold");
-  return shapes;
-}
-
-std::vector<std::string> shapes_of(const CatalogueEntry& entry, const Effect& effect) {
-  if (entry.has_parameters()) return with_parameters(entry, effect);
-  if (!entry.of_covariate()) return entry.shape;
-  const std::string_view covariate = taken_apart(present_name(effect.name)).brackets;
-  if (covariate.empty()) {
-    throw std::invalid_argument(fmt::format("effect \"{}\" needs a covariate, expected \"{}\"",
-                                            effect.name, expected_name(entry)));
-  }
-  std::vector<std::string> shapes;
-  for (const std::string& shape : entry.shape) shapes.push_back(replaced(shape, "{}", covariate));
-  return shapes;
+  return given;
 }
 
 }  // namespace
 
 bool CatalogueEntry::of_covariate() const {
-  return !shape.empty() && shape.front().find("{}") != std::string::npos;
+  return !pattern.empty() && pattern.front().find("{}") != std::string::npos;
 }
 
 const CatalogueEntry* find_entry(std::string_view name) {
@@ -126,39 +113,57 @@ std::string name_of(const CatalogueEntry& entry, std::string_view covariate) {
   return fmt::format("{} ({})", entry.name, covariate);
 }
 
-std::string name_of(const CatalogueEntry& entry, const std::vector<double>& values) {
+std::string name_of(const CatalogueEntry& entry, const std::vector<ShapeParameter>& parameters) {
   std::string text;
-  for (std::size_t k = 0; k < entry.parameters.size(); ++k) {
-    text += fmt::format("{}{}={:.10g}", k == 0 ? "" : ", ", entry.parameters[k].name, values.at(k));
+  for (const ShapeParameter& one : parameters) {
+    text += (text.empty() ? "" : ", ") + one.name + "=" + shortest_text(one.value);
   }
   return fmt::format("{} ({})", entry.name, text);
 }
 
-Effect resolved(const Effect& effect) {
-  Effect result = effect;
-  if (effect.channel.empty()) {
-    const CatalogueEntry* entry = find_entry(effect.name);
-    if (entry == nullptr) {
-      throw std::invalid_argument(fmt::format(
-          "effect \"{}\" is not in the catalogue, expected a channel and a shape", effect.name));
-    }
-    result.channel = facts_of(entry->channel).name;
-    result.shape = shapes_of(*entry, effect);
+Effect catalogue_effect(const CatalogueEntry& entry) {
+  Effect effect{std::string(entry.name), entry.channel, {}, {}};
+  for (const std::string& pattern : entry.pattern) effect.shape.emplace_back(pattern);
+  return effect;
+}
+
+Effect catalogue_effect(const CatalogueEntry& entry, std::string_view covariate) {
+  Effect effect{name_of(entry, covariate), entry.channel, {}, {}};
+  for (const std::string& pattern : entry.pattern) {
+    effect.shape.emplace_back(of_covariate(pattern, covariate));
   }
-  if (!parse_channel(result.channel)) {
+  return effect;
+}
+
+Effect catalogue_effect(const CatalogueEntry& entry,
+                        const std::vector<ShapeParameter>& parameters) {
+  Effect effect{name_of(entry, parameters), entry.channel, {}, {}};
+  for (const std::string& pattern : entry.pattern) effect.shape.emplace_back(pattern, parameters);
+  return effect;
+}
+
+Effect catalogue_effect(std::string_view name, std::vector<double> coefficients) {
+  const CatalogueEntry* entry = find_entry(name);
+  if (entry == nullptr) {
     throw std::invalid_argument(
-        fmt::format("effect \"{}\" has channel \"{}\", which is unknown, "
-                    "expected one of {}",
-                    effect.name, result.channel, channel_names()));
+        fmt::format("effect \"{}\" is not in the catalogue, expected a channel and a shape", name));
   }
-  if (!effect.per_session && !effect.coefficients.empty() &&
-      effect.coefficients.size() != result.shape.size()) {
+  const std::string_view brackets = taken_apart(present_name(name)).brackets;
+  if (entry->of_covariate() && brackets.empty()) {
+    throw std::invalid_argument(fmt::format("effect \"{}\" needs a covariate, expected \"{}\"",
+                                            name, expected_name(*entry)));
+  }
+  Effect effect = entry->of_covariate()     ? catalogue_effect(*entry, brackets)
+                  : entry->has_parameters() ? catalogue_effect(*entry, parameters_in(name, *entry))
+                                            : catalogue_effect(*entry);
+  if (!coefficients.empty() && coefficients.size() != effect.shape.size()) {
     throw std::invalid_argument(
-        fmt::format("effect \"{}\" has {} coefficients, expected {}, one "
-                    "per shape",
-                    effect.name, effect.coefficients.size(), result.shape.size()));
+        fmt::format("effect \"{}\" has {} coefficients, expected {}, one per shape", name,
+                    coefficients.size(), effect.shape.size()));
   }
-  return result;
+  effect.name = name;
+  effect.coefficients = std::move(coefficients);
+  return effect;
 }
 
 }  // namespace trussmap

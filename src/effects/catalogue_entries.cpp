@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/place_patterns.hpp"
 #include "trussmap/catalogue.hpp"
 
 namespace trussmap {
@@ -288,7 +289,7 @@ const std::vector<CatalogueEntry>& catalogue() {
        {}},
       {"local magnetic anomaly",
        compass,
-       {"exp(-((x-{x})^2+(y-{y})^2)/(2*{r}^2))"},
+       {kBellPattern},
        "steel or cables at a place",
        "leave the compass out of account there",
        "rad",
@@ -306,7 +307,7 @@ const std::vector<CatalogueEntry>& catalogue() {
        {}},
       {"slippery patch",
        wheels,
-       {"(1+sign({r}^2-(x-{x})^2-(y-{y})^2))/2"},
+       {kDiscPattern},
        "a floor that is slippery at a place",
        "clean the floor, or drive round",
        "",

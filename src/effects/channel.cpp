@@ -3,6 +3,7 @@
 #include "trussmap/channel.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace trussmap {
 
@@ -34,11 +35,21 @@ const ChannelFacts& facts_of(Channel channel) {
                        [channel](const ChannelFacts& one) { return one.channel == channel; });
 }
 
+std::string_view name_of(Channel channel) {
+  return facts_of(channel).name;
+}
+
 std::optional<Channel> parse_channel(std::string_view name) {
   for (const ChannelFacts& one : channels()) {
     if (one.name == name) return one.channel;
   }
   return std::nullopt;
+}
+
+Channel channel_named(std::string_view name) {
+  if (const std::optional<Channel> channel = parse_channel(name)) return *channel;
+  throw std::invalid_argument("channel \"" + std::string(name) + "\" is unknown, expected one of " +
+                              channel_names());
 }
 
 std::string channel_names() {

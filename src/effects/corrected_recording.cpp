@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "effects/corrected_recording.hpp"
 
-#include "effects/shape.hpp"
+#include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
-#include "trussmap/channel.hpp"
+#include "recording/row_variables.hpp"
+#include "text/number_text.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -23,95 +20,52 @@ std::vector<double> gains(const Effect& effect, const RowVariables& variables, i
   const std::size_t shapes = effect.shape.size();
   const std::size_t first = effect.per_session ? idx(session) * shapes : 0;
   if (first + shapes > effect.coefficients.size()) {
-    throw std::invalid_argument(
-        fmt::format("has {} coefficients, expected {} for each of the sessions",
-                    effect.coefficients.size(), shapes));
+    throw std::invalid_argument("has " + std::to_string(effect.coefficients.size()) +
+                                " coefficients, expected " + std::to_string(shapes) +
+                                " for each of the sessions");
   }
   for (std::size_t k = 0; k < shapes; ++k) {
-    const std::vector<double> f = evaluate_shape(effect.shape[k], variables);
+    const std::vector<double> f = effect.shape[k].values(variables);
     for (std::size_t row = 0; row < rows; ++row) g[row] += effect.coefficients[first + k] * f[row];
   }
   return g;
 }
 
-/// Forward travel and turn of a row, changed, as wheels would show them.
-void change_motion(Channel channel, double g, double duration, double wheelbase, double& left,
-                   double& right) {
-  const double travel = 0.5 * (left + right);
-  const double turn = (right - left) / wheelbase;
-  double more_travel = 0.0;
-  double more_turn = 0.0;
-  switch (channel) {
-    case Channel::left:
-      left *= 1.0 + g;
-      return;
-    case Channel::right:
-      right *= 1.0 + g;
-      return;
-    case Channel::wheels:
-      left *= 1.0 + g;
-      right *= 1.0 + g;
-      return;
-    case Channel::difference:
-      left *= 1.0 - 0.5 * g;
-      right *= 1.0 + 0.5 * g;
-      return;
-    case Channel::travel:
-      more_travel = g * travel;
-      break;
-    case Channel::advance:
-      more_travel = g;
-      break;
-    case Channel::turn:
-      more_turn = g * turn;
-      break;
-    case Channel::drift:
-      more_turn = g * duration;
-      break;
-    case Channel::rotate:
-      more_turn = g;
-      break;
-    default:
-      throw std::invalid_argument("has no place in the wheels' travels");
+void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const RowTravel shown{drive.left[row], drive.right[row], drive.duration(row)};
+    const RowTravel nominal = without(channel, g[row], shown, wheelbase);
+    drive.left[row] = nominal.left;
+    drive.right[row] = nominal.right;
   }
-  left += more_travel - 0.5 * wheelbase * more_turn;
-  right += more_travel + 0.5 * wheelbase * more_turn;
 }
 
-void apply(const Effect& effect, Channel channel, const std::vector<double>& g, double wheelbase,
-           Recording& recording) {
-  Drive& drive = recording.drive;
-  switch (channel) {
-    case Channel::compass:
-      for (std::size_t row = 0; row < drive.heading.size(); ++row) drive.heading[row] -= g[row];
-      return;
-    case Channel::range:
-    case Channel::range_scale:
-    case Channel::bearing:
-      for (Sighting& sighting : recording.sightings) {
-        if (sighting.standing()) continue;
-        const double here = g[row_at(drive, sighting.t)];
-        if (channel == Channel::bearing) sighting.bearing = wrap_angle(sighting.bearing - here);
-        if (channel == Channel::range) sighting.range -= here;
-        if (channel == Channel::range_scale) sighting.range /= 1.0 + here;
-        if (!(sighting.range > 0.0)) {
-          throw std::invalid_argument(
-              fmt::format("leaves a range of {:g} m at t = {:g} s", sighting.range, sighting.t));
-        }
+void free_sightings(Channel channel, const std::vector<double>& g, Recording& recording) {
+  for (Sighting& sighting : recording.sightings) {
+    if (sighting.standing()) continue;
+    sighting = without(channel, g[row_at(recording.drive, sighting.t)], sighting);
+    if (!(sighting.range > 0.0)) {
+      throw std::invalid_argument("leaves a range of " + short_text(sighting.range) +
+                                  " m at t = " + short_text(sighting.t) + " s");
+    }
+  }
+}
+
+void apply(Channel channel, const std::vector<double>& g, double wheelbase, Recording& recording) {
+  if (!is_recordable(channel)) {
+    throw std::invalid_argument("has channel \"" + std::string(name_of(channel)) +
+                                "\", which only an adjustment can take into account");
+  }
+  switch (acts_on(channel)) {
+    case ActsOn::readings:
+      for (std::size_t row = 0; row < recording.drive.heading.size(); ++row) {
+        recording.drive.heading[row] -= g[row];
       }
       return;
-    case Channel::creep:
-    case Channel::lever:
-    case Channel::lever_left:
-    case Channel::delay:
-      throw std::invalid_argument(fmt::format(
-          "has channel \"{}\", which only an adjustment can take into account", effect.channel));
-    default:
-      for (std::size_t row = 0; row < drive.rows(); ++row) {
-        const double begin = row == 0 ? drive.start() : drive.t[row - 1];
-        change_motion(channel, g[row], drive.t[row] - begin, wheelbase, drive.left[row],
-                      drive.right[row]);
-      }
+    case ActsOn::views:
+      return free_sightings(channel, g, recording);
+    case ActsOn::drives:
+      return free_drive(channel, g, wheelbase, recording.drive);
   }
 }
 
@@ -122,13 +76,8 @@ Recording corrected_recording(const Recording& recording, const Model& model,
   Recording corrected = recording;
   for (const Effect& effect : model.effects) {
     try {
-      const std::optional<Channel> channel = parse_channel(effect.channel);
-      if (!channel) {
-        throw std::invalid_argument("has channel \"" + effect.channel +
-                                    "\", which is unknown, expected one of " + channel_names());
-      }
       const std::vector<double> g = gains(effect, variables, session, recording.drive.rows());
-      apply(effect, *channel, g, model.robot.wheelbase, corrected);
+      apply(effect.channel, g, model.robot.wheelbase, corrected);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
     }

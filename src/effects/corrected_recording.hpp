@@ -9,13 +9,14 @@
 // recording; the adjustment knows them.
 #pragma once
 
-#include "recording/row_variables.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
 
 namespace trussmap {
 
-/// `variables` are this recording's. Throws std::invalid_argument, naming the effect: an unknown
-/// channel or one of the others, a shape that cannot be evaluated, coefficients that do not match.
-/// Effects without coefficients count as 0; per session, those of `session` are taken.
+/// `variables` are this recording's. Throws std::invalid_argument, naming the effect: one of the
+/// other channels, a shape that cannot be evaluated, coefficients that do not match. Effects
+/// without coefficients count as 0; per session, those of `session` are taken.
 [[nodiscard]] Recording corrected_recording(const Recording& recording, const Model& model,
                                             const RowVariables& variables, int session);
 

@@ -22,6 +22,7 @@
 // derivatives come with the motion.
 #pragma once
 
+#include "effects/channel_physics.hpp"
 #include "odometry/merge.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
@@ -42,14 +43,6 @@ struct SegmentRow {
   double turn = 0.0;         ///< rad
   double duration = 0.0;     ///< s
   double reading = kAbsent;  ///< rad, compass at the end of this row; NaN: none
-};
-
-/// What one unit of a coefficient does to a whole row.
-struct DrivePattern {
-  double advance = 0.0;  ///< m more forward travel
-  double slip = 0.0;     ///< m sideways, to the left
-  double turn = 0.0;     ///< rad more turn
-  double compass = 0.0;  ///< rad by which the reading exceeds the heading
 };
 
 /// The four numbers. Without readings the mean is NaN.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit/column_builder.hpp"
 
-#include "effects/shape.hpp"
 #include "estimation/measurement_rows.hpp"
 
 #include <algorithm>
@@ -18,20 +17,9 @@ using Instant = ShapeContext::Instant;
 
 constexpr std::size_t kValuesKept = 30'000'000;  // numbers
 
-double duration_of(const Drive& drive, std::size_t row) {
-  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
-}
-
-Channel channel_of(const Effect& effect) {
-  if (const std::optional<Channel> channel = parse_channel(effect.channel)) return *channel;
-  throw std::invalid_argument(
-      fmt::format("effect \"{}\" has channel \"{}\", which is unknown, expected one of {}",
-                  effect.name, effect.channel, channel_names()));
-}
-
 /// Shape and session (-1: all) of each of an effect's coefficients.
 struct Part {
-  const std::string& shape;
+  const Shape& shape;
   int session;
 };
 
@@ -39,7 +27,7 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
   std::vector<Part> parts;
   const bool apart = effect.per_session && sessions > 1;
   for (std::size_t s = 0; s < (apart ? sessions : 1); ++s) {
-    for (const std::string& shape : effect.shape) {
+    for (const Shape& shape : effect.shape) {
       parts.push_back({shape, apart ? static_cast<int>(s) : -1});
     }
   }
@@ -104,9 +92,9 @@ void ColumnBuilder::take_training_segments(Segment& segment) {
   for (std::size_t k = segment.row_begin; k < segment.row_end;) {
     Stretch stretch{rows[k].row, k, k + 1};
     if (joint_ > 0.0) {
-      double time = duration_of(drive, rows[k].row);
+      double time = drive.duration(rows[k].row);
       for (; stretch.end < segment.row_end; ++stretch.end) {
-        time += duration_of(drive, rows[stretch.end].row);
+        time += drive.duration(rows[stretch.end].row);
         if (time > joint_) break;
       }
       stretch.place = middles.size();
@@ -134,13 +122,11 @@ const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
   Eigen::Matrix4Xd basis =
       Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(training_segments_.size()));
   for (const Segment& segment : segments_) {
-    const Drive& drive = context_.recordings()[segment.session].drive;
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
       for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
         const Row& row = (*segment_rows_)[at];
-        const DrivePattern unit =
-            row_pattern(channel, 1.0, context_.travel(segment.session, row.row),
-                        duration_of(drive, row.row), context_.robot().wheelbase);
+        const DrivePattern unit = drive_pattern(
+            channel, 1.0, context_.travel(segment.session, row.row), context_.robot().wheelbase);
         basis.col(static_cast<Eigen::Index>(k)).noalias() +=
             row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
       }
@@ -149,7 +135,7 @@ const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
   return bases_.emplace(channel, std::move(basis)).first->second;
 }
 
-const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Instant at) {
+const ColumnBuilder::Values& ColumnBuilder::values(const Shape& shape, Instant at) {
   const auto key = std::make_pair(shape, at);
   const auto found = values_.find(key);
   if (found != values_.end()) return found->second;
@@ -165,17 +151,17 @@ const ColumnBuilder::Values& ColumnBuilder::values(const std::string& shape, Ins
   return f;
 }
 
-ColumnBuilder::Values ColumnBuilder::evaluated(const std::string& shape, Instant at) {
+ColumnBuilder::Values ColumnBuilder::evaluated(const Shape& shape, Instant at) {
   const bool of_rows = at == Instant::middle || at == Instant::end;
   if (joint_ == 0.0 || !of_rows) return context_.values(shape, at);
   std::vector<RowVariables>& some = thinned_[at];
   for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
   Values result;
-  for (const RowVariables& session : some) result.push_back(evaluate_shape(shape, session));
+  for (const RowVariables& session : some) result.push_back(shape.values(session));
   return result;
 }
 
-void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int session,
+void ColumnBuilder::add_drives(Channel channel, const Shape& shape, int session,
                                Eigen::Ref<Eigen::VectorXd> column) {
   const Eigen::Matrix4Xd& units = basis(channel);
   const Values& f =
@@ -191,7 +177,7 @@ void ColumnBuilder::add_drives(Channel channel, const std::string& shape, int se
   }
 }
 
-void ColumnBuilder::add_views(Channel channel, const std::string& shape, int session,
+void ColumnBuilder::add_views(Channel channel, const Shape& shape, int session,
                               Eigen::Ref<Eigen::VectorXd> column) {
   for (const Instant at : {Instant::sighting, Instant::truth}) {
     const Values& f = values(shape, at);
@@ -209,7 +195,7 @@ void ColumnBuilder::add_views(Channel channel, const std::string& shape, int ses
 }
 
 Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
-  const Channel channel = channel_of(effect);
+  const Channel channel = effect.channel;
   const std::vector<Part> parts = parts_of(effect, context_.recordings().size());
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(parts.size()));
   try {
@@ -228,7 +214,7 @@ Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
 }
 
 std::vector<double> ColumnBuilder::largest(const Effect& effect) {
-  const Channel channel = channel_of(effect);
+  const Channel channel = effect.channel;
   std::vector<Instant> instants{Instant::middle};
   if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
   if (acts_on(channel) == ActsOn::views) instants = {Instant::sighting, Instant::truth};

@@ -6,7 +6,7 @@
 //   column = - sum over the rows k of a segment  f_k  W I_k u_k        (a view: W V u f)
 //
 //   I_k   what one unit of motion in row k does to the segment (row_influences)
-//   u_k   what one unit of the channel adds to row k (row_pattern): the same for every shape
+//   u_k   what one unit of the channel adds to row k (drive_pattern): the same for every shape
 //   f_k   the shape there: the same for every channel
 //
 // Channels and shapes are each worked out once. Cost of a further column: four products a row.
@@ -34,7 +34,7 @@ class ColumnBuilder {
   /// its middle. Shares what it can with this one.
   [[nodiscard]] ColumnBuilder coarsened(double seconds) const;
 
-  /// One column per coefficient of the effect (resolved), its rows in the order of the problem's
+  /// One column per coefficient of the effect, its rows in the order of the problem's
   /// measurements. Throws std::invalid_argument like effect_columns.
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect);
   /// |f| at most, per coefficient.
@@ -77,11 +77,11 @@ class ColumnBuilder {
   void take_training_segments(Segment& segment);
   [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
   const Eigen::Matrix4Xd& basis(Channel channel);
-  const Values& values(const std::string& shape, ShapeContext::Instant at);
-  [[nodiscard]] Values evaluated(const std::string& shape, ShapeContext::Instant at);
-  void add_drives(Channel channel, const std::string& shape, int session,
+  const Values& values(const Shape& shape, ShapeContext::Instant at);
+  [[nodiscard]] Values evaluated(const Shape& shape, ShapeContext::Instant at);
+  void add_drives(Channel channel, const Shape& shape, int session,
                   Eigen::Ref<Eigen::VectorXd> column);
-  void add_views(Channel channel, const std::string& shape, int session,
+  void add_views(Channel channel, const Shape& shape, int session,
                  Eigen::Ref<Eigen::VectorXd> column);
 
   const ShapeContext& context_;
@@ -94,9 +94,9 @@ class ColumnBuilder {
   std::vector<View> views_;
   std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
-  std::map<std::pair<std::string, ShapeContext::Instant>, Values> values_;
+  std::map<std::pair<Shape, ShapeContext::Instant>, Values> values_;
   /// |f| at most, per session; outlives the values.
-  std::map<std::pair<std::string, ShapeContext::Instant>, std::vector<double>> largest_;
+  std::map<std::pair<Shape, ShapeContext::Instant>, std::vector<double>> largest_;
 };
 
 }  // namespace trussmap

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "fit/effect_columns.hpp"
 
-#include "effects/shape.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -11,83 +9,6 @@
 #include <fmt/format.h>
 
 namespace trussmap {
-ActsOn acts_on(Channel channel) {
-  switch (channel) {
-    case Channel::compass:
-      return ActsOn::readings;
-    case Channel::lever:
-    case Channel::lever_left:
-    case Channel::range:
-    case Channel::range_scale:
-    case Channel::bearing:
-    case Channel::delay:
-      return ActsOn::views;
-    default:
-      return ActsOn::drives;
-  }
-}
-
-DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel, double duration,
-                         double wheelbase) {
-  const auto [left, right] = travel;
-  const double path = 0.5 * (left + right);
-  const double turn = (right - left) / wheelbase;
-  switch (channel) {
-    case Channel::travel:
-      return {f * path, 0.0, 0.0, 0.0};
-    case Channel::left:
-      return {0.5 * f * left, 0.0, -f * left / wheelbase, 0.0};
-    case Channel::right:
-      return {0.5 * f * right, 0.0, f * right / wheelbase, 0.0};
-    case Channel::wheels:
-      return {f * path, 0.0, f * turn, 0.0};
-    case Channel::difference:
-      return {0.25 * f * (right - left), 0.0, f * path / wheelbase, 0.0};
-    case Channel::turn:
-      return {0.0, 0.0, f * turn, 0.0};
-    case Channel::drift:
-      return {0.0, 0.0, f * duration, 0.0};
-    case Channel::advance:
-      return {f, 0.0, 0.0, 0.0};
-    case Channel::rotate:
-      return {0.0, 0.0, f, 0.0};
-    case Channel::creep:
-      return {0.0, f * path, 0.0, 0.0};
-    case Channel::compass:
-      return {0.0, 0.0, 0.0, f};
-    default:
-      return {};
-  }
-}
-
-ViewPattern view_pattern(Channel channel, double f, double speed, double turn_rate) {
-  ViewPattern view;
-  switch (channel) {
-    case Channel::lever:
-      view.ahead = f;
-      break;
-    case Channel::lever_left:
-      view.left = f;
-      break;
-    case Channel::range:
-      view.range = f;
-      break;
-    case Channel::range_scale:
-      view.range_scale = f;
-      break;
-    case Channel::bearing:
-      view.bearing = f;
-      break;
-    case Channel::delay:
-      view.ahead = -f * speed;
-      view.heading = -f * turn_rate;
-      break;
-    default:
-      break;
-  }
-  return view;
-}
-
 namespace {
 
 using Instant = ShapeContext::Instant;
@@ -102,10 +23,6 @@ std::vector<ViewPattern> views(Channel channel, const std::vector<double>& f,
     result.push_back(view_pattern(channel, f[k], speed[k], turn_rate[k]));
   }
   return result;
-}
-
-double duration_of(const Drive& drive, std::size_t row) {
-  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
 }
 
 double largest(const std::vector<std::vector<double>>& values) {
@@ -147,9 +64,9 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
   }
 }
 
-WheelTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
+RowTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
   const Drive& drive = recordings_[session].drive;
-  WheelTravel travel{drive.left[row], drive.right[row]};
+  RowTravel travel{drive.left[row], drive.right[row], drive.duration(row)};
   if (missing_[session].empty()) return travel;
   const Vector2& lacks = missing_[session][row];
   travel.left += lacks[0] - 0.5 * robot_.wheelbase * lacks[1];
@@ -171,11 +88,11 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   return truths_[session];
 }
 
-std::vector<std::vector<double>> ShapeContext::values(const std::string& shape, Instant at) const {
+std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instant at) const {
   std::vector<std::vector<double>> result;
   result.reserve(recordings_.size());
   for (std::size_t s = 0; s < recordings_.size(); ++s) {
-    result.push_back(evaluate_shape(shape, variables(s, at)));
+    result.push_back(shape.values(variables(s, at)));
   }
   return result;
 }
@@ -203,8 +120,7 @@ auto in_words_of(const Effect& effect, const Action& action) {
   }
 }
 
-Column make_column(Channel channel, const std::string& shape, int session,
-                   const ShapeContext& context) {
+Column make_column(Channel channel, const Shape& shape, int session, const ShapeContext& context) {
   const std::vector<Recording>& recordings = context.recordings();
   Column column;
   if (acts_on(channel) == ActsOn::views) {
@@ -228,10 +144,8 @@ Column make_column(Channel channel, const std::string& shape, int session,
     std::vector<DrivePattern>& patterns = column.pattern.drives.emplace_back();
     patterns.reserve(values[s].size());
     for (std::size_t row = 0; row < values[s].size(); ++row) {
-      const WheelTravel travel = context.travel(s, row);
-      patterns.push_back(row_pattern(channel, values[s][row], travel,
-                                     duration_of(recordings[s].drive, row),
-                                     context.robot().wheelbase));
+      patterns.push_back(drive_pattern(channel, values[s][row], context.travel(s, row),
+                                       context.robot().wheelbase));
     }
   }
   column.largest = largest(values);
@@ -240,7 +154,7 @@ Column make_column(Channel channel, const std::string& shape, int session,
 
 }  // namespace
 
-EffectPattern effect_column(Channel channel, const std::string& shape, int session,
+EffectPattern effect_column(Channel channel, const Shape& shape, int session,
                             const ShapeContext& context) {
   return make_column(channel, shape, session, context).pattern;
 }
@@ -261,21 +175,16 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
   EffectColumns result;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
-    const std::optional<Channel> channel = parse_channel(effect.channel);
-    if (!channel) {
-      throw std::invalid_argument(
-          fmt::format("effect \"{}\" has channel \"{}\", which is unknown, expected one of {}",
-                      effect.name, effect.channel, channel_names()));
-    }
     const std::size_t sessions = effect.per_session ? context.recordings().size() : 1;
     const std::vector<double> coefficients = coefficients_of(effect, context.recordings().size());
     for (std::size_t place = 0; place < coefficients.size(); ++place) {
       const std::size_t shape = place % effect.shape.size();
       const int session = sessions == 1 ? -1 : static_cast<int>(place / effect.shape.size());
-      Column column = in_words_of(
-          effect, [&] { return make_column(*channel, effect.shape[shape], session, context); });
+      Column column = in_words_of(effect, [&] {
+        return make_column(effect.channel, effect.shape[shape], session, context);
+      });
       column.pattern.name = effect.name;
-      if (*channel == Channel::delay) column.pattern.reference = coefficients[place];
+      if (effect.channel == Channel::delay) column.pattern.reference = coefficients[place];
       result.border.push_back(std::move(column.pattern));
       result.coefficients.push_back({e, shape, place, column.largest});
     }
@@ -289,13 +198,13 @@ std::vector<double> retimed(const std::vector<double>& instants, const Recording
   std::vector<double> result = instants;
   const std::vector<Pose> nowhere(instants.size());
   for (const Effect& effect : effects) {
-    if (parse_channel(effect.channel) != Channel::delay) continue;
+    if (effect.channel != Channel::delay) continue;
     const std::vector<double> coefficients = coefficients_of(effect, sessions);
     const RowVariables variables = instant_variables(recording.drive, robot.wheelbase, instants,
                                                      nowhere, static_cast<int>(session));
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
       const std::vector<double> f =
-          in_words_of(effect, [&] { return evaluate_shape(effect.shape[k], variables); });
+          in_words_of(effect, [&] { return effect.shape[k].values(variables); });
       const std::size_t place = (effect.per_session ? session * effect.shape.size() : 0) + k;
       for (std::size_t n = 0; n < result.size(); ++n) result[n] -= coefficients[place] * f[n];
     }

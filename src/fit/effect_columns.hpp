@@ -3,22 +3,8 @@
 //
 // Effects as columns of the adjustment's border: channel x shape, row by row.
 //
-// Each channel's action stands here, once. With f the shape's value, one unit of a coefficient adds
-//
-//   channel             per row of the drive                  shape taken at
-//   travel              path f                                middle of the row
-//   left, right         half the wheel's travel, and          middle
-//                       -+ travel/wheelbase of turn
-//   wheels              path f, turn f                        middle
-//   difference          (right - left)/4 f, path/wheelbase f  middle
-//   turn, drift, rotate turn f, duration f, f (turn)          middle
-//   advance             f (path)                              middle
-//   creep               path f, to the left                   middle
-//   compass             f                                     the reading's instant
-//   ... per sighting and truth row
-//   lever, lever_left   f ahead, to the left                  its instant
-//   range, range_scale, bearing   f (sightings only)          its instant
-//   delay               -speed f ahead, -turn rate f          its instant
+// What a channel adds to a row or a view is channel_physics.hpp's; here it meets the shapes'
+// values.
 //
 // Travel and turn are those of the record less its noise, as the fit believes it (fitted_path.hpp):
 // a column that holds the same noise as the residual it is to explain would explain it. So would a
@@ -31,7 +17,6 @@
 #include "estimation/effect_parameters.hpp"
 #include "fit/fitted_path.hpp"
 #include "recording/row_variables.hpp"
-#include "trussmap/arc.hpp"
 #include "trussmap/channel.hpp"
 
 #include <string>
@@ -42,8 +27,8 @@ namespace trussmap {
 /// What the data tell of a coefficient counts only above this share of what its column would tell
 /// if nothing else were unknown: what rounding leaves.
 inline constexpr double kLeastShare = 1e-7;
-/// And only where its standard error is below this share of the channel's plausible size: else more
-/// was known before.
+/// And only where its standard error is below this share of the channel's prior standard deviation:
+/// else more was known before.
 inline constexpr double kLargestUncertainty = 1.0 / 3.0;
 
 /// Where one coefficient of the border belongs.
@@ -67,12 +52,12 @@ class ShapeContext {
                const std::vector<SessionPath>& paths);
 
   /// Values of a shape per session, per row at its middle or end, per sighting, per truth row.
-  /// Throws std::invalid_argument like evaluate_shape.
+  /// Throws std::invalid_argument like Shape::values.
   enum class Instant { middle, end, sighting, truth };
-  [[nodiscard]] std::vector<std::vector<double>> values(const std::string& shape, Instant at) const;
+  [[nodiscard]] std::vector<std::vector<double>> values(const Shape& shape, Instant at) const;
   [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
   /// A row's travels, its noise taken out.
-  [[nodiscard]] WheelTravel travel(std::size_t session, std::size_t row) const;
+  [[nodiscard]] RowTravel travel(std::size_t session, std::size_t row) const;
 
   [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
   [[nodiscard]] const Robot& robot() const { return robot_; }
@@ -84,24 +69,13 @@ class ShapeContext {
   std::vector<RowVariables> middles_, ends_, sightings_, truths_;
 };
 
-/// Where a channel acts, and so where its shapes are taken.
-enum class ActsOn { drives, readings, views };
-[[nodiscard]] ActsOn acts_on(Channel channel);
-
-/// What one unit of a coefficient adds to a row with this travel, where the shape is f.
-[[nodiscard]] DrivePattern row_pattern(Channel channel, double f, const WheelTravel& travel,
-                                       double duration, double wheelbase);
-/// And to a view or truth row at this speed (m/s) and turn rate (rad/s).
-[[nodiscard]] ViewPattern view_pattern(Channel channel, double f, double speed, double turn_rate);
-
 /// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
 /// Throws std::invalid_argument on a shape that cannot be evaluated.
-[[nodiscard]] EffectPattern effect_column(Channel channel, const std::string& shape, int session,
+[[nodiscard]] EffectPattern effect_column(Channel channel, const Shape& shape, int session,
                                           const ShapeContext& context);
 
-/// Columns of all effects, which are resolved (catalogue.hpp). Throws std::invalid_argument, with
-/// the effect's name, on an unknown channel, a shape that cannot be evaluated, or a number of
-/// coefficients that does not match.
+/// Columns of all effects. Throws std::invalid_argument, with the effect's name, on a shape that
+/// cannot be evaluated, or a number of coefficients that does not match.
 [[nodiscard]] EffectColumns effect_columns(const std::vector<Effect>& effects,
                                            const ShapeContext& context);
 

@@ -6,7 +6,6 @@
 #include "estimation/recording_start.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_free.hpp"
-#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +27,6 @@ class Fitter {
       : recorded_(recordings), options_(options) {
     fit_.model = model;
     for (Effect& effect : fit_.model.effects) {
-      effect = resolved(effect);
       effect.coefficients = coefficients_of(effect, recordings.size());
     }
     given_ = fit_.model.effects;
@@ -60,9 +58,8 @@ class Fitter {
 
  private:
   [[nodiscard]] bool has_delays() const {
-    return std::any_of(
-        fit_.model.effects.begin(), fit_.model.effects.end(),
-        [](const Effect& effect) { return parse_channel(effect.channel) == Channel::delay; });
+    return std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
+                       [](const Effect& effect) { return effect.channel == Channel::delay; });
   }
 
   void lay_out() {
@@ -272,8 +269,8 @@ class Fitter {
       const auto at = static_cast<Eigen::Index>(k);
       const double share =
           1.0 / (covariance(at, at) * std::max(system.border().col(at).squaredNorm(), 1e-300));
-      const double uncertainty = std::sqrt(covariance(at, at)) * one.largest /
-                                 facts_of(*parse_channel(effect.channel)).prior_sd;
+      const double uncertainty =
+          std::sqrt(covariance(at, at)) * one.largest / facts_of(effect.channel).prior_sd;
       if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
       hold(unknown[k], uncertainty > kLargestUncertainty
                            ? fmt::format("these data leave it uncertain by {:.1f} times its "
@@ -301,7 +298,7 @@ class Fitter {
         if (why_not_[e][place].empty()) continue;
         estimate.sd[place] = kInfinity;
         estimate.not_fitted.push_back(fmt::format("{} ({}): not fitted, {}", effect.name,
-                                                  effect.shape[place % effect.shape.size()],
+                                                  effect.shape[place % effect.shape.size()].text(),
                                                   why_not_[e][place]));
       }
       fit_.effects.push_back(std::move(estimate));

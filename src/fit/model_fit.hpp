@@ -38,13 +38,13 @@ struct ModelFitOptions {
 };
 
 struct EffectEstimate {
-  Effect effect;           ///< resolved, with coefficients
+  Effect effect;           ///< with coefficients
   std::vector<double> sd;  ///< standard errors; 0 where held, infinite where not fitted
   std::vector<std::string> not_fitted;  ///< why, one line per coefficient that is not
 };
 
 struct ModelFit {
-  Model model;  ///< with resolved effects and their coefficients
+  Model model;  ///< its effects with their coefficients
   std::vector<EffectEstimate> effects;
   std::vector<Recording> recordings;  ///< as fitted: delays taken out
   RecordingProblem problem;

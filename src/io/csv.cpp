@@ -3,11 +3,11 @@
 #include "io/csv.hpp"
 
 #include "geometry/index.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -211,10 +211,7 @@ std::string csv_field(std::string_view text) {
 }
 
 std::string csv_number(double value) {
-  if (std::isnan(value)) return "";
-  std::array<char, 32> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), result.ptr};
+  return std::isnan(value) ? "" : shortest_text(value);
 }
 
 }  // namespace trussmap

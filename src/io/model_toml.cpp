@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
-#include "trussmap/channel.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <cmath>
-#include <initializer_list>
-#include <string_view>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -63,6 +62,17 @@ class ModelReader {
  private:
   [[noreturn]] void fail(const toml::source_region& where, const std::string& what) const {
     throw InputError(file_, where.begin.line, what);
+  }
+
+  /// What `read` refuses is told with its place, and with the effect's name where one is given.
+  template <typename Read>
+  [[nodiscard]] auto told(const toml::node& node, const std::string& effect,
+                          const Read& read) const {
+    try {
+      return read();
+    } catch (const std::invalid_argument& error) {
+      fail(node.source(), (effect.empty() ? "" : "effect \"" + effect + "\": ") + error.what());
+    }
   }
 
   [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& name) const {
@@ -124,72 +134,82 @@ class ModelReader {
   }
 
   [[nodiscard]] Effect read_effect(const toml::table& table) const {
+    const Effect effect = spelt_out(table);
+    const std::size_t shapes = effect.shape.size();
+    const std::size_t coefficients = effect.coefficients.size();
+    const bool fits = effect.per_session ? coefficients % shapes == 0
+                                         : coefficients == 0 || coefficients == shapes;
+    if (!fits) {
+      fail(table.get("coefficients")->source(),
+           "effect \"" + effect.name + "\" has " + std::to_string(coefficients) +
+               " coefficients, expected " + std::to_string(shapes) + ", one per shape" +
+               (effect.per_session ? ", per session" : ""));
+    }
+    return effect;
+  }
+
+  /// The effect with the catalogue's channel and shapes where the file has none.
+  [[nodiscard]] Effect spelt_out(const toml::table& table) const {
+    const toml::node* named = table.get("name");
+    const std::string name = named == nullptr ? "" : text(*named, "name");
+    if (name.empty()) fail(table.source(), "an effect has no name, expected name = \"...\"");
+    const toml::node* channel = table.get("channel");
+    const toml::node* shape = table.get("shape");
     Effect effect;
+    std::vector<double> coefficients;
     for (const auto& [key, node] : table) {
-      if (key == "name") {
-        effect.name = text(node, "name");
-      } else if (key == "channel") {
-        effect.channel = text(node, "channel");
+      if (key == "channel") {
+        effect.channel = told(node, name, [&] { return channel_named(text(node, "channel")); });
       } else if (key == "shape") {
-        for (const toml::node& shape : list(node, "shape")) {
-          effect.shape.push_back(text(shape, "a shape"));
+        for (const toml::node& one : list(node, "shape")) {
+          effect.shape.push_back(read_shape(one, name));
         }
       } else if (key == "coefficients") {
         for (const toml::node& value : list(node, "coefficients")) {
-          effect.coefficients.push_back(number(value, "a coefficient"));
+          coefficients.push_back(number(value, "a coefficient"));
         }
       } else if (key == "per") {
         if (text(node, "per") != "session") {
           fail(node.source(), "per is \"" + text(node, "per") + "\", expected \"session\"");
         }
         effect.per_session = true;
-      } else {
+      } else if (key != "name") {
         fail(key.source(), "key \"" + std::string(key.str()) +
                                "\" in [[effect]] is unknown, expected name, channel, shape, "
                                "coefficients or per");
       }
     }
-    check(effect, table);
+    if ((channel == nullptr) != (shape == nullptr)) {
+      fail(table.source(),
+           "effect \"" + name + "\" has a " +
+               (shape == nullptr ? "channel but no shape" : "shape but no channel") +
+               ", expected both or neither");
+    }
+    if (shape == nullptr) {
+      const Effect known = told(table, "", [&] { return catalogue_effect(name); });
+      effect.channel = known.channel;
+      effect.shape = known.shape;
+    } else if (effect.shape.empty()) {
+      fail(shape->source(), "effect \"" + name + "\" has no shape, expected one or more");
+    }
+    effect.name = name;
+    effect.coefficients = std::move(coefficients);
     // What can still be wrong with it is most likely its formula.
-    const toml::node* shape = table.get("shape");
     effect.line = static_cast<int>((shape != nullptr ? *shape : table).source().begin.line);
     return effect;
+  }
+
+  [[nodiscard]] Shape read_shape(const toml::node& node, const std::string& effect) const {
+    const std::string expression = text(node, "a shape");
+    if (expression.find_first_not_of(" \t") == std::string::npos) {
+      fail(node.source(), "effect \"" + effect + "\" has an empty shape, expected an expression");
+    }
+    return told(node, effect, [&] { return Shape(expression); });
   }
 
   [[nodiscard]] const toml::array& list(const toml::node& node, const std::string& name) const {
     if (!node.is_array()) fail(node.source(), name + " is no list, expected [ ... ]");
     return *node.as_array();
-  }
-
-  void check(const Effect& effect, const toml::table& table) const {
-    if (effect.name.empty()) fail(table.source(), "an effect has no name, expected name = \"...\"");
-    if (effect.channel.empty() != effect.shape.empty()) {
-      fail(table.source(),
-           "effect \"" + effect.name + "\" has a " +
-               (effect.shape.empty() ? "channel but no shape" : "shape but no channel") +
-               ", expected both or neither");
-    }
-    if (!effect.channel.empty() && !parse_channel(effect.channel)) {
-      fail(table.get("channel")->source(),
-           "effect \"" + effect.name + "\" has channel \"" + effect.channel +
-               "\", which is unknown, expected one of " + channel_names());
-    }
-    for (const std::string& shape : effect.shape) {
-      if (shape.find_first_not_of(" \t") == std::string::npos) {
-        fail(table.source(),
-             "effect \"" + effect.name + "\" has an empty shape, expected an expression");
-      }
-    }
-    const std::size_t shapes = effect.shape.size();
-    const std::size_t coefficients = effect.coefficients.size();
-    const bool fits = effect.per_session ? shapes == 0 || coefficients % shapes == 0
-                                         : coefficients == 0 || coefficients == shapes;
-    if (shapes > 0 && !fits) {
-      fail(table.get("coefficients")->source(),
-           "effect \"" + effect.name + "\" has " + std::to_string(coefficients) +
-               " coefficients, expected " + std::to_string(shapes) + ", one per shape" +
-               (effect.per_session ? ", per session" : ""));
-    }
   }
 
   std::string file_;
@@ -238,13 +258,11 @@ std::string format_model(const Model& model) {
   }
   for (const Effect& effect : model.effects) {
     text += "\n[[effect]]\nname = " + quoted(effect.name) + "\n";
-    if (!effect.channel.empty()) {
-      text += "channel = " + quoted(effect.channel) + "\nshape = [";
-      for (std::size_t k = 0; k < effect.shape.size(); ++k) {
-        text += (k == 0 ? "" : ", ") + quoted(effect.shape[k]);
-      }
-      text += "]\n";
+    text += "channel = " + quoted(std::string(name_of(effect.channel))) + "\nshape = [";
+    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+      text += (k == 0 ? "" : ", ") + quoted(effect.shape[k].text());
     }
+    text += "]\n";
     if (!effect.coefficients.empty()) {
       text += "coefficients = [";
       for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
+#include "recording/row_variables.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -22,13 +23,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// clang-format off
-constexpr std::string_view kReserved[] = {
-    "speed", "turn_rate", "acceleration", "heading", "x", "y", "t", "distance", "session",
-    "starts", "spins", "reverses_left", "reverses_right",
-    "left", "right",
-    "sin", "cos", "tan", "abs", "sign", "min", "max", "exp", "log", "sqrt"};
-// clang-format on
+/// What a covariate may not be called, besides the variables that every recording has: columns and
+/// functions.
+constexpr std::string_view kTaken[] = {"left", "right", "sin", "cos", "tan", "abs",
+                                       "sign", "min",   "max", "exp", "log", "sqrt"};
+
+bool is_reserved(std::string_view name) {
+  const std::vector<std::string>& variables = reserved_variables();
+  return std::find(variables.begin(), variables.end(), name) != variables.end() ||
+         std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
+}
 
 bool is_name(std::string_view text) {
   const auto word = [](char c) {
@@ -84,7 +88,7 @@ Drive read_drive(const fs::path& file) {
       csv.fail("column \"" + name +
                "\" cannot be a covariate, expected a letter, then letters, digits or _");
     }
-    if (std::find(std::begin(kReserved), std::end(kReserved), name) != std::end(kReserved)) {
+    if (is_reserved(name)) {
       csv.fail("column \"" + name + "\" is a reserved name, expected another for a covariate");
     }
     drive.covariates.push_back({name, {}});

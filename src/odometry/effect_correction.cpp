@@ -3,7 +3,7 @@
 #include "odometry/effect_correction.hpp"
 
 #include "effects/corrected_recording.hpp"
-#include "trussmap/catalogue.hpp"
+#include "recording/row_variables.hpp"
 
 namespace trussmap {
 namespace {
@@ -34,8 +34,6 @@ std::vector<Pose> row_path(const Drive& drive, const Model& model) {
 
 std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
                                        const Model& model) {
-  Model spelt_out = model;
-  for (Effect& effect : spelt_out.effects) effect = resolved(effect);
   std::vector<Recording> result;
   for (const Recording& recording : recordings) {
     const int session = static_cast<int>(result.size());
@@ -43,7 +41,7 @@ std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
     for (int pass = 0; pass < 2; ++pass) {
       const std::vector<Pose> path = row_path(corrected.drive, model);
       corrected =
-          corrected_recording(recording, spelt_out,
+          corrected_recording(recording, model,
                               row_variables(recording.drive, model.robot.wheelbase,
                                             start_pose(corrected.drive, model), path, session),
                               session);

@@ -94,25 +94,44 @@ std::string variable_in_words(const std::string& variable) {
                                   : variable;
 }
 
-std::string channel_in_words(const std::string& channel) {
-  if (channel == "travel") return "travel, measured too short by";
-  if (channel == "wheels") return "both wheels, measured too short by";
-  if (channel == "left") return "left wheel, measured too short by";
-  if (channel == "right") return "right wheel, measured too short by";
-  if (channel == "creep") return "slip to the left, of the travel";
-  if (channel == "turn") return "turning, measured too little by";
-  if (channel == "difference") return "right wheel against left";
-  if (channel == "drift") return "turning, missing per second";
-  if (channel == "compass") return "compass reads too much by";
-  if (channel == "range") return "ranges too long by";
-  if (channel == "range_scale") return "ranges too long by";
-  if (channel == "bearing") return "bearings too large by";
-  if (channel == "lever") return "sensor ahead by";
-  if (channel == "lever_left") return "sensor to the left by";
-  if (channel == "advance") return "travel, missing per event";
-  if (channel == "rotate") return "turning, missing per event";
-  if (channel == "delay") return "sightings stamped late by";
-  return channel;
+std::string channel_in_words(Channel channel) {
+  switch (channel) {
+    case Channel::travel:
+      return "travel, measured too short by";
+    case Channel::wheels:
+      return "both wheels, measured too short by";
+    case Channel::left:
+      return "left wheel, measured too short by";
+    case Channel::right:
+      return "right wheel, measured too short by";
+    case Channel::creep:
+      return "slip to the left, of the travel";
+    case Channel::turn:
+      return "turning, measured too little by";
+    case Channel::difference:
+      return "right wheel against left";
+    case Channel::drift:
+      return "turning, missing per second";
+    case Channel::compass:
+      return "compass reads too much by";
+    case Channel::range:
+      return "ranges too long by";
+    case Channel::range_scale:
+      return "ranges too long by";
+    case Channel::bearing:
+      return "bearings too large by";
+    case Channel::lever:
+      return "sensor ahead by";
+    case Channel::lever_left:
+      return "sensor to the left by";
+    case Channel::advance:
+      return "travel, missing per event";
+    case Channel::rotate:
+      return "turning, missing per event";
+    case Channel::delay:
+      return "sightings stamped late by";
+  }
+  return "";
 }
 
 Chart response_chart(const std::string& id, const std::string& title, const std::string& caption,

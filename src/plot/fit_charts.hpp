@@ -36,7 +36,7 @@ struct ShownUnit {
 /// "turn rate" for turn_rate, and so on.
 [[nodiscard]] std::string variable_in_words(const std::string& variable);
 /// What a channel's error is called: "turning", "compass reading" ...
-[[nodiscard]] std::string channel_in_words(const std::string& channel);
+[[nodiscard]] std::string channel_in_words(Channel channel);
 
 /// The strongest bars are drawn one by one (the others as one faint net). `loudest` is the force
 /// that has the strongest colour.

@@ -3,6 +3,7 @@
 #include "recording/row_variables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -13,9 +14,9 @@ constexpr double kStandingSpeed = 0.005;  // m/s, of the faster wheel
 constexpr double kSpinShare = 0.2;        // of the wheels' speed that the middle may have in a spin
 constexpr double kWindow = 1.0;           // s
 
-double duration_of(const Drive& drive, std::size_t row) {
-  return drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
-}
+constexpr std::array<std::string_view, 3> kRates{"speed", "turn_rate", "acceleration"};
+constexpr std::array<std::string_view, 4> kEvents{"starts", "spins", "reverses_left",
+                                                  "reverses_right"};
 
 /// First and one past the last row of the same kind within half a window of the row's middle.
 struct Span {
@@ -26,7 +27,7 @@ struct Span {
 std::vector<Span> windows(const Drive& drive, const std::vector<MotionKind>& kinds) {
   std::vector<Span> spans(drive.rows());
   const auto middle = [&drive](std::size_t row) {
-    return drive.t[row] - 0.5 * duration_of(drive, row);
+    return drive.t[row] - 0.5 * drive.duration(row);
   };
   std::size_t first = 0;
   std::size_t end = 0;
@@ -100,7 +101,7 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
     const double left = drive.left[row];
     const double right = drive.right[row];
     const double fastest = std::max(std::abs(left), std::abs(right));
-    if (fastest < kStandingSpeed * duration_of(drive, row)) {
+    if (fastest < kStandingSpeed * drive.duration(row)) {
       kinds.push_back(MotionKind::standing);
     } else if (std::abs(left + right) < kSpinShare * std::abs(right - left)) {
       kinds.push_back(MotionKind::spinning);
@@ -112,10 +113,21 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
 }
 
 const std::vector<std::string>& reserved_variables() {
-  static const std::vector<std::string> names{
-      "speed",  "turn_rate", "acceleration",  "heading",       "x", "y", "t", "distance", "session",
-      "starts", "spins",     "reverses_left", "reverses_right"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all(kRates.begin(), kRates.end());
+    all.insert(all.end(), {"heading", "x", "y", "t", "distance", "session"});
+    all.insert(all.end(), kEvents.begin(), kEvents.end());
+    return all;
+  }();
   return names;
+}
+
+bool is_event(std::string_view variable) {
+  return std::find(kEvents.begin(), kEvents.end(), variable) != kEvents.end();
+}
+
+bool is_rate(std::string_view variable) {
+  return std::find(kRates.begin(), kRates.end(), variable) != kRates.end();
 }
 
 std::size_t row_at(const Drive& drive, double t) {
@@ -139,7 +151,7 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
   for (std::size_t row = 0; row < rows; ++row) {
     travel[row] = 0.5 * (drive.left[row] + drive.right[row]);
     turn[row] = (drive.right[row] - drive.left[row]) / wheelbase;
-    t.push_back(drive.t[row] - 0.5 * duration_of(drive, row) - drive.start());
+    t.push_back(drive.t[row] - 0.5 * drive.duration(row) - drive.start());
     distance.push_back(driven + 0.5 * std::abs(travel[row]));
     driven += std::abs(travel[row]);
   }
@@ -187,7 +199,7 @@ RowVariables instant_variables(const Drive& drive, double wheelbase,
   for (const auto& [name, values] : by_row) {
     std::vector<double>& here = variables[name];
     here.reserve(rows.size());
-    const bool rate = name == "speed" || name == "turn_rate" || name == "acceleration";
+    const bool rate = is_rate(name);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const std::size_t row = rows[k];
       const bool meets_next =
@@ -204,7 +216,7 @@ RowVariables instant_variables(const Drive& drive, double wheelbase,
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::size_t row = rows[k];
     const double length = 0.5 * std::abs(drive.left[row] + drive.right[row]);
-    const double share = 1.0 - (drive.t[row] - instants[k]) / duration_of(drive, row);
+    const double share = 1.0 - (drive.t[row] - instants[k]) / drive.duration(row);
     t[k] = instants[k] - drive.start();
     distance[k] = middle[row] + (share - 0.5) * length;
     heading.push_back(poses[k].heading);

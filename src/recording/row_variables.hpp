@@ -17,11 +17,9 @@
 // explain.
 #pragma once
 
-#include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,11 +31,12 @@ enum class MotionKind { standing, spinning, driving };
 /// Kind of motion of each row.
 [[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
 
-/// A column of numbers, one per row, per variable.
-using RowVariables = std::map<std::string, std::vector<double>, std::less<>>;
-
 /// Names that a covariate may not have, and a shape may always use.
 [[nodiscard]] const std::vector<std::string>& reserved_variables();
+/// starts, spins, reverses_left, reverses_right.
+[[nodiscard]] bool is_event(std::string_view variable);
+/// speed, turn_rate, acceleration: smoothed within one kind of motion.
+[[nodiscard]] bool is_rate(std::string_view variable);
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
 /// is not the drive's.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/diagnosis_tables.hpp"
 
-#include "effects/shape.hpp"
+#include "effects/channel_physics.hpp"
 #include "plot/fit_charts.hpp"
 #include "report/fit_sections.hpp"
 #include "trussmap/catalogue.hpp"
@@ -33,28 +33,31 @@ const char* name_of(EffectPart part) {
 }
 
 bool speaks_of(const Effect& effect, std::initializer_list<const char*> names) {
-  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const std::string& shape) {
-    const std::vector<std::string> in = variables_of(shape);
-    return std::any_of(names.begin(), names.end(), [&](const char* name) {
-      return std::find(in.begin(), in.end(), name) != in.end();
-    });
+  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const Shape& shape) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const char* name) { return shape.speaks_of(name); });
   });
 }
 
 EffectPart part_of(const Effect& effect) {
-  const std::string& channel = effect.channel;
-  if (channel == "compass") return EffectPart::compass;
-  if (channel == "lever" || channel == "lever_left" || channel == "range" ||
-      channel == "range_scale" || channel == "bearing" || channel == "delay") {
-    return EffectPart::sighting;
+  switch (acts_on(effect.channel)) {
+    case ActsOn::readings:
+      return EffectPart::compass;
+    case ActsOn::views:
+      return EffectPart::sighting;
+    case ActsOn::drives:
+      break;
   }
-  if (channel == "creep" || speaks_of(effect, {"x", "y", "heading"})) return EffectPart::floor;
-  return channel == "turn" || channel == "drift" || channel == "rotate" ? EffectPart::turning
-                                                                        : EffectPart::wheels;
+  if (effect.channel == Channel::creep || speaks_of(effect, {"x", "y", "heading"})) {
+    return EffectPart::floor;
+  }
+  const bool turns = effect.channel == Channel::turn || effect.channel == Channel::drift ||
+                     effect.channel == Channel::rotate;
+  return turns ? EffectPart::turning : EffectPart::wheels;
 }
 
 std::string unit_of(const Effect& effect) {
-  return std::string(facts_of(parse_channel(effect.channel).value()).unit);
+  return std::string(facts_of(effect.channel).unit);
 }
 
 std::string what_it_would_be(const Effect& effect, const ShapeContext& context) {

@@ -3,6 +3,7 @@
 #include "report/discovery_page.hpp"
 
 #include "plot/fit_charts.hpp"
+#include "recording/slow_covariates.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
 #include "trussmap/table.hpp"
@@ -134,10 +135,11 @@ std::vector<PageAnswer> found_answers(const Discovery& discovery, const Discover
   for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
     answers.push_back({kWhatElse, rivals_note(pictures.effects[k].estimate.effect, rivals[k])});
   }
+  const std::vector<std::string> slow = slow_covariates(discovery.fit.recordings);
   for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
     const Effect& effect = pictures.effects[k].estimate.effect;
     for (const LookAlike& rival : rivals[k]) {
-      const std::string drive = separating_drive(effect, rival.effect);
+      const std::string drive = separating_drive(effect, rival.effect, slow);
       if (drive.empty()) continue;
       answers.push_back(
           {kNext, fmt::format("To tell {} from its rivals, {}.", short_name(effect), drive)});

@@ -35,8 +35,9 @@ PageTable effect_table(const std::vector<FittedEffect>& effects) {
     const Effect& effect = one.estimate.effect;
     for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
-      table.rows.push_back({k == 0 ? name_in_words(effect) : "", effect.channel,
-                            effect.shape[k % effect.shape.size()], text.value, text.error});
+      table.rows.push_back({k == 0 ? name_in_words(effect) : "",
+                            std::string(name_of(effect.channel)),
+                            effect.shape[k % effect.shape.size()].text(), text.value, text.error});
     }
   }
   return table;
@@ -63,7 +64,7 @@ Chart strength_chart(const std::vector<FittedEffect>& effects) {
       const Effect& effect = one.estimate.effect;
       const double strength = effect.coefficients[k] / sd;
       layer.columns[0].texts.push_back(name_in_words(effect) + " \u00d7 " +
-                                       effect.shape[k % effect.shape.size()]);
+                                       effect.shape[k % effect.shape.size()].text());
       const double numbers[] = {strength, strength - kNormal95, strength + kNormal95,
                                 effect.coefficients[k], sd};
       for (std::size_t i = 0; i < 5; ++i) layer.columns[i + 1].numbers.push_back(numbers[i]);

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/effect_gains.hpp"
 
-#include "effects/shape.hpp"
 #include "geometry/index.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -19,17 +17,6 @@ namespace {
 
 constexpr int kMostPasses = 60;
 constexpr double kSettled = 1e-14;
-
-Channel channel_of(const Effect& effect) {
-  const std::optional<Channel> channel = parse_channel(effect.channel);
-  if (!channel) {
-    throw std::invalid_argument(
-        fmt::format("has channel \"{}\", which is unknown, expected one "
-                    "of {}",
-                    effect.channel, channel_names()));
-  }
-  return *channel;
-}
 
 bool is_reading(Channel channel) {
   return channel == Channel::compass || channel == Channel::range ||
@@ -95,17 +82,16 @@ ChannelGains channel_gains(const std::vector<Effect>& effects, const MotionVaria
   ChannelGains gains;
   for (const Effect& effect : effects) {
     try {
-      const Channel channel = channel_of(effect);
-      const RowVariables& table = is_reading(channel) ? variables.instant : variables.middle;
+      const RowVariables& table = is_reading(effect.channel) ? variables.instant : variables.middle;
       const std::size_t rows = table.at("t").size();
-      std::vector<double>& g = gains.try_emplace(channel, rows, 0.0).first->second;
+      std::vector<double>& g = gains.try_emplace(effect.channel, rows, 0.0).first->second;
       if (effect.coefficients.empty()) continue;
       if (effect.coefficients.size() != effect.shape.size()) {
         throw std::invalid_argument(fmt::format("has {} coefficients, expected {}, one per shape",
                                                 effect.coefficients.size(), effect.shape.size()));
       }
       for (std::size_t k = 0; k < effect.shape.size(); ++k) {
-        const std::vector<double> f = evaluate_shape(effect.shape[k], table);
+        const std::vector<double> f = effect.shape[k].values(table);
         for (std::size_t row = 0; row < rows; ++row) g[row] += effect.coefficients[k] * f[row];
       }
     } catch (const std::invalid_argument& error) {

@@ -31,8 +31,8 @@ namespace trussmap {
 using ChannelGains = std::map<Channel, std::vector<double>>;
 
 /// Sums of coefficient x shape, on the middles of the rows or, for compass, range and bearing, at
-/// their ends. Effects need channel and shape; without coefficients they count as 0. Throws
-/// std::invalid_argument, naming the effect.
+/// their ends. Effects without coefficients count as 0. Throws std::invalid_argument, naming the
+/// effect.
 [[nodiscard]] ChannelGains channel_gains(const std::vector<Effect>& effects,
                                          const MotionVariables& variables);
 

@@ -97,37 +97,38 @@ class Draw {
   /// Two that cannot be told apart, or whose parts cannot, make no fair riddle.
   static bool fits(const Effect& effect, const std::vector<Effect>& drawn) {
     const auto kind = [](const Effect& one) {
-      return one.channel == "creep" ? std::string("compass") : one.channel;
+      return one.channel == Channel::creep ? Channel::compass : one.channel;
     };
     return std::none_of(drawn.begin(), drawn.end(),
                         [&](const Effect& other) { return kind(other) == kind(effect); });
   }
 
-  std::string full_name(const CatalogueEntry& entry) {
+  /// The entry's effect, what is open in it drawn.
+  Effect closed(const CatalogueEntry& entry) {
     if (entry.of_covariate()) {
-      if (entry.channel == Channel::compass) return name_of(entry, "lights");
-      if (entry.also_of.empty()) return name_of(entry, "payload_kg");
+      if (entry.channel == Channel::compass) return catalogue_effect(entry, "lights");
+      if (entry.also_of.empty()) return catalogue_effect(entry, "payload_kg");
       std::vector<std::string_view> names = entry.also_of;
       names.emplace_back("temperature_C");
-      return name_of(entry, one_of(names));
+      return catalogue_effect(entry, one_of(names));
     }
-    if (!entry.has_parameters()) return std::string(entry.name);
-    std::vector<double> values;
+    if (!entry.has_parameters()) return catalogue_effect(entry);
+    std::vector<ShapeParameter> parameters;
     const Vector2 place = one_of(mesh_.positions);
     const double reach = shortest_route(mesh_);
-    for (const ShapeParameter& one : entry.parameters) {
+    for (const OpenParameter& one : entry.parameters) {
       double value = uniform(0.8 * one.usual, 1.2 * one.usual);
       if (one.name == "x") value = place.x() + uniform(-0.3, 0.3) * reach;
       if (one.name == "y") value = place.y() + uniform(-0.3, 0.3) * reach;
       if (one.name == "r") value = std::clamp(uniform(0.5, 0.9) * reach, one.smallest, one.largest);
-      values.push_back(std::round(10.0 * value) / 10.0);
+      parameters.push_back({std::string(one.name), std::round(10.0 * value) / 10.0});
     }
-    return name_of(entry, values);
+    return catalogue_effect(entry, parameters);
   }
 
   std::optional<Effect> draw(const CatalogueEntry& entry) {
     if (!can_be_shown(entry)) return std::nullopt;
-    Effect effect = resolved({full_name(entry), "", {}, {}, false});
+    Effect effect = closed(entry);
     const double angle = uniform(0.0, 2.0 * std::numbers::pi);
     const double legs = std::max(1.0, static_cast<double>(motion_.stops.size()) - 1.0);
     const double size = entry.detectable * uniform(kLeastFactor, kLargestFactor) *

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The variables that shapes speak of, as a true motion has them. The names are those of
-// effects/row_variables.hpp; how they are found is the simulator's own.
+// recording/row_variables.hpp; how they are found is the simulator's own.
 //
 //   middle   at the middle of each row, for all that acts on the motion
 //   instant  heading, x, y, t, distance at the end of each row, for readings taken then; the rest
@@ -16,8 +16,8 @@
 // makes its wheel look as if it had turned round: there, recorded events differ from true ones.
 #pragma once
 
-#include "recording/row_variables.hpp"
 #include "simulation/true_motion.hpp"
+#include "trussmap/recording.hpp"
 
 #include <vector>
 

@@ -185,7 +185,7 @@ SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
   DrivingStyle patient = style;
   double latest = 0.0;
   for (const Effect& effect : effects.effects) {
-    if (effect.channel != facts_of(Channel::delay).name) continue;
+    if (effect.channel != Channel::delay) continue;
     for (const double coefficient : effect.coefficients) latest += std::abs(coefficient);
   }
   if (latest > 0.0) {

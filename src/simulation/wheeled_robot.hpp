@@ -61,7 +61,7 @@ struct SimulatedDrive {
 /// Every landmark's position as surveyed with this standard deviation [m per coordinate].
 [[nodiscard]] std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed);
 
-/// Physical effects on a simulated drive; each with channel, shape and coefficients.
+/// Physical effects on a simulated drive; each with coefficients.
 struct SimulatedEffects {
   std::vector<Effect> effects;
   Rates rates = Rates::as_recorded;

@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "wording/effect_words.hpp"
 
-#include "effects/shape.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/channel.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -106,10 +104,11 @@ std::string sentence(Channel channel, double value, double sd) {
                      value < 0.0 ? phrase.less : phrase.more);
 }
 
-bool is_wave(const Effect& effect) {
-  return effect.shape.size() == 2 && effect.shape[0].starts_with("sin(") &&
-         effect.shape[1].starts_with("cos(") &&
-         effect.shape[0].substr(4) == effect.shape[1].substr(4);
+/// "heading" of sin(heading), cos(heading): what a wave of two shapes goes round with.
+std::optional<std::string> round_of(const Effect& effect) {
+  if (effect.shape.size() != 2) return std::nullopt;
+  std::optional<std::string> sine = effect.shape[0].argument_of("sin");
+  return sine && sine == effect.shape[1].argument_of("cos") ? sine : std::nullopt;
 }
 
 /// What a channel's error is called in a name.
@@ -169,17 +168,6 @@ std::string variables_in_words(const std::string& text) {
   return result;
 }
 
-/// The number after `before` in a shape: "(x-12.1)", "(x-(-3))".
-std::optional<double> number_after(const std::string& shape, const std::string& before) {
-  std::size_t at = shape.find(before);
-  if (at == std::string::npos) return std::nullopt;
-  at += before.size();
-  if (at < shape.size() && shape[at] == '(') ++at;
-  double value = 0.0;
-  const auto read = std::from_chars(shape.data() + at, shape.data() + shape.size(), value);
-  return read.ec == std::errc{} ? std::optional(value) : std::nullopt;
-}
-
 std::string place_text(const Vector2& place) {
   return fmt::format("x {:.1f} m, y {:.1f} m", place.x(), place.y());
 }
@@ -210,7 +198,7 @@ std::string either_way(const std::string& one, const std::string& other) {
 }
 
 /// What an event is, by the shape that counts it.
-std::string event_of(const std::string& shape) {
+std::string event_of(const Shape& shape) {
   if (shape == "starts") return "each start";
   if (shape == "spins") return "each turn on the spot";
   if (shape == "reverses_left") return "each change of direction of the left wheel";
@@ -219,7 +207,7 @@ std::string event_of(const std::string& shape) {
 }
 
 /// " per m/s": what a coefficient's size is the size of, by its shape.
-std::string per_shape(const std::string& shape) {
+std::string per_shape(const Shape& shape) {
   if (shape == "1") return "";
   if (shape == "speed") return " per m/s";
   if (shape == "turn_rate") return " per rad/s turned to the left";
@@ -230,22 +218,27 @@ std::string per_shape(const std::string& shape) {
   if (shape == "acceleration") return " per m/s^2";
   if (shape == "distance") return " per m driven";
   if (shape == "t") return " per s";
-  return " per unit of " + shape;
+  return " per unit of " + shape.text();
 }
 
 /// "each event turns ..." with the event named, where the shape is one.
-std::string with_event_named(std::string sentence, const std::string& shape) {
+std::string with_event_named(std::string sentence, const Shape& shape) {
   constexpr std::string_view kEvent = "each event";
   if (sentence.starts_with(kEvent)) sentence.replace(0, kEvent.size(), event_of(shape));
   return sentence;
 }
 
-bool is_event(const std::string& shape) {
+bool counts_events(const Shape& shape) {
   return event_of(shape) != "each event";
 }
 
 bool is_plain_factor(const Effect& effect) {
-  return effect.shape == std::vector<std::string>{"1"} && !effect.per_session;
+  return effect.is_constant() && !effect.per_session;
+}
+
+/// The speed above which an effect acts, m/s.
+std::optional<double> threshold_of(const Effect& effect) {
+  return effect.shape.size() == 1 ? effect.shape.front().parameter("speed") : std::nullopt;
 }
 
 }  // namespace
@@ -256,15 +249,10 @@ std::string two_digits(double value) {
 
 std::optional<Vector2> place_of(const Effect& effect) {
   if (effect.shape.size() != 1 || effect.per_session) return std::nullopt;
-  const std::string& shape = effect.shape.front();
-  const std::vector<std::string> names = variables_of(shape);
-  if (names.size() != 2 || !std::all_of(names.begin(), names.end(), [](const std::string& name) {
-        return name == "x" || name == "y";
-      })) {
-    return std::nullopt;
-  }
-  const std::optional<double> x = number_after(shape, "(x-");
-  const std::optional<double> y = number_after(shape, "(y-");
+  const Shape& shape = effect.shape.front();
+  if (shape.variables() != std::vector<std::string>{"x", "y"}) return std::nullopt;
+  const std::optional<double> x = shape.parameter("x");
+  const std::optional<double> y = shape.parameter("y");
   return x && y ? std::optional(Vector2(*x, *y)) : std::nullopt;
 }
 
@@ -282,44 +270,41 @@ std::string name_in_words(const Effect& effect) {
     if (entry->of_covariate() && !rest.empty()) {
       return fmt::format("{} with {}", entry->name, variables_in_words(rest));
     }
-    if (const std::optional<double> v0 = number_after(rest, "v0=")) {
+    if (const std::optional<double> v0 = threshold_of(effect); v0 && entry->has_parameters()) {
       return fmt::format("{} above {} m/s", entry->name, two_digits(*v0));
     }
-    const std::optional<double> x = number_after(rest, "x=");
-    const std::optional<double> y = number_after(rest, "y=");
-    const std::optional<double> r = number_after(rest, "r=");
-    if (x && y && r) {
-      return fmt::format("{} at {}, radius {} m", entry->name, place_text({*x, *y}),
-                         two_digits(*r));
+    const std::optional<Vector2> place = place_of(effect);
+    const std::optional<double> r = place ? effect.shape.front().parameter("r") : std::nullopt;
+    if (r && entry->has_parameters()) {
+      return fmt::format("{} at {}, radius {} m", entry->name, place_text(*place), two_digits(*r));
     }
     return name;
   }
-  const std::optional<Channel> channel = parse_channel(effect.channel);
-  if (!channel || !name.starts_with(effect.channel + " ")) return name;
-  const std::string rest = name.substr(effect.channel.size());
+  const std::string_view channel = name_of(effect.channel);
+  if (!name.starts_with(std::string(channel) + " ")) return name;
+  const std::string rest = name.substr(channel.size());
   const std::optional<Vector2> place = place_of(effect);
   if ((rest == " at a place" || rest == " within a circle") && place) {
-    return fmt::format("{} at {}", noun_of(*channel), place_text(*place));
+    return fmt::format("{} at {}", noun_of(effect.channel), place_text(*place));
   }
   if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
-  return noun_of(*channel) + variables_in_words(rest);
+  return noun_of(effect.channel) + variables_in_words(rest);
 }
 
 std::string size_in_words(const Effect& effect, double least, double most) {
-  const std::optional<Channel> channel = parse_channel(effect.channel);
-  if (!channel) return "";
+  const Channel channel = effect.channel;
   const double extreme = std::abs(least) > std::abs(most) ? least : most;
   const double other = extreme == least ? most : least;
   const bool both = extreme * other < 0.0 && std::abs(other) > 0.3 * std::abs(extreme);
-  if (is_plain_factor(effect) && *channel == Channel::turn) {
+  if (is_plain_factor(effect) && channel == Channel::turn) {
     const double larger = 1.0 / (1.0 + extreme) - 1.0;
     return fmt::format("the wheelbase is {} % {} than nominal",
                        two_digits(100.0 * std::abs(larger)), larger < 0.0 ? "smaller" : "larger");
   }
-  const Scale scale = scale_of(*channel);
-  const Phrase phrase = phrase_of(*channel);
+  const Scale scale = scale_of(channel);
+  const Phrase phrase = phrase_of(channel);
   std::string subject = phrase.subject;
-  const bool event = *channel == Channel::advance || *channel == Channel::rotate;
+  const bool event = channel == Channel::advance || channel == Channel::rotate;
   if (effect.shape.size() == 1) {
     subject = with_event_named(std::move(subject), effect.shape.front());
   }
@@ -331,44 +316,43 @@ std::string size_in_words(const Effect& effect, double least, double most) {
 }
 
 std::string in_words(const Effect& effect, const std::vector<double>& sd) {
-  const std::optional<Channel> channel = parse_channel(effect.channel);
-  if (!channel || effect.coefficients.empty()) return effect.name + ": not fitted";
-  if (effect.shape.size() == 1 && effect.shape[0] == "1" && !effect.per_session) {
+  const Channel channel = effect.channel;
+  if (effect.coefficients.empty()) return effect.name + ": not fitted";
+  if (is_plain_factor(effect)) {
     const double value = effect.coefficients[0];
-    if (*channel == Channel::turn) {
+    if (channel == Channel::turn) {
       const double larger = 1.0 / (1.0 + value) - 1.0;
       return fmt::format("the wheelbase is {} {} than nominal",
                          with_error(100.0 * std::abs(larger), 100.0 * sd[0], " %"),
                          larger < 0.0 ? "smaller" : "larger");
     }
-    return sentence(*channel, value, sd[0]);
+    return sentence(channel, value, sd[0]);
   }
-  if (is_wave(effect) && !effect.per_session) {
+  if (const auto round = round_of(effect); round && !effect.per_session) {
     const double size = std::hypot(effect.coefficients[0], effect.coefficients[1]);
     const double error =
         size > 0.0
             ? std::hypot(effect.coefficients[0] * sd[0], effect.coefficients[1] * sd[1]) / size
             : 0.0;
-    const Scale scale = scale_of(*channel);
-    const Phrase phrase = phrase_of(*channel);
-    return fmt::format("{} up to {} {}, and as much the other way, as {} goes round",
-                       phrase.subject,
-                       with_error(scale.factor * size, scale.factor * error, scale.unit),
-                       phrase.more, effect.shape[0].substr(4, effect.shape[0].size() - 5));
+    const Scale scale = scale_of(channel);
+    const Phrase phrase = phrase_of(channel);
+    return fmt::format(
+        "{} up to {} {}, and as much the other way, as {} goes round", phrase.subject,
+        with_error(scale.factor * size, scale.factor * error, scale.unit), phrase.more, *round);
   }
   std::string text;
   const std::optional<Vector2> place = place_of(effect);
   for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
-    const std::string& shape = effect.shape[k % effect.shape.size()];
+    const Shape& shape = effect.shape[k % effect.shape.size()];
     text += text.empty() ? "" : "; ";
-    if (*channel == Channel::compass && shape == "turn_rate") {
+    if (channel == Channel::compass && shape == "turn_rate") {
       text += fmt::format("the compass is {} {}",
                           with_error(1e3 * std::abs(effect.coefficients[k]), 1e3 * sd[k], " ms"),
                           effect.coefficients[k] > 0.0 ? "early" : "late");
       continue;
     }
-    std::string one = sentence(*channel, effect.coefficients[k], sd[k]);
-    if (is_event(shape) && one.starts_with("each event")) {
+    std::string one = sentence(channel, effect.coefficients[k], sd[k]);
+    if (counts_events(shape) && one.starts_with("each event")) {
       one = with_event_named(std::move(one), shape);
     } else if (place) {
       one += " around " + place_text(*place);

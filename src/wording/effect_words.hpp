@@ -13,7 +13,7 @@
 
 namespace trussmap {
 
-/// "the wheelbase is 2.0 +- 0.1 % larger than nominal". `effect` is resolved and has coefficients;
+/// "the wheelbase is 2.0 +- 0.1 % larger than nominal". `effect` has coefficients;
 /// `sd` as many standard errors (0 or infinite: none is given).
 [[nodiscard]] std::string in_words(const Effect& effect, const std::vector<double>& sd);
 

@@ -1,33 +1,33 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
-#include "effects/shape.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
-bool has_variable(const Effect& effect, const std::string& name) {
-  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const std::string& shape) {
-    const std::vector<std::string> names = variables_of(shape);
-    return std::find(names.begin(), names.end(), name) != names.end();
-  });
+bool has_variable(const Effect& effect, std::string_view name) {
+  return std::any_of(effect.shape.begin(), effect.shape.end(),
+                     [name](const Shape& shape) { return shape.speaks_of(name); });
 }
 
 bool is_constant(const Effect& effect) {
-  return effect.shape.size() == 1 && variables_of(effect.shape.front()).empty();
+  return effect.shape.size() == 1 && effect.shape.front().variables().empty();
 }
 
 /// What kind of trace an effect leaves, as far as a drive can tell kinds apart.
 bool is_turn(const Effect& effect) {
-  return effect.channel == "turn" || effect.channel == "rotate";
+  return effect.channel == Channel::turn || effect.channel == Channel::rotate;
 }
 
 bool is_stretch(const Effect& effect) {
-  return effect.channel == "travel" || effect.channel == "wheels" || effect.channel == "advance";
+  return effect.channel == Channel::travel || effect.channel == Channel::wheels ||
+         effect.channel == Channel::advance;
 }
 
 struct Separation {
@@ -37,18 +37,18 @@ struct Separation {
 };
 
 const Separation kSeparations[] = {
-    {[](const Effect& e) { return e.channel == "compass" && is_constant(e); },
-     [](const Effect& e) { return e.channel == "creep"; },
+    {[](const Effect& e) { return e.channel == Channel::compass && is_constant(e); },
+     [](const Effect& e) { return e.channel == Channel::creep; },
      "no drive between landmarks tells these apart: measure the direction of travel against the "
      "body, or sight landmarks with a bearing sensor fixed to it"},
-    {[](const Effect& e) { return e.channel == "lever"; }, is_turn,
+    {[](const Effect& e) { return e.channel == Channel::lever; }, is_turn,
      "no drive that stands on landmarks tells these apart: measure where the sensor sits"},
-    {[](const Effect& e) { return e.channel == "compass"; },
-     [](const Effect& e) { return e.channel == "compass"; },
+    {[](const Effect& e) { return e.channel == Channel::compass; },
+     [](const Effect& e) { return e.channel == Channel::compass; },
      "turn on the spot with other loads and at other places, read the compass at rest, then with "
      "the wheels lifted and driven"},
-    {[](const Effect& e) { return e.channel == "compass"; },
-     [](const Effect& e) { return e.channel == "creep"; },
+    {[](const Effect& e) { return e.channel == Channel::compass; },
+     [](const Effect& e) { return e.channel == Channel::creep; },
      "turn on the spot by two full turns (only the compass shows there), and drive the same routes "
      "elsewhere or with the site turned"},
     {is_turn, is_turn,
@@ -56,27 +56,38 @@ const Separation kSeparations[] = {
      "shorter turns"},
     {is_stretch, is_stretch,
      "drive legs of clearly different length, each at two different speeds"},
-    {[](const Effect& e) { return e.channel == "difference"; }, is_turn,
+    {[](const Effect& e) { return e.channel == Channel::difference; }, is_turn,
      "drive squares in both directions"},
-    {[](const Effect& e) { return e.channel == "difference"; },
-     [](const Effect& e) { return e.channel == "drift"; },
+    {[](const Effect& e) { return e.channel == Channel::difference; },
+     [](const Effect& e) { return e.channel == Channel::drift; },
      "let the robot stand for a minute, several times"},
-    {is_turn, [](const Effect& e) { return e.channel == "compass"; },
+    {is_turn, [](const Effect& e) { return e.channel == Channel::compass; },
      "turn on the spot by two full turns each way, at two clearly different rates"},
 };
 
+/// Where two effects go with different things that all vary slowly.
+std::optional<std::string> drive_of_slow(const Effect& one, const Effect& other,
+                                         const std::vector<std::string>& slow) {
+  const bool timed = has_variable(one, "t") || has_variable(one, "distance") ||
+                     has_variable(other, "t") || has_variable(other, "distance");
+  bool differ = has_variable(one, "t") != has_variable(other, "t") ||
+                has_variable(one, "distance") != has_variable(other, "distance");
+  std::string covariates;
+  for (const std::string& name : slow) {
+    if (has_variable(one, name) == has_variable(other, name)) continue;
+    covariates += (covariates.empty() ? "" : " and ") + name;
+    differ = true;
+  }
+  if (!timed || !differ) return std::nullopt;
+  return "stand for some minutes between tours, and drive fast and slow ones: time, distance and " +
+         (covariates.empty() ? "temperature" : covariates) + " then go apart";
+}
+
 }  // namespace
 
-std::string separating_drive(const Effect& one, const Effect& other) {
-  for (const char* const slow : {"temperature", "t", "distance"}) {
-    const bool first = has_variable(one, slow);
-    const bool second = has_variable(other, slow);
-    if (first != second && (has_variable(one, "t") || has_variable(one, "distance") ||
-                            has_variable(other, "t") || has_variable(other, "distance"))) {
-      return "stand for some minutes between tours, and drive fast and slow ones: time, distance "
-             "and temperature then go apart";
-    }
-  }
+std::string separating_drive(const Effect& one, const Effect& other,
+                             const std::vector<std::string>& slow) {
+  if (const std::optional<std::string> drive = drive_of_slow(one, other, slow)) return *drive;
   if (has_variable(one, "x") || has_variable(other, "x")) {
     return "visit the place again on other headings, at another time and with another load, and "
            "drive the same headings elsewhere";

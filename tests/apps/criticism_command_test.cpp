@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: MIT
 //
 // compare, add and fit as a user meets them.
+#include "json_file.hpp"
+#include "scratch_folder.hpp"
+#include "shared_data.hpp"
+
 #include <cmath>
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "json_file.hpp"
-#include "scratch_folder.hpp"
-#include "shared_data.hpp"
 
 namespace trussmap {
 namespace {
@@ -124,13 +124,13 @@ TEST(CriticismCommands, WrongEffectsAreNamedWithTheModelsLineAndWriteNothing) {
       {"division", "[[effect]]\nname = \"e\"\nchannel = \"turn\"\nshape = [\"1/starts\"]\n",
        ":7: effect \"e\": shape \"1/starts\" "},
       {"channel", "[[effect]]\nname = \"e\"\nchannel = \"spin\"\nshape = [\"1\"]\n",
-       ":6: effect \"e\" has channel \"spin\", which is unknown"},
+       ":6: effect \"e\": channel \"spin\" is unknown, expected one of travel"},
       {"catalogue", "[[effect]]\nname = \"ghosts\"\n",
        ":4: effect \"ghosts\" is not in the catalogue"}};
   for (const BadModel& one : cases) {
     const ScratchFolder scratch;
     const fs::path model = scratch.write("m.toml", robot + one.effect);
-    for (const char* command : {"fit", "compare"}) {
+    for (const char* command : {"fit", "compare", "build", "calibrate"}) {
       const bool fit = std::string(command) == "fit";
       const Ran ran = run_trussmap(std::string(command) + " " + kRiddleFolder + " --model " +
                                    model.string() + " --json " + (scratch.path() / "j").string() +
@@ -155,7 +155,7 @@ TEST(CriticismCommands, AddRefusesWhatItCannotAdd) {
   refused("ghosts", "\"ghosts\" is not in the catalogue");
   refused("mine --channel turn", "--channel and --shape go together");
   refused("mine --channel turn --shape \"sin(\"", "cannot be read");
-  refused("mine --channel round --shape 1", "which is unknown");
+  refused("mine --channel round --shape 1", "effect \"mine\": channel \"round\" is unknown");
   EXPECT_TRUE(scratch.contents().empty());
 }
 

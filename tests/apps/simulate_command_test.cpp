@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: MIT
 //
 // Effects in simulated recordings, from the command line: named, taken from a model, or hidden.
+#include "json_file.hpp"
+#include "scratch_folder.hpp"
+
 #include <algorithm>
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "json_file.hpp"
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {
@@ -151,7 +151,7 @@ TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
                         {"--effect 'travel scale=-1'", "leave no wheel travels"},
                         {"--effects " + at + "none.toml", "cannot be opened"},
                         {"--effects " + at + "fitless.toml", "has no coefficients"},
-                        {"--effects " + at + "channel.toml", "channel \"lift\", which is unknown"},
+                        {"--effects " + at + "channel.toml", "channel \"lift\" is unknown"},
                         {"--hide --effect wheelbase=0.1", "excludes"},
                         {"--covariate speed", "\"speed\", which is taken"},
                         {"--covariate 2b", "expected a letter"},

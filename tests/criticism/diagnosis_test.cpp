@@ -20,15 +20,15 @@ namespace {
 
 /// An answer that counts: a channel, and a word that the shape must contain ("1": a constant).
 struct Answer {
-  std::string channel;
+  Channel channel;
   std::string word;
 };
 
 bool is(const Effect& effect, const Answer& answer) {
   if (effect.channel != answer.channel) return false;
-  if (answer.word == "1") return effect.shape == std::vector<std::string>{"1"};
-  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const std::string& shape) {
-    return shape.find(answer.word) != std::string::npos;
+  if (answer.word == "1") return effect.is_constant();
+  return std::any_of(effect.shape.begin(), effect.shape.end(), [&](const Shape& shape) {
+    return shape.text().find(answer.word) != std::string::npos;
   });
 }
 
@@ -87,7 +87,7 @@ TEST_P(SlowHiddenEffect, IsDiscoveredAndNothingElse) {
   for (const std::vector<Answer>& answers : GetParam().effects) {
     EXPECT_TRUE(std::any_of(result.fit.model.effects.begin(), result.fit.model.effects.end(),
                             [&](const Effect& effect) { return is_any(effect, answers); }))
-        << answers.front().channel;
+        << name_of(answers.front().channel);
   }
   for (std::size_t k = 1; k < result.steps.size(); ++k) {
     // A second effect may show in the fit and yet change held-out ends by less than chance.
@@ -98,12 +98,13 @@ TEST_P(SlowHiddenEffect, IsDiscoveredAndNothingElse) {
 }
 
 const auto kPractice = ::testing::Values(
-    Hidden{"a", {{{"turn", "1"}}}}, Hidden{"b", {{{"compass", "heading"}}}},
-    Hidden{"c", {{{"wheels", "payload_kg"}, {"travel", "payload_kg"}}}},
-    Hidden{"d", {{{"wheels", "x-"}, {"travel", "x-"}}}}, Hidden{"e", {{{"creep", "heading"}}}},
-    Hidden{"f", {{{"turn", "sign(turn_rate)"}}, {{"compass", "lights"}}}},
-    Hidden{"g", {{{"turn", "abs(turn_rate)"}}}}, Hidden{"h", {}}, Hidden{"i", {}},
-    Hidden{"j", {{{"compass", "turn_rate"}}}});
+    Hidden{"a", {{{Channel::turn, "1"}}}}, Hidden{"b", {{{Channel::compass, "heading"}}}},
+    Hidden{"c", {{{Channel::wheels, "payload_kg"}, {Channel::travel, "payload_kg"}}}},
+    Hidden{"d", {{{Channel::wheels, "x-"}, {Channel::travel, "x-"}}}},
+    Hidden{"e", {{{Channel::creep, "heading"}}}},
+    Hidden{"f", {{{Channel::turn, "sign(turn_rate)"}}, {{Channel::compass, "lights"}}}},
+    Hidden{"g", {{{Channel::turn, "abs(turn_rate)"}}}}, Hidden{"h", {}}, Hidden{"i", {}},
+    Hidden{"j", {{{Channel::compass, "turn_rate"}}}});
 const auto kFolder = [](const auto& which) { return which.param.folder; };
 
 INSTANTIATE_TEST_SUITE_P(Diagnosis, HiddenEffect, kPractice, kFolder);
@@ -190,11 +191,13 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
   const testing::SimulatedRecording one = testing::simulate_recording({true, true, true}, 9);
   const ModelFit fit = fit_model({one.recording}, one.model);
   const HeldOutLegs legs({one.recording}, fit, {});
-  ASSERT_TRUE(legs.alike(fit.problem));
+  ASSERT_TRUE(legs.same_layout(fit.problem));
   const ScoreTest tests(fit);
-  for (const std::string channel : {"wheels", "turn", "compass", "bearing", "range"}) {
+  for (const Channel channel :
+       {Channel::wheels, Channel::turn, Channel::compass, Channel::bearing, Channel::range}) {
     Effect effect;
-    effect.name = effect.channel = channel;
+    effect.name = name_of(channel);
+    effect.channel = channel;
     effect.shape = {"1"};
     const Score score = tests.test({effect}).front();
     const HeldOut told = legs.moved(kSize * legs.slopes(score.columns, score.landmarks));
@@ -202,33 +205,33 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {
       double& left = changed.drive.left[row];
       double& right = changed.drive.right[row];
-      if (channel == "wheels") {
+      if (channel == Channel::wheels) {
         left *= 1.0 + kSize;
         right *= 1.0 + kSize;
-      } else if (channel == "turn") {
+      } else if (channel == Channel::turn) {
         const double more = 0.5 * kSize * (right - left);
         left -= more;
         right += more;
-      } else if (channel == "compass") {
+      } else if (channel == Channel::compass) {
         changed.drive.heading[row] -= kSize;
       }
     }
     for (Sighting& sighting : changed.sightings) {
       if (std::isnan(sighting.range)) continue;
-      if (channel == "bearing") sighting.bearing -= kSize;
-      if (channel == "range") sighting.range -= kSize;
+      if (channel == Channel::bearing) sighting.bearing -= kSize;
+      if (channel == Channel::range) sighting.range -= kSize;
     }
     const HeldOut realised =
         predict_held_out({changed}, fit_model({changed}, one.model), ModelFitOptions{});
     ASSERT_EQ(told.legs.size(), realised.legs.size());
-    const HeldOut before = legs.figures();
+    const HeldOut before = legs.metrics();
     double off = 0.0;
     double change = 0.0;
     for (std::size_t k = 0; k < told.legs.size(); ++k) {
       off += (told.legs[k].arrival_error - realised.legs[k].arrival_error).squaredNorm();
       change += (told.legs[k].arrival_error - before.legs[k].arrival_error).squaredNorm();
     }
-    EXPECT_LT(std::sqrt(off), 0.1 * std::sqrt(change)) << channel;
+    EXPECT_LT(std::sqrt(off), 0.1 * std::sqrt(change)) << name_of(channel);
   }
 }
 

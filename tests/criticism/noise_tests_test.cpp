@@ -125,7 +125,8 @@ TEST(NoiseTests, WhatIsSetAsideIsNoNoise) {
   const ModelFit fit = fit_model(world.recordings, world.model);
   const ScoreTest tests(fit);
   Effect wheelbase;
-  wheelbase.name = wheelbase.channel = "turn";
+  wheelbase.name = "turn";
+  wheelbase.channel = Channel::turn;
   wheelbase.shape = {"1"};
   const Score effect = tests.test({wheelbase}).front();
   const std::vector<NoiseTest> before = test_noise_laws(fit, tests);

@@ -15,7 +15,7 @@
 namespace trussmap {
 namespace {
 
-Effect effect(const std::string& channel, const std::vector<std::string>& shape,
+Effect effect(Channel channel, const std::vector<Shape>& shape,
               const std::vector<double>& coefficients = {}) {
   Effect one;
   one.name = "e";
@@ -36,7 +36,7 @@ struct Riddle {
 
 TEST(Response, FollowsTheEffectThatIsThere) {
   const Riddle riddle;
-  const Effect truth = effect("compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
+  const Effect truth = effect(Channel::compass, {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
   const Response found = response_along("heading", truth, riddle.fit, riddle.tests);
   ASSERT_GE(found.bins.size(), 4U);
   EXPECT_EQ(found.unit, "rad");
@@ -55,23 +55,24 @@ TEST(Response, FollowsTheEffectThatIsThere) {
 TEST(Response, IsNothingWhereTheModelHasTheEffect) {
   const Riddle riddle;
   Model model = riddle.fit.model;
-  model.effects = {effect("compass", {"sin(heading)", "cos(heading)"})};
+  model.effects = {effect(Channel::compass, {"sin(heading)", "cos(heading)"})};
   const ModelFit fit = fit_model(riddle.recordings, model);
   const ScoreTest tests(fit);
-  const Response left = response_along("heading", effect("compass", {"1"}), fit, tests);
+  const Response left = response_along("heading", effect(Channel::compass, {"1"}), fit, tests);
   for (const ResponseBin& bin : left.bins) EXPECT_NEAR(bin.estimate, 0.0, 4.0 * bin.sd) << bin.at;
 }
 
 TEST(Response, HasNoBinsWhereTheVariableIsNotThereOrNeverChanges) {
   const Riddle riddle;
-  EXPECT_TRUE(
-      response_along("ghosts", effect("turn", {"1"}), riddle.fit, riddle.tests).bins.empty());
-  EXPECT_TRUE(
-      response_along("session", effect("turn", {"1"}), riddle.fit, riddle.tests).bins.empty());
+  EXPECT_TRUE(response_along("ghosts", effect(Channel::turn, {"1"}), riddle.fit, riddle.tests)
+                  .bins.empty());
+  EXPECT_TRUE(response_along("session", effect(Channel::turn, {"1"}), riddle.fit, riddle.tests)
+                  .bins.empty());
 }
 
 TEST(Response, TheCurveIsTheFormula) {
-  const Effect hard_iron = effect("compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
+  const Effect hard_iron =
+      effect(Channel::compass, {"sin(heading)", "cos(heading)"}, {0.04, -0.03});
   const std::vector<Vector2> curve =
       effect_curve(hard_iron, "heading", 0.0, 2.0 * std::numbers::pi);
   ASSERT_FALSE(curve.empty());
@@ -81,17 +82,19 @@ TEST(Response, TheCurveIsTheFormula) {
   EXPECT_DOUBLE_EQ(curve.front().x(), 0.0);
   EXPECT_DOUBLE_EQ(curve.back().x(), 2.0 * std::numbers::pi);
   EXPECT_TRUE(effect_curve(hard_iron, "speed", 0.0, 1.0).empty());
-  for (const Vector2& p : effect_curve(effect("turn", {"1"}, {0.02}), "turn_rate", -1.0, 1.0)) {
+  for (const Vector2& p :
+       effect_curve(effect(Channel::turn, {"1"}, {0.02}), "turn_rate", -1.0, 1.0)) {
     EXPECT_DOUBLE_EQ(p.y(), 0.02);
   }
 }
 
 TEST(Response, AnEffectIsShownAgainstWhatItSpeaksOf) {
-  EXPECT_EQ(natural_variable(effect("compass", {"sin(heading)", "cos(heading)"})), "heading");
-  EXPECT_EQ(natural_variable(effect("wheels", {"payload_kg"})), "payload_kg");
-  EXPECT_EQ(natural_variable(effect("turn", {"1"})), "turn_rate");
-  EXPECT_EQ(natural_variable(effect("travel", {"1"})), "speed");
-  EXPECT_EQ(natural_variable(effect("travel", {"exp(-((x-1)^2+(y-2)^2))"})), "");
+  EXPECT_EQ(natural_variable(effect(Channel::compass, {"sin(heading)", "cos(heading)"})),
+            "heading");
+  EXPECT_EQ(natural_variable(effect(Channel::wheels, {"payload_kg"})), "payload_kg");
+  EXPECT_EQ(natural_variable(effect(Channel::turn, {"1"})), "turn_rate");
+  EXPECT_EQ(natural_variable(effect(Channel::travel, {"1"})), "speed");
+  EXPECT_EQ(natural_variable(effect(Channel::travel, {"exp(-((x-1)^2+(y-2)^2))"})), "");
 }
 
 TEST(FittedMap, HasEveryLandmarkAndAPathOfAsManyPointsAsWanted) {

@@ -21,9 +21,9 @@ using testing::Equipment;
 using testing::simulate_recording;
 using testing::SimulatedRecording;
 
-Effect effect_of(const std::string& channel, const std::vector<std::string>& shape) {
+Effect effect_of(Channel channel, const std::vector<Shape>& shape) {
   Effect effect;
-  effect.name = channel;
+  effect.name = name_of(channel);
   effect.channel = channel;
   effect.shape = shape;
   return effect;
@@ -46,14 +46,15 @@ TEST(ScoreTest, PromisesWhatARefitTakesOffChi2) {
   const ModelFit before = fit_model({one.recording}, one.model);
   const ScoreTest tests(before);
   for (const Effect& effect :
-       {effect_of("turn", {"1"}), effect_of("turn", {"abs(turn_rate)"}),
-        effect_of("compass", {"sin(heading)", "cos(heading)"}), effect_of("wheels", {"1"})}) {
+       {effect_of(Channel::turn, {"1"}), effect_of(Channel::turn, {"abs(turn_rate)"}),
+        effect_of(Channel::compass, {"sin(heading)", "cos(heading)"}),
+        effect_of(Channel::wheels, {"1"})}) {
     const Score score = tests.test({effect}).front();
     Model model = one.model;
     model.effects = {effect};
     const ModelFit after = fit_model({one.recording}, model);
     const double fallen = before.adjustment.chi2 - after.adjustment.chi2;
-    EXPECT_NEAR(score.score, fallen, 0.05 * fallen + 0.5) << effect.channel;
+    EXPECT_NEAR(score.score, fallen, 0.05 * fallen + 0.5) << name_of(effect.channel);
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
       EXPECT_NEAR(score.coefficients[k], after.effects[0].effect.coefficients[k],
                   0.05 * std::abs(score.coefficients[k]) + 0.3 * score.sd[k]);
@@ -69,16 +70,17 @@ TEST(ScoreTest, AQuickLookIsNearTheExactOne) {
   const ModelFit fit = fit_model({one.recording}, one.model);
   const ScoreTest tests(fit);
   const std::string bell = "exp(-((x-4)^2+(y-4)^2)/(2*3^2))";
-  const std::vector<Effect> effects{effect_of("turn", {"1"}), effect_of("lever", {"1"}),
-                                    effect_of("creep", {bell}), effect_of("compass", {bell}),
-                                    effect_of("travel", {"t"})};
+  const std::vector<Effect> effects{
+      effect_of(Channel::turn, {"1"}), effect_of(Channel::lever, {"1"}),
+      effect_of(Channel::creep, {bell}), effect_of(Channel::compass, {bell}),
+      effect_of(Channel::travel, {"t"})};
   const std::vector<Score> exact = tests.test(effects);
   const std::vector<Score> quick = tests.test(effects, Resolution::quick);
   for (std::size_t k = 0; k < effects.size(); ++k) {
     const bool constant = effects[k].shape.front() == "1";
     const double near = constant ? 1e-9 : 0.02;
     EXPECT_NEAR((exact[k].columns - quick[k].columns).norm() / exact[k].columns.norm(), 0.0, near)
-        << effects[k].channel;
+        << name_of(effects[k].channel);
     EXPECT_EQ(exact[k].dof, quick[k].dof);
   }
 }
@@ -90,23 +92,23 @@ TEST(ScoreTest, ScreeningIsExactWhereItMatters) {
   widen(world.recordings.front(), world.model.robot.wheelbase, -0.02);
   const ModelFit fit = fit_model(world.recordings, world.model);
   const ScoreTest tests(fit);
-  const std::vector<Effect> effects{effect_of("turn", {"abs(turn_rate)"}),
-                                    effect_of("rotate", {"spins"}),
-                                    effect_of("advance", {"starts"}),
-                                    effect_of("difference", {"acceleration"}),
-                                    effect_of("travel", {"t"}),
-                                    effect_of("creep", {"speed"})};
+  const std::vector<Effect> effects{effect_of(Channel::turn, {"abs(turn_rate)"}),
+                                    effect_of(Channel::rotate, {"spins"}),
+                                    effect_of(Channel::advance, {"starts"}),
+                                    effect_of(Channel::difference, {"acceleration"}),
+                                    effect_of(Channel::travel, {"t"}),
+                                    effect_of(Channel::creep, {"speed"})};
   const std::vector<Score> exact = tests.test(effects);
   const std::vector<Score> quick = tests.test(effects, Resolution::quick);
   const std::vector<Score> screened = tests.test(effects, Resolution::screening);
   int left_quick = 0;
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    EXPECT_EQ(screened[k].dof, exact[k].dof) << effects[k].channel;
+    EXPECT_EQ(screened[k].dof, exact[k].dof) << name_of(effects[k].channel);
     if (k < 4 || exact[k].p_value < 0.01) {
-      EXPECT_DOUBLE_EQ(screened[k].score, exact[k].score) << effects[k].channel;
+      EXPECT_DOUBLE_EQ(screened[k].score, exact[k].score) << name_of(effects[k].channel);
     } else if (quick[k].p_value >= 0.05) {
-      EXPECT_DOUBLE_EQ(screened[k].score, quick[k].score) << effects[k].channel;
-      EXPECT_GE(exact[k].p_value, 0.01) << effects[k].channel;
+      EXPECT_DOUBLE_EQ(screened[k].score, quick[k].score) << name_of(effects[k].channel);
+      EXPECT_GE(exact[k].p_value, 0.01) << name_of(effects[k].channel);
       ++left_quick;
     }
   }
@@ -121,7 +123,8 @@ TEST(ScoreTest, ManyAtOnceAreTheSameAsOneByOne) {
   const ModelFit fit = fit_model({one.recording}, one.model);
   const ScoreTest tests(fit);
   std::vector<Effect> effects;
-  for (const char* channel : {"turn", "travel", "difference", "creep", "lever", "drift"}) {
+  for (const Channel channel : {Channel::turn, Channel::travel, Channel::difference, Channel::creep,
+                                Channel::lever, Channel::drift}) {
     effects.push_back(effect_of(channel, {"1"}));
     effects.push_back(effect_of(channel, {"sin(heading)", "cos(heading)"}));
   }
@@ -140,9 +143,10 @@ TEST(ScoreTest, WhereNothingIsMissingPValuesAreUniform) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const SimulatedRecording one = simulate_recording({}, seed);
     const ModelFit fit = fit_model({one.recording}, one.model);
-    const std::vector<Score> scores = ScoreTest(fit).test(
-        {effect_of("turn", {"1"}), effect_of("wheels", {"1"}), effect_of("travel", {"abs(speed)"}),
-         effect_of("compass", {"sin(heading)", "cos(heading)"})});
+    const std::vector<Score> scores =
+        ScoreTest(fit).test({effect_of(Channel::turn, {"1"}), effect_of(Channel::wheels, {"1"}),
+                             effect_of(Channel::travel, {"abs(speed)"}),
+                             effect_of(Channel::compass, {"sin(heading)", "cos(heading)"})});
     for (std::size_t k = 0; k < scores.size(); ++k) p_values[k].push_back(scores[k].p_value);
   }
   for (std::vector<double>& sorted : p_values) {
@@ -161,8 +165,8 @@ TEST(ScoreTest, ASmallerMapIsNoEvidenceOfAScale) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const SimulatedRecording one = simulate_recording({seed % 2 == 0, false, false}, seed);
     const ModelFit fit = fit_model({one.recording}, one.model);
-    for (const Score& score :
-         ScoreTest(fit).test({effect_of("travel", {"1"}), effect_of("wheels", {"1"})})) {
+    for (const Score& score : ScoreTest(fit).test(
+             {effect_of(Channel::travel, {"1"}), effect_of(Channel::wheels, {"1"})})) {
       EXPECT_TRUE(score.dof == 0 || score.p_value > 1e-4) << "seed " << seed;
     }
   }
@@ -171,9 +175,9 @@ TEST(ScoreTest, ASmallerMapIsNoEvidenceOfAScale) {
 TEST(ScoreTest, WhatTheModelHasIsNotFoundAgain) {
   SimulatedRecording one = simulate_recording({}, 6);
   widen(one.recording, one.model.robot.wheelbase, -0.02);
-  one.model.effects = {effect_of("turn", {"1"})};
+  one.model.effects = {effect_of(Channel::turn, {"1"})};
   const ModelFit fit = fit_model({one.recording}, one.model);
-  EXPECT_EQ(ScoreTest(fit).test({effect_of("turn", {"1"})}).front().dof, 0);
+  EXPECT_EQ(ScoreTest(fit).test({effect_of(Channel::turn, {"1"})}).front().dof, 0);
 }
 
 TEST(Comparison, HolmsAdjustmentIsThatOfTheBook) {

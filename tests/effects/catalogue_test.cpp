@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 
-#include "effects/shape.hpp"
+#include "recording/row_variables.hpp"
 
 #include <algorithm>
 #include <set>
@@ -18,15 +18,23 @@ TEST(Catalogue, EveryShapeCanBeReadAndSpeaksOfWhatThereIs) {
   std::set<std::string_view> names;
   for (const CatalogueEntry& entry : catalogue()) {
     EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
-    std::string name(entry.name);
-    if (entry.of_covariate()) name = name_of(entry, "payload_kg");
-    if (entry.has_parameters()) {
-      name = name_of(entry, std::vector<double>(entry.parameters.size(), -1.5));
+    Effect effect{"", entry.channel, {}, {}};
+    if (entry.of_covariate()) {
+      effect = catalogue_effect(entry, "payload_kg");
+    } else if (entry.has_parameters()) {
+      std::vector<ShapeParameter> parameters;
+      for (const OpenParameter& one : entry.parameters) {
+        parameters.push_back({std::string(one.name), -1.5});
+      }
+      effect = catalogue_effect(entry, parameters);
+    } else {
+      effect = catalogue_effect(entry);
     }
-    const Effect effect = resolved({name, "", {}, {}, false});
-    EXPECT_EQ(effect.shape.size(), entry.shape.size());
-    for (const std::string& shape : effect.shape) {
-      for (const std::string& variable : variables_of(shape)) {
+    EXPECT_EQ(find_entry(effect.name), &entry);
+    EXPECT_EQ(catalogue_effect(effect.name).shape, effect.shape);
+    EXPECT_EQ(effect.shape.size(), entry.pattern.size());
+    for (const Shape& shape : effect.shape) {
+      for (const std::string& variable : shape.variables()) {
         EXPECT_TRUE(variable == "payload_kg" ||
                     std::find(known.begin(), known.end(), variable) != known.end())
             << variable;
@@ -35,9 +43,9 @@ TEST(Catalogue, EveryShapeCanBeReadAndSpeaksOfWhatThereIs) {
   }
 }
 
-std::string complaint(const Effect& effect) {
+std::string complaint(const std::string& name, const std::vector<double>& coefficients = {}) {
   try {
-    (void)resolved(effect);
+    (void)catalogue_effect(name, coefficients);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -45,13 +53,13 @@ std::string complaint(const Effect& effect) {
 }
 
 TEST(Catalogue, ANameAloneIsEnoughAndAnUnknownOneIsRefused) {
-  EXPECT_EQ(resolved({"hard iron", "", {}, {}, false}).channel, "compass");
-  EXPECT_EQ(resolved({"load on one wheel (crates)", "", {}, {}, false}).shape.front(), "crates");
-  EXPECT_EQ(complaint({"gremlins", "", {}, {}, false}),
+  EXPECT_EQ(catalogue_effect("hard iron").channel, Channel::compass);
+  EXPECT_EQ(catalogue_effect("load on one wheel (crates)").shape.front(), "crates");
+  EXPECT_EQ(complaint("gremlins"),
             "effect \"gremlins\" is not in the catalogue, expected a channel and a shape");
-  EXPECT_EQ(complaint({"tyre drift", "", {}, {}, false}),
+  EXPECT_EQ(complaint("tyre drift"),
             "effect \"tyre drift\" needs a covariate, expected \"tyre drift (COLUMN)\"");
-  EXPECT_EQ(complaint({"slope", "", {}, {0.1}, false}),
+  EXPECT_EQ(complaint("slope", {0.1}),
             "effect \"slope\" has 1 coefficients, expected 2, one per shape");
 }
 
@@ -101,39 +109,43 @@ TEST(Catalogue, KnowsEveryEffectThatTheProjectNames) {
 }
 
 TEST(Catalogue, PlacesAndThresholdsStandInTheName) {
-  const Effect patch = resolved({"slippery patch (x=12.5, y=-9, r=3)", "", {}, {-0.03}, false});
-  EXPECT_EQ(patch.channel, "wheels");
-  EXPECT_EQ(patch.shape, std::vector<std::string>{"(1+sign(3^2-(x-12.5)^2-(y-(-9))^2))/2"});
-  EXPECT_EQ(evaluate_shape(patch.shape.front(), {{"x", {12.5, 20.0}}, {"y", {-7.0, -9.0}}}),
+  const Effect patch = catalogue_effect("slippery patch (x=12.5, y=-9, r=3)", {-0.03});
+  EXPECT_EQ(patch.channel, Channel::wheels);
+  EXPECT_EQ(texts_of(patch.shape),
+            std::vector<std::string>{"(1+sign(3^2-(x-12.5)^2-(y-(-9))^2))/2"});
+  EXPECT_EQ(patch.shape.front().values({{"x", {12.5, 20.0}}, {"y", {-7.0, -9.0}}}),
             (std::vector<double>{1.0, 0.0}));
-  EXPECT_EQ(resolved({"missed ticks (v0=0.4)", "", {}, {}, false}).shape.front(),
-            "max(0, speed-0.4)");
+  EXPECT_EQ(catalogue_effect("missed ticks (v0=0.4)").shape.front(), "max(0, speed-0.4)");
   const CatalogueEntry* entry = find_entry("slippery patch");
-  EXPECT_EQ(name_of(*entry, std::vector<double>{1.0, 2.5, 3.0}),
+  EXPECT_EQ(name_of(*entry, std::vector<ShapeParameter>{{"x", 1.0}, {"y", 2.5}, {"r", 3.0}}),
             "slippery patch (x=1, y=2.5, r=3)");
   const std::string expected =
       ", expected \"slippery patch (x=..., y=..., r=3)\"; or a channel and a shape of its own";
-  EXPECT_EQ(complaint({"slippery patch", "", {}, {}, false}),
+  EXPECT_EQ(complaint("slippery patch"),
             "effect \"slippery patch\" lacks a place or threshold" + expected);
-  EXPECT_EQ(complaint({"slippery patch (x=1, y=2)", "", {}, {}, false}),
+  EXPECT_EQ(complaint("slippery patch (x=1, y=2)"),
             "effect \"slippery patch (x=1, y=2)\" lacks a place or threshold" + expected);
   EXPECT_EQ(
-      complaint({"slippery patch (x=1, y=2, r=a)", "", {}, {}, false}),
+      complaint("slippery patch (x=1, y=2, r=a)"),
       "effect \"slippery patch (x=1, y=2, r=a)\" has r = \"a\", which is no number" + expected);
-  EXPECT_EQ(complaint({"slippery patch (x=1, x=2, r=1)", "", {}, {}, false}),
+  EXPECT_EQ(complaint("slippery patch (x=1, x=2, r=1)"),
             "effect \"slippery patch (x=1, x=2, r=1)\" has no parameter \"x\", or has it twice" +
                 expected);
 }
 
 TEST(Catalogue, FormerNamesStillWork) {
-  EXPECT_EQ(resolved({"tyre drift with time", "", {}, {}, false}).shape.front(), "t");
-  EXPECT_EQ(resolved({"tyre drift with distance", "", {}, {}, false}).shape.front(), "distance");
+  EXPECT_EQ(catalogue_effect("tyre drift with time").shape.front(), "t");
+  EXPECT_EQ(catalogue_effect("tyre drift with distance").shape.front(), "distance");
 }
 
-TEST(Catalogue, AnOwnEffectOfTheSameNameKeepsItsShape) {
-  const Effect own = resolved({"hard iron", "turn", {"x"}, {0.5}, false});
-  EXPECT_EQ(own.channel, "turn");
-  EXPECT_EQ(own.shape, std::vector<std::string>{"x"});
+TEST(Catalogue, ParametersGoThroughANameWithoutLoss) {
+  const CatalogueEntry& entry = *find_entry("local magnetic anomaly");
+  const std::vector<ShapeParameter> parameters{
+      {"x", 1.0 / 3.0}, {"y", -1e-7 / 7.0}, {"r", 2e5 / 3}};
+  const Effect made = catalogue_effect(entry, parameters);
+  const Effect read = catalogue_effect(made.name);
+  EXPECT_EQ(read.shape, made.shape);
+  EXPECT_EQ(read.shape.front().parameters(), parameters);
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ Case two_effects(std::uint64_t seed, double turn, double offset) {
   disturb(simulated.recording.drive, simulated.model.robot.wheelbase, turn, offset);
   const std::vector<Recording> recordings = {simulated.recording};
   return {make_problem(recordings, simulated.model),
-          {plain_effect(PlainEffect::turn, recordings, simulated.model.robot),
-           plain_effect(PlainEffect::compass, recordings, simulated.model.robot)}};
+          {plain_effect(Channel::turn, recordings, simulated.model.robot),
+           plain_effect(Channel::compass, recordings, simulated.model.robot)}};
 }
 
 /// All unknowns at once: rows of J and M side by side, one dense factorisation.
@@ -121,8 +121,8 @@ TEST(RecordingEffectParameters, AnUndeterminedCoefficientIsNamed) {
   const std::vector<Recording> recordings = {simulated.recording};
   const RecordingProblem problem = make_problem(recordings, simulated.model);
   const EffectParameters border = {
-      plain_effect(PlainEffect::turn, recordings, simulated.model.robot),
-      plain_effect(PlainEffect::compass, recordings, simulated.model.robot)};
+      plain_effect(Channel::turn, recordings, simulated.model.robot),
+      plain_effect(Channel::compass, recordings, simulated.model.robot)};
   try {
     static_cast<void>(adjust(problem, border));
     FAIL() << "should be refused";

@@ -3,8 +3,8 @@
 //
 // The simulator turns the physics round, the adjustment has it the right way round; neither knows
 // the other. Without noise they must meet at chi^2 = 0 and at the coefficients that were given.
-#include "effects/shape.hpp"
 #include "estimation/recording_adjustment.hpp"
+#include "recording/row_variables.hpp"
 #include "simulation/tours.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/catalogue.hpp"
@@ -41,34 +41,33 @@ Simulated simulate(const Effect& effect) {
 }
 
 /// What one unit of g does to a row, by the table of channels.
-DrivePattern drive_pattern(const std::string& channel, const Drive& drive, std::size_t row,
-                           double wheelbase) {
+DrivePattern by_the_table(Channel channel, const Drive& drive, std::size_t row, double wheelbase) {
   const double left = drive.left[row];
   const double right = drive.right[row];
   const double path = 0.5 * (left + right);
   const double turn = (right - left) / wheelbase;
   const double duration = drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
-  if (channel == "travel") return {path, 0.0, 0.0, 0.0};
-  if (channel == "left") return {0.5 * left, 0.0, -left / wheelbase, 0.0};
-  if (channel == "right") return {0.5 * right, 0.0, right / wheelbase, 0.0};
-  if (channel == "wheels") return {path, 0.0, turn, 0.0};
-  if (channel == "difference") return {0.25 * (right - left), 0.0, path / wheelbase, 0.0};
-  if (channel == "turn") return {0.0, 0.0, turn, 0.0};
-  if (channel == "drift") return {0.0, 0.0, duration, 0.0};
-  if (channel == "advance") return {1.0, 0.0, 0.0, 0.0};
-  if (channel == "rotate") return {0.0, 0.0, 1.0, 0.0};
-  if (channel == "creep") return {0.0, path, 0.0, 0.0};
-  if (channel == "compass") return {0.0, 0.0, 0.0, 1.0};
+  if (channel == Channel::travel) return {path, 0.0, 0.0, 0.0};
+  if (channel == Channel::left) return {0.5 * left, 0.0, -left / wheelbase, 0.0};
+  if (channel == Channel::right) return {0.5 * right, 0.0, right / wheelbase, 0.0};
+  if (channel == Channel::wheels) return {path, 0.0, turn, 0.0};
+  if (channel == Channel::difference) return {0.25 * (right - left), 0.0, path / wheelbase, 0.0};
+  if (channel == Channel::turn) return {0.0, 0.0, turn, 0.0};
+  if (channel == Channel::drift) return {0.0, 0.0, duration, 0.0};
+  if (channel == Channel::advance) return {1.0, 0.0, 0.0, 0.0};
+  if (channel == Channel::rotate) return {0.0, 0.0, 1.0, 0.0};
+  if (channel == Channel::creep) return {0.0, path, 0.0, 0.0};
+  if (channel == Channel::compass) return {0.0, 0.0, 0.0, 1.0};
   return {};
 }
 
-ViewPattern view_pattern(const std::string& channel) {
+ViewPattern by_the_table(Channel channel) {
   ViewPattern pattern;
-  if (channel == "lever") pattern.ahead = 1.0;
-  if (channel == "lever_left") pattern.left = 1.0;
-  if (channel == "range") pattern.range = 1.0;
-  if (channel == "range_scale") pattern.range_scale = 1.0;
-  if (channel == "bearing") pattern.bearing = 1.0;
+  if (channel == Channel::lever) pattern.ahead = 1.0;
+  if (channel == Channel::lever_left) pattern.left = 1.0;
+  if (channel == Channel::range) pattern.range = 1.0;
+  if (channel == Channel::range_scale) pattern.range_scale = 1.0;
+  if (channel == Channel::bearing) pattern.bearing = 1.0;
   return pattern;
 }
 
@@ -79,7 +78,7 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
   RowVariables variables = row_variables(drive, simulated.robot.wheelbase, motion.start, path, 0);
-  if (effect.channel == "compass") {
+  if (effect.channel == Channel::compass) {
     for (std::size_t row = 0; row < path.size(); ++row) {
       variables["heading"][row] = path[row].heading;
       variables["x"][row] = path[row].x;
@@ -87,52 +86,50 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
     }
   }
   EffectParameters border;
-  for (const std::string& shape : effect.shape) {
-    const std::vector<double> f = evaluate_shape(shape, variables);
+  for (const Shape& shape : effect.shape) {
+    const std::vector<double> f = shape.values(variables);
     EffectPattern& pattern = border.emplace_back();
     pattern.name = effect.name;
     std::vector<DrivePattern>& rows = pattern.drives.emplace_back();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const DrivePattern unit =
-          drive_pattern(effect.channel, drive, row, simulated.robot.wheelbase);
+      const DrivePattern unit = by_the_table(effect.channel, drive, row, simulated.robot.wheelbase);
       rows.push_back(
           {f[row] * unit.advance, f[row] * unit.slip, f[row] * unit.turn, f[row] * unit.compass});
     }
     pattern.sightings.emplace_back(simulated.drive.recording.sightings.size(),
-                                   view_pattern(effect.channel));
+                                   by_the_table(effect.channel));
   }
   return border;
 }
 
 TEST(SimulatedEffects, AFitFindsTheCoefficientsThatWereGiven) {
-  const std::vector<Effect> effects = {{"wheel diameter ratio", "", {}, {0.01}, false},
-                                       {"wheelbase", "", {}, {-0.02}, false},
-                                       {"travel scale", "", {}, {0.015}, false},
-                                       {"wheel scale", "", {}, {-0.01}, false},
-                                       {"cross-slope creep", "", {}, {0.02, -0.03}, false},
-                                       {"slope", "", {}, {0.01, 0.02}, false},
-                                       {"slip with speed", "", {}, {-0.02}, false},
-                                       {"loss per start", "", {}, {-0.008}, false},
-                                       {"turn scrub", "", {}, {-0.045}, false},
-                                       {"turn asymmetry", "", {}, {0.02}, false},
-                                       {"twist per spin", "", {}, {0.01}, false},
-                                       {"load on one wheel (payload_kg)", "", {}, {4e-4}, false},
-                                       {"tyre drift (distance)", "", {}, {-2e-5}, false},
-                                       {"missed ticks (v0=0.5)", "", {}, {0.1}, false},
-                                       {"sampling skew", "", {}, {0.01}, false},
-                                       {"heading drift", "", {}, {0.002}, false},
-                                       {"compass offset", "", {}, {0.1}, false},
-                                       {"hard iron", "", {}, {0.15, -0.1}, false},
-                                       {"compass lag", "", {}, {-0.1}, false},
-                                       {"motor current", "", {}, {0.1, 0.05}, false},
-                                       {"slippery patch (x=4, y=3, r=3)", "", {}, {-0.03}, false},
-                                       {"lever arm", "", {}, {0.12}, false},
-                                       {"lever arm to the left", "", {}, {-0.08}, false},
-                                       {"range bias", "", {}, {0.05}, false},
-                                       {"range scale", "", {}, {-0.02}, false},
-                                       {"bearing offset", "", {}, {0.03}, false}};
-  for (const Effect& named : effects) {
-    const Effect effect = resolved(named);
+  const std::vector<Effect> effects = {catalogue_effect("wheel diameter ratio", {0.01}),
+                                       catalogue_effect("wheelbase", {-0.02}),
+                                       catalogue_effect("travel scale", {0.015}),
+                                       catalogue_effect("wheel scale", {-0.01}),
+                                       catalogue_effect("cross-slope creep", {0.02, -0.03}),
+                                       catalogue_effect("slope", {0.01, 0.02}),
+                                       catalogue_effect("slip with speed", {-0.02}),
+                                       catalogue_effect("loss per start", {-0.008}),
+                                       catalogue_effect("turn scrub", {-0.045}),
+                                       catalogue_effect("turn asymmetry", {0.02}),
+                                       catalogue_effect("twist per spin", {0.01}),
+                                       catalogue_effect("load on one wheel (payload_kg)", {4e-4}),
+                                       catalogue_effect("tyre drift (distance)", {-2e-5}),
+                                       catalogue_effect("missed ticks (v0=0.5)", {0.1}),
+                                       catalogue_effect("sampling skew", {0.01}),
+                                       catalogue_effect("heading drift", {0.002}),
+                                       catalogue_effect("compass offset", {0.1}),
+                                       catalogue_effect("hard iron", {0.15, -0.1}),
+                                       catalogue_effect("compass lag", {-0.1}),
+                                       catalogue_effect("motor current", {0.1, 0.05}),
+                                       catalogue_effect("slippery patch (x=4, y=3, r=3)", {-0.03}),
+                                       catalogue_effect("lever arm", {0.12}),
+                                       catalogue_effect("lever arm to the left", {-0.08}),
+                                       catalogue_effect("range bias", {0.05}),
+                                       catalogue_effect("range scale", {-0.02}),
+                                       catalogue_effect("bearing offset", {0.03})};
+  for (const Effect& effect : effects) {
     const Simulated simulated = simulate(effect);
     const RecordingProblem problem = make_problem({simulated.drive.recording}, Model{});
     const double without = adjust(problem).chi2;

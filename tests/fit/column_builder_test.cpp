@@ -20,7 +20,7 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
   Model model = one.model;
   Effect present;
   present.name = "present";
-  present.channel = "turn";
+  present.channel = Channel::turn;
   present.shape = {"1"};
   present.coefficients = {0.01};
   model.effects = {present};
@@ -34,7 +34,7 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
   for (const ChannelFacts& channel : channels()) {
     Effect effect;
     effect.name = "candidate";
-    effect.channel = channel.name;
+    effect.channel = channel.channel;
     effect.shape = {"1", "sin(heading)", "speed", "t"};
     EffectColumns both = effect_columns({fit.model.effects[0], effect}, context);
     both.border[0].held = 0.01;
@@ -45,7 +45,7 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
     for (Eigen::Index k = 0; k < 4; ++k) {
       EXPECT_LT((columns.col(k) - system.border().col(k)).norm(),
                 1e-7 * (1.0 + system.border().col(k).norm()))
-          << channel.name << " " << effect.shape[static_cast<std::size_t>(k)];
+          << channel.name << " " << effect.shape[static_cast<std::size_t>(k)].text();
     }
   }
 }
@@ -60,7 +60,8 @@ TEST(ColumnBuilder, SessionsOfTheirOwnAddUpToTheWhole) {
   const std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   ColumnBuilder builder(context, fit.problem, fit.columns.border, offsets_of(fit),
                         fit.adjustment.state, weights);
-  for (const char* channel : {"wheels", "compass", "lever", "delay"}) {
+  for (const Channel channel :
+       {Channel::wheels, Channel::compass, Channel::lever, Channel::delay}) {
     Effect effect;
     effect.name = "one for all";
     effect.channel = channel;
@@ -70,7 +71,7 @@ TEST(ColumnBuilder, SessionsOfTheirOwnAddUpToTheWhole) {
     const Eigen::MatrixXd apart = builder.columns(effect);
     ASSERT_EQ(apart.cols(), 4);
     EXPECT_LT((apart.leftCols(2) + apart.rightCols(2) - whole).norm(), 1e-12 * whole.norm());
-    EXPECT_EQ(apart.col(0).cwiseProduct(apart.col(2)).norm(), 0.0) << channel;
+    EXPECT_EQ(apart.col(0).cwiseProduct(apart.col(2)).norm(), 0.0) << name_of(channel);
   }
 }
 

@@ -34,12 +34,12 @@ struct Here {
   double payload = 0.0;
 };
 
-struct Shape {
+struct KnownShape {
   std::string text;
   std::function<double(const Here&)> value;
 };
 
-std::vector<Shape> shapes() {
+std::vector<KnownShape> shapes() {
   return {{"1", [](const Here&) { return 1.0; }},
           {"sin(heading)", [](const Here& here) { return std::sin(here.heading); }},
           {"turn_rate", [](const Here& here) { return here.turn_rate; }},
@@ -79,12 +79,12 @@ class World {
   [[nodiscard]] ShapeContext context() const { return {recordings_, model_.robot, paths_}; }
 
   /// At a view or truth row.
-  [[nodiscard]] double shape_at(const Measurement& one, const Shape& shape) const {
+  [[nodiscard]] double shape_at(const Measurement& one, const KnownShape& shape) const {
     return one.kind == MeasurementKind::survey ? 0.0 : shape.value(here_at(time_of(one.from)));
   }
 
   /// Predicted - measured where the coefficient is `a`.
-  [[nodiscard]] Vector4 errors(const Measurement& one, Channel channel, const Shape& shape,
+  [[nodiscard]] Vector4 errors(const Measurement& one, Channel channel, const KnownShape& shape,
                                double a) const {
     switch (one.kind) {
       case MeasurementKind::segment:
@@ -147,7 +147,7 @@ class World {
     return {at(t).heading, dtheta(row) / kInvertedRow, drive().covariates[0].values[row]};
   }
 
-  [[nodiscard]] Vector4 segment(double from, double to, Channel channel, const Shape& shape,
+  [[nodiscard]] Vector4 segment(double from, double to, Channel channel, const KnownShape& shape,
                                 double a) const {
     TruePose pose;  // in the frame of the start
     double innovations = 0.0;
@@ -231,7 +231,7 @@ const World& world() {
 
 /// Differences of fourth order. A time shift is taken backwards alone, whatever the shape's sign:
 /// where the motion changes, the rates are those before.
-Vector4 slope(const Measurement& one, Channel channel, const Shape& shape, double at) {
+Vector4 slope(const Measurement& one, Channel channel, const KnownShape& shape, double at) {
   const double step = shape.text == "payload_kg" ? 5e-6 : 1e-4;
   const auto errors = [&](double steps) {
     return world().errors(one, channel, shape, at + steps * step);
@@ -252,7 +252,7 @@ TEST_P(EachChannel, ColumnsAreThoseOfDifferences) {
   const ShapeContext context = world().context();
   bool acts_on_segment = false;
   bool acts_on_view = false;
-  for (const Shape& shape : shapes()) {
+  for (const KnownShape& shape : shapes()) {
     // Shapes grow to 20 (kg) and a delay is exact at its reference alone.
     const double at = channel == Channel::delay ? 0.0 : 0.001;
     const EffectParameters border = {effect_column(channel, shape.text, -1, context)};
@@ -302,7 +302,7 @@ TEST(EffectColumns, PerSessionActsInThatSessionAlone) {
   const ShapeContext context(recordings, Robot{kInvertedWheelbase}, paths);
   Effect effect;
   effect.name = "own";
-  effect.channel = "travel";
+  effect.channel = Channel::travel;
   effect.shape = {"1", "speed"};
   effect.coefficients = {0.1, 0.2, 0.3, 0.4};
   effect.per_session = true;
@@ -338,7 +338,7 @@ TEST(EffectColumns, LargestIsThatOfTheShape) {
   }
   Effect effect;
   effect.name = "own";
-  effect.channel = "wheels";
+  effect.channel = Channel::wheels;
   effect.shape = {"-3*payload_kg"};
   EXPECT_EQ(effect_columns({effect}, context).coefficients[0].largest, 3.0 * heaviest);
 }
@@ -349,7 +349,7 @@ TEST(EffectColumns, RetimingMovesSightingsAndTruthBack) {
   recording.truth = {{0.05, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0, 0.0}, {end, 0.0, 0.0, 0.0}};
   Effect effect;
   effect.name = "late";
-  effect.channel = "delay";
+  effect.channel = Channel::delay;
   effect.shape = {"1"};
   effect.coefficients = {0.25};
   const Robot robot{kInvertedWheelbase};

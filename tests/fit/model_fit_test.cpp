@@ -169,15 +169,16 @@ TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
   options.noisy = true;
   const InvertedRecording simulated = invert({}, options, 30);
   struct Twin {
-    std::string name, channel;
-    std::vector<std::string> shape;
+    std::string name;
+    Channel channel;
+    std::vector<Shape> shape;
   };
   const std::vector<Twin> twins = {
-      {"turn scrub", "turn", {"max(turn_rate, -turn_rate)"}},
-      {"hard iron", "compass", {"-sin(-heading)", "cos(-heading)"}},
-      {"wheel scale", "wheels", {"3 - 2"}},
-      {"load on both wheels (payload_kg)", "wheels", {"2 * payload_kg / 2"}},
-      {"lever arm", "lever", {"1 + 0*speed"}}};
+      {"turn scrub", Channel::turn, {"max(turn_rate, -turn_rate)"}},
+      {"hard iron", Channel::compass, {"-sin(-heading)", "cos(-heading)"}},
+      {"wheel scale", Channel::wheels, {"3 - 2"}},
+      {"load on both wheels (payload_kg)", Channel::wheels, {"2 * payload_kg / 2"}},
+      {"lever arm", Channel::lever, {"1 + 0*speed"}}};
   for (const Twin& twin : twins) {
     const ModelFit built_in =
         fit_model({simulated.recording}, inverted_model({effect_named(twin.name)}));
@@ -215,19 +216,17 @@ TEST(ModelFit, TheOrderOfEffectsDoesNotMatter) {
 TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
   const InvertedRecording simulated = invert({}, {1}, 32);
   struct Wrong {
-    std::string channel, shape;
+    Channel channel;
+    std::string shape;
     std::vector<double> coefficients;
     std::string expected;  ///< in the message, beside the name
   };
-  const std::vector<Wrong> wrongs = {{"turn", "sin(", {}, "\"sin(\""},
-                                     {"turn", "lamps", {}, "\"lamps\""},
-                                     {"wheels", "1/speed", {}, "\"1/speed\""},
-                                     {"compass", "1/turn_rate", {}, "\"1/turn_rate\""},
-                                     {"range", "sqrt(0-1)", {}, "\"sqrt(0-1)\""},
-                                     {"delay", "sin(", {}, "\"sin(\""},
-                                     {"delay", "lamps", {}, "\"lamps\""},
-                                     {"turn", "1", {0.1, 0.2}, "2 coefficients"},
-                                     {"steering", "1", {}, "\"steering\""}};
+  const std::vector<Wrong> wrongs = {{Channel::turn, "lamps", {}, "\"lamps\""},
+                                     {Channel::wheels, "1/speed", {}, "\"1/speed\""},
+                                     {Channel::compass, "1/turn_rate", {}, "\"1/turn_rate\""},
+                                     {Channel::range, "sqrt(0-1)", {}, "\"sqrt(0-1)\""},
+                                     {Channel::delay, "lamps", {}, "\"lamps\""},
+                                     {Channel::turn, "1", {0.1, 0.2}, "2 coefficients"}};
   for (const Wrong& wrong : wrongs) {
     Effect effect;
     effect.name = "gremlin";
@@ -236,7 +235,7 @@ TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
     effect.coefficients = wrong.coefficients;
     try {
       static_cast<void>(fit_model({simulated.recording}, inverted_model({effect})));
-      ADD_FAILURE() << wrong.channel << " " << wrong.shape << " was accepted";
+      ADD_FAILURE() << name_of(wrong.channel) << " " << wrong.shape << " was accepted";
     } catch (const std::invalid_argument& error) {
       const std::string message = error.what();
       EXPECT_NE(message.find("\"gremlin\""), std::string::npos) << message;
@@ -279,7 +278,7 @@ TEST_P(PracticeRecording, TheAnswerFitsWithItsCoefficients) {
       const double expected = one.effects[e].coefficients[k];
       const double sd = fit.effects[e].sd[k];
       EXPECT_LT(std::abs(fit.effects[e].effect.coefficients[k] - expected), 3.0 * sd)
-          << one.effects[e].channel << " " << one.effects[e].shape[k] << ": "
+          << name_of(one.effects[e].channel) << " " << one.effects[e].shape[k].text() << ": "
           << fit.effects[e].effect.coefficients[k] << " +- " << sd << ", expected " << expected;
       EXPECT_GT(std::abs(expected), 5.0 * sd);  // or its agreement would say little
     }
@@ -289,19 +288,24 @@ TEST_P(PracticeRecording, TheAnswerFitsWithItsCoefficients) {
 INSTANTIATE_TEST_SUITE_P(
     ModelFit, PracticeRecording,
     ::testing::Values(
-        Practice{"a", {{"answer", "turn", {"1"}, {-0.02}}}},
-        Practice{
-            "b",
-            {{"answer", "compass", {"sin(heading)", "cos(heading)"}, {0.0305937, -0.0257687}}}},
-        Practice{"c", {{"answer", "wheels", {"payload_kg"}, {-0.000525}}}},
-        Practice{"d", {{"answer", "wheels", {"(1+sign(36-(x-12)^2-(y-12)^2))/2"}, {-0.03}}}},
+        Practice{"a", {{"answer", Channel::turn, {"1"}, {-0.02}}}},
+        Practice{"b",
+                 {{"answer",
+                   Channel::compass,
+                   {"sin(heading)", "cos(heading)"},
+                   {0.0305937, -0.0257687}}}},
+        Practice{"c", {{"answer", Channel::wheels, {"payload_kg"}, {-0.000525}}}},
+        Practice{"d", {{"answer", Channel::wheels, {"(1+sign(36-(x-12)^2-(y-12)^2))/2"}, {-0.03}}}},
         Practice{"e",
-                 {{"answer", "creep", {"sin(heading)", "cos(heading)"}, {0.0221055, 0.00934604}}}},
+                 {{"answer",
+                   Channel::creep,
+                   {"sin(heading)", "cos(heading)"},
+                   {0.0221055, 0.00934604}}}},
         Practice{"f",
-                 {{"one", "turn", {"(sign(turn_rate-0.2)+sign(turn_rate+0.2))/2"}, {-0.02}},
-                  {"other", "compass", {"lights"}, {0.04}}}},
-        Practice{"g", {{"answer", "turn", {"abs(turn_rate)"}, {-0.045}}}}, Practice{"h", {}},
-        Practice{"i", {}}, Practice{"j", {{"answer", "compass", {"turn_rate"}, {-0.036}}}}),
+                 {{"one", Channel::turn, {"(sign(turn_rate-0.2)+sign(turn_rate+0.2))/2"}, {-0.02}},
+                  {"other", Channel::compass, {"lights"}, {0.04}}}},
+        Practice{"g", {{"answer", Channel::turn, {"abs(turn_rate)"}, {-0.045}}}}, Practice{"h", {}},
+        Practice{"i", {}}, Practice{"j", {{"answer", Channel::compass, {"turn_rate"}, {-0.036}}}}),
     [](const auto& which) { return which.param.folder; });
 
 TEST(SlowModelFit, IntervalsCoverAndChi2IsWhatChanceMakesIt) {

@@ -3,6 +3,7 @@
 //
 // Models (TOML) and maps (GraphML, GeoJSON, DOT) out and in, and what is refused.
 #include "scratch_folder.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
@@ -44,7 +45,7 @@ class BadModel : public ::testing::TestWithParam<Refused> {};
 TEST_P(BadModel, IsRefusedWithItsLine) {
   const ScratchFolder scratch;
   const auto file = scratch.write("m.toml", GetParam().content);
-  const std::string message = message_of(read_model, file);
+  const std::string message = message_of([](const auto& path) { return read_model(path); }, file);
   EXPECT_EQ(message.rfind(GetParam().message, 0), 0U) << message;
 }
 
@@ -72,11 +73,24 @@ const Refused kBadModels[] = {
     {"Per", "[[effect]]\nname = \"x\"\nper = \"day\"\n",
      ":3: per is \"day\", expected \"session\""},
     {"EmptyShape", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\" \"]\n",
-     ":1: effect \"x\" has an empty shape, expected an expression"},
+     ":4: effect \"x\" has an empty shape, expected an expression"},
     {"SessionCoefficients",
      "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\"1\", \"t\"]\n"
      "coefficients = [1, 2, 3]\nper = \"session\"\n",
      ":5: effect \"x\" has 3 coefficients, expected 2, one per shape, per session"},
+    {"NoShape", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = []\n",
+     ":4: effect \"x\" has no shape, expected one or more"},
+    {"ShapeThatCannotBeRead",
+     "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = [\n  \"1\",\n  \"sin(\"]\n",
+     ":6: effect \"x\": shape \"sin(\" cannot be read: "},
+    {"UnknownChannel", "[[effect]]\nname = \"x\"\nchannel = \"spin\"\nshape = [\"1\"]\n",
+     ":3: effect \"x\": channel \"spin\" is unknown, expected one of travel, left,"},
+    {"UnknownName", "\n[[effect]]\nname = \"ghosts\"\n",
+     ":2: effect \"ghosts\" is not in the catalogue, expected a channel and a shape"},
+    {"OpenName", "[[effect]]\nname = \"tyre drift\"\n",
+     ":1: effect \"tyre drift\" needs a covariate, expected \"tyre drift (COLUMN)\""},
+    {"CatalogueCoefficients", "[[effect]]\nname = \"slope\"\ncoefficients = [1]\n",
+     ":3: effect \"slope\" has 1 coefficients, expected 2, one per shape"},
     {"ShapeText", "[[effect]]\nname = \"x\"\nchannel = \"turn\"\nshape = \"1\"\n",
      ":4: shape is no list, expected [ ... ]"},
 };
@@ -90,10 +104,13 @@ TEST(ModelToml, ReadsBackExactlyWhatItWrote) {
   out.robot.wheelbase = 1.0 / 3.0;
   out.noise.left = 0.1 + 0.2;
   out.noise.heading_per_rad = 1e-7;
-  out.effects = {
-      {"wheelbase", "", {}, {}, false},
-      {"magnet \"in\" the \\ lights", "compass", {"lights", "sin(heading)"}, {0.25, -1e-9}, false},
-      {"delay", "delay", {"1"}, {0.1, 0.2}, true}};
+  out.effects = {catalogue_effect("wheelbase"),
+                 {"magnet \"in\" the \\ lights",
+                  Channel::compass,
+                  {"lights", "sin(heading)"},
+                  {0.25, -1e-9},
+                  false},
+                 {"delay", Channel::delay, {"1"}, {0.1, 0.2}, true}};
   write_model(scratch.path() / "m.toml", out);
   const Model in = read_model(scratch.path() / "m.toml");
   EXPECT_EQ(in.robot.wheelbase, out.robot.wheelbase);
@@ -108,6 +125,51 @@ TEST(ModelToml, ReadsBackExactlyWhatItWrote) {
     EXPECT_EQ(in.effects[k].coefficients, out.effects[k].coefficients);
     EXPECT_EQ(in.effects[k].per_session, out.effects[k].per_session);
   }
+}
+
+/// Places, radii, thresholds and times of any digits, seed 5.
+TEST(ModelToml, ShapeParametersComeBackToTheSameBits) {
+  const ScratchFolder scratch;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> digits(-1.0, 1.0);
+  std::uniform_int_distribution<int> size(-12, 12);
+  const auto number = [&] { return digits(random) * std::pow(10.0, size(random)); };
+  Model out;
+  for (int k = 0; k < 200; ++k) {
+    const std::string name = "e" + std::to_string(k);
+    const Shape place("exp(-((x-{x})^2+(y-{y})^2)/(2*{r}^2))",
+                      {{"x", number()}, {"y", number()}, {"r", std::abs(number())}});
+    const Shape step("(1+sign(t-{t}))/2", {{"t", number()}});
+    out.effects.push_back({name, Channel::creep, {place, step}, {number(), number()}});
+    out.effects.push_back(catalogue_effect(
+        *find_entry("missed ticks"), std::vector<ShapeParameter>{{"v0", std::abs(number())}}));
+  }
+  write_model(scratch.path() / "m.toml", out);
+  const Model in = read_model(scratch.path() / "m.toml");
+  ASSERT_EQ(in.effects.size(), out.effects.size());
+  for (std::size_t k = 0; k < in.effects.size(); ++k) {
+    EXPECT_EQ(in.effects[k].name, out.effects[k].name);
+    EXPECT_EQ(in.effects[k].coefficients, out.effects[k].coefficients);
+    ASSERT_EQ(in.effects[k].shape.size(), out.effects[k].shape.size());
+    for (std::size_t i = 0; i < in.effects[k].shape.size(); ++i) {
+      const Shape& written = out.effects[k].shape[i];
+      EXPECT_FALSE(written.parameters().empty()) << written.text();
+      EXPECT_EQ(in.effects[k].shape[i].parameters(), written.parameters()) << written.text();
+    }
+  }
+  EXPECT_EQ(format_model(in), format_model(out));
+}
+
+TEST(ModelToml, ACatalogueNameAloneIsSpeltOut) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("m.toml", "[[effect]]\nname = \"hard iron\"\n");
+  const Model model = read_model(file);
+  ASSERT_EQ(model.effects.size(), 1U);
+  EXPECT_EQ(model.effects[0].channel, Channel::compass);
+  EXPECT_EQ(texts_of(model.effects[0].shape),
+            (std::vector<std::string>{"sin(heading)", "cos(heading)"}));
+  EXPECT_NE(format_model(model).find("channel = \"compass\"\nshape = [\"sin(heading)\""),
+            std::string::npos);
 }
 
 /// A ring of landmarks with hostile names, numbers of all digits, seed 3.

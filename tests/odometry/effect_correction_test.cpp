@@ -8,6 +8,7 @@
 #include "shared_data.hpp"
 #include "simulation/tours.hpp"
 #include "simulation/wheeled_robot.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -47,8 +48,8 @@ TEST(EffectCorrection, RestoresTheMapOfTheSoundRobot) {
     faulty.drive.right[row] = (middle + half) / (1.0 + 0.0015);
   }
   Model model;
-  model.effects.push_back({"wheel diameter ratio", "", {}, {0.003}, false});
-  model.effects.push_back({"wheelbase", "", {}, {1.0 / 1.03 - 1.0}, false});
+  model.effects.push_back(catalogue_effect("wheel diameter ratio", {0.003}));
+  model.effects.push_back(catalogue_effect("wheelbase", {1.0 / 1.03 - 1.0}));
   const std::vector<Recording> corrected = without_effects({faulty}, model);
   for (std::size_t row = 0; row < sound.drive.rows(); ++row) {
     EXPECT_NEAR(corrected[0].drive.left[row], sound.drive.left[row], 1e-12);
@@ -63,7 +64,7 @@ TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsMap) {
   TRUSSMAP_NEEDS_SHARED("data/hidden/b");
   const Recording recording = read_recording(testing::shared("data/hidden/b"));
   Model model;
-  model.effects.push_back({"hard iron", "", {}, {0.0305937, -0.0257687}, false});
+  model.effects.push_back(catalogue_effect("hard iron", {0.0305937, -0.0257687}));
   EXPECT_LT(error_of(without_effects({recording}, model)), 0.7 * error_of({recording}));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "trussmap/catalogue.hpp"
 #include "trussmap/test_path.hpp"
 #include "trussmap/umbmark.hpp"
 
@@ -60,20 +61,20 @@ TEST(GeometryErrors, FactorsHaveMeanOneAndMultiply) {
 
 TEST(GeometryErrors, GoIntoAModelAndComeBack) {
   Model model;
-  model.effects = {{"wheelbase", "turn", {"1"}, {0.5}, false},
-                   {"mine", "turn", {"x"}, {1.0}, false}};
+  model.effects = {{"wheelbase", Channel::turn, {"1"}, {0.5}, false},
+                   {"mine", Channel::turn, {"x"}, {1.0}, false}};
   set_geometry_errors(model, {1.002, 0.99});
   ASSERT_EQ(model.effects.size(), 3U);  // the wheelbase replaced, the ratio added
   EXPECT_DOUBLE_EQ(model.effects[0].coefficients[0], 1.0 / 0.99 - 1.0);
-  EXPECT_EQ(model.effects[2].channel, "difference");
+  EXPECT_EQ(model.effects[2].channel, Channel::difference);
   EXPECT_DOUBLE_EQ(model.effects[2].coefficients[0], 2.0 * 0.002 / 2.002);
   const GeometryErrors back = geometry_errors(model);
   EXPECT_NEAR(back.diameter_ratio, 1.002, 1e-15);
   EXPECT_NEAR(back.wheelbase_ratio, 0.99, 1e-15);
 
-  model.effects[0].channel = "rotate";
+  model.effects[0].channel = Channel::rotate;
   EXPECT_THROW((void)geometry_errors(model), std::invalid_argument);
-  model.effects = {{"wheelbase", "", {}, {}, false}};  // a catalogue name alone: not fitted yet
+  model.effects = {catalogue_effect("wheelbase")};  // a catalogue name alone: not fitted yet
   EXPECT_EQ(geometry_errors(model).wheelbase_ratio, 1.0);
 }
 

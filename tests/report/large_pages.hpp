@@ -63,7 +63,7 @@ inline std::vector<TrendPicture> large_trends() {
     TrendPicture picture;
     picture.trend.kind = "stretch";
     picture.trend.against = variable;
-    picture.response.channel = "travel";
+    picture.response.channel = Channel::travel;
     picture.response.variable = variable;
     for (int bin = 0; bin < 9; ++bin) {
       picture.response.bins.push_back({0.1 * bin, 0.1 * bin, 0.1 * bin + 0.1, 0.01 * bin, 0.003});
@@ -82,7 +82,7 @@ inline Page large_comparison_page(int legs) {
 
 inline FittedEffect large_effect() {
   FittedEffect one;
-  one.estimate = {{"hard iron", "compass", {"sin(heading)", "cos(heading)"}, {0.04, -0.03}},
+  one.estimate = {{"hard iron", Channel::compass, {"sin(heading)", "cos(heading)"}, {0.04, -0.03}},
                   {0.001, 0.001},
                   {}};
   one.response = large_trends().front().response;
@@ -101,7 +101,8 @@ inline Diagnosis large_diagnosis(int legs) {
   Finding finding;
   finding.candidate.effect = large_effect().estimate.effect;
   finding.status = Status::missing;
-  finding.look_alikes = {{{"body tilt", "compass", {"sin(heading)", "cos(heading)"}, {}}, 0.99}};
+  finding.look_alikes = {
+      {{"body tilt", Channel::compass, {"sin(heading)", "cos(heading)"}, {}}, 0.99}};
   diagnosis.findings = {finding, finding};
   return diagnosis;
 }

@@ -3,8 +3,8 @@
 //
 // Effects of the catalogue in simulated recordings, undone by the definitions of the channels: a
 // slow integration of a few lines, which shares nothing with the simulator or the adjustment.
-#include "effects/shape.hpp"
 #include "geometry/index.hpp"
+#include "recording/row_variables.hpp"
 #include "simulation/tours.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/catalogue.hpp"
@@ -92,7 +92,7 @@ World simulate(const Case& one, Rates rates) {
   style.ramp = 1.0;
   world.robot.range_sensor = true;
   world.robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  world.effect = resolved({one.name, "", {}, one.values, false});
+  world.effect = catalogue_effect(one.name, one.values);
   world.drive = simulate_drive(world.mesh, walk, style, world.robot, 3, {{world.effect}, rates});
   return world;
 }
@@ -119,7 +119,8 @@ std::vector<double> gains(const World& world) {
       row_variables(world.drive.recording.drive, world.robot.wheelbase, motion.start, path, 0);
   variables["reverses_left"] = reversals(world, -1.0);
   variables["reverses_right"] = reversals(world, 1.0);
-  const std::set<std::string> instant = {"compass", "range", "range_scale", "bearing"};
+  const std::set<Channel> instant = {Channel::compass, Channel::range, Channel::range_scale,
+                                     Channel::bearing};
   if (instant.contains(world.effect.channel)) {
     for (std::size_t k = 0; k < path.size(); ++k) {
       variables["heading"][k] = path[k].heading;
@@ -129,7 +130,7 @@ std::vector<double> gains(const World& world) {
   }
   std::vector<double> g(path.size(), 0.0);
   for (std::size_t k = 0; k < world.effect.shape.size(); ++k) {
-    const std::vector<double> f = evaluate_shape(world.effect.shape[k], variables);
+    const std::vector<double> f = world.effect.shape[k].values(variables);
     for (std::size_t row = 0; row < g.size(); ++row) {
       g[row] += world.effect.coefficients[k] * f[row];
     }
@@ -138,22 +139,22 @@ std::vector<double> gains(const World& world) {
 }
 
 /// The motion of a row as the model has it, in small steps (midpoint rule).
-Pose advance(Pose pose, double left, double right, double dt, double g, const std::string& channel,
+Pose advance(Pose pose, double left, double right, double dt, double g, Channel channel,
              double wheelbase) {
-  if (channel == "left" || channel == "wheels") left *= 1.0 + g;
-  if (channel == "right" || channel == "wheels") right *= 1.0 + g;
-  if (channel == "difference") {
+  if (channel == Channel::left || channel == Channel::wheels) left *= 1.0 + g;
+  if (channel == Channel::right || channel == Channel::wheels) right *= 1.0 + g;
+  if (channel == Channel::difference) {
     left *= 1.0 - g / 2.0;
     right *= 1.0 + g / 2.0;
   }
   double ds = (left + right) / 2.0;
   double turn = (right - left) / wheelbase;
-  const double aside = channel == "creep" ? g * ds : 0.0;
-  if (channel == "travel") ds *= 1.0 + g;
-  if (channel == "turn") turn *= 1.0 + g;
-  if (channel == "drift") turn += g * dt;
-  if (channel == "advance") ds += g;
-  if (channel == "rotate") turn += g;
+  const double aside = channel == Channel::creep ? g * ds : 0.0;
+  if (channel == Channel::travel) ds *= 1.0 + g;
+  if (channel == Channel::turn) turn *= 1.0 + g;
+  if (channel == Channel::drift) turn += g * dt;
+  if (channel == Channel::advance) ds += g;
+  if (channel == Channel::rotate) turn += g;
   constexpr int steps = 60;
   for (int k = 0; k < steps; ++k) {
     const double c = std::cos(pose.heading + 0.5 * turn / steps);
@@ -174,7 +175,7 @@ struct Misfit {
 Misfit misfit(const World& world) {
   const Recording& recording = world.drive.recording;
   const Drive& drive = recording.drive;
-  const std::string& channel = world.effect.channel;
+  const Channel channel = world.effect.channel;
   const std::vector<double> g = gains(world);
   std::map<std::string, Vector2> landmarks;
   for (int k = 0; k < world.mesh.landmarks(); ++k) {
@@ -184,21 +185,22 @@ Misfit misfit(const World& world) {
   Pose pose = world.drive.motion.start;
   std::size_t row = 0;
   for (const Sighting& sighting : recording.sightings) {
-    const double t = sighting.t - (channel == "delay" ? g.front() : 0.0);
+    const double t = sighting.t - (channel == Channel::delay ? g.front() : 0.0);
     for (; row < drive.rows() && drive.t[row] <= t + 1e-9; ++row) {
       const double dt = drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
       pose = advance(pose, drive.left[row], drive.right[row], dt, g[row], channel,
                      world.robot.wheelbase);
-      const double offset = channel == "compass" ? g[row] : 0.0;
+      const double offset = channel == Channel::compass ? g[row] : 0.0;
       worst.compass =
           std::max(worst.compass, std::abs(wrap_angle(drive.heading[row] - offset - pose.heading)));
     }
     const double here = g[row == 0 ? 0 : row - 1];
-    Vector2 point(channel == "lever" ? here : 0.0, channel == "lever_left" ? here : 0.0);
+    Vector2 point(channel == Channel::lever ? here : 0.0,
+                  channel == Channel::lever_left ? here : 0.0);
     if (!sighting.standing()) {
-      double range = sighting.range - (channel == "range" ? here : 0.0);
-      if (channel == "range_scale") range /= 1.0 + here;
-      const double bearing = sighting.bearing - (channel == "bearing" ? here : 0.0);
+      double range = sighting.range - (channel == Channel::range ? here : 0.0);
+      if (channel == Channel::range_scale) range /= 1.0 + here;
+      const double bearing = sighting.bearing - (channel == Channel::bearing ? here : 0.0);
       point += range * Vector2(std::cos(bearing), std::sin(bearing));
     }
     const Vector2 seen = pose.position() + rotation(pose.heading) * point;
@@ -266,9 +268,9 @@ TEST(EffectPhysics, TwoEffectsActSideBySide) {
   style.standing = 0.0;
   const SimulatedDrive drive =
       simulate_drive(mesh, walk, style, robot, 1,
-                     {{resolved({"left", "left", {"1"}, {0.02}, false}),
-                       resolved({"turn", "turn", {"lights"}, {-0.03}, false}),
-                       resolved({"advance", "advance", {"starts"}, {0.004}, false})},
+                     {{Effect{"left", Channel::left, {"1"}, {0.02}, false},
+                       Effect{"turn", Channel::turn, {"lights"}, {-0.03}, false},
+                       Effect{"advance", Channel::advance, {"starts"}, {0.004}, false}},
                       Rates::true_motion});
   const Drive& recorded = drive.recording.drive;
   bool started = false;
@@ -294,7 +296,7 @@ TEST(EffectPhysics, NoEffectsLeaveARecordingAsItWas) {
   const Recording b = simulate_drive(mesh, walk, {}, {}, 7, {{}, Rates::as_recorded}).recording;
   const Recording c =
       simulate_drive(mesh, walk, {}, {}, 7,
-                     {{resolved({"compass offset", "", {}, {0.1}, false})}, Rates::true_motion})
+                     {{catalogue_effect("compass offset", {0.1})}, Rates::true_motion})
           .recording;
   EXPECT_EQ(a.drive.left, b.drive.left);
   EXPECT_EQ(a.drive.heading, b.drive.heading);
@@ -329,7 +331,7 @@ TEST(EffectPhysics, FurtherColumnsVaryAndActAsCovariates) {
   const std::vector<int> walk = make_tours(mesh, WalkKind::euler, 1, random).walk;
   DrivingStyle style;
   style.covariates = {"crates"};
-  const SimulatedEffects effects{{resolved({"load on one wheel (crates)", "", {}, {0.1}, false})},
+  const SimulatedEffects effects{{catalogue_effect("load on one wheel (crates)", {0.1})},
                                  Rates::true_motion};
   const SimulatedDrive with = simulate_drive(mesh, walk, style, {}, 7, effects);
   const Covariate& crates = with.recording.drive.covariates.back();

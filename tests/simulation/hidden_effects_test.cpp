@@ -41,9 +41,10 @@ TEST(HiddenEffects, AreOneOrTwoThatTheRecordingCanShow) {
       const CatalogueEntry* entry = find_entry(effect.name);
       ASSERT_NE(entry, nullptr) << effect.name;
       names.insert(std::string(entry->name));
-      EXPECT_EQ(effect.channel, facts_of(entry->channel).name);
+      EXPECT_EQ(effect.channel, entry->channel);
       EXPECT_EQ(effect.coefficients.size(), effect.shape.size());
-      EXPECT_FALSE(effect.channel.starts_with("range") || effect.channel == "bearing");
+      EXPECT_FALSE(effect.channel == Channel::range || effect.channel == Channel::range_scale ||
+                   effect.channel == Channel::bearing);
     }
     if (drawn.size() == 2) {
       EXPECT_NE(drawn[0].channel, drawn[1].channel);
@@ -59,7 +60,7 @@ TEST(HiddenEffects, KeepToWhatTheRobotHas) {
   f.robot.compass = false;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     for (const Effect& effect : draw_hidden_effects(f.motion, f.mesh, f.robot, false, seed)) {
-      EXPECT_NE(effect.channel, "compass");
+      EXPECT_NE(effect.channel, Channel::compass);
       EXPECT_NE(effect.name, "travel scale");
       EXPECT_NE(effect.name, "constant creep");
     }

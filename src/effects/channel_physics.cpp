@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "effects/channel_physics.hpp"
+
+namespace trussmap {
+
+ActsOn acts_on(Channel channel) {
+  switch (channel) {
+    case Channel::compass:
+      return ActsOn::readings;
+    case Channel::lever:
+    case Channel::lever_left:
+    case Channel::range:
+    case Channel::range_scale:
+    case Channel::bearing:
+    case Channel::delay:
+      return ActsOn::views;
+    case Channel::travel:
+    case Channel::left:
+    case Channel::right:
+    case Channel::wheels:
+    case Channel::difference:
+    case Channel::turn:
+    case Channel::drift:
+    case Channel::advance:
+    case Channel::rotate:
+    case Channel::creep:
+      break;
+  }
+  return ActsOn::drives;
+}
+
+DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
+  const double path = 0.5 * (row.left + row.right);
+  const double turn = (row.right - row.left) / wheelbase;
+  switch (channel) {
+    case Channel::travel:
+      return {g * path, 0.0, 0.0, 0.0};
+    case Channel::left:
+      return {0.5 * g * row.left, 0.0, -g * row.left / wheelbase, 0.0};
+    case Channel::right:
+      return {0.5 * g * row.right, 0.0, g * row.right / wheelbase, 0.0};
+    case Channel::wheels:
+      return {g * path, 0.0, g * turn, 0.0};
+    case Channel::difference:
+      return {0.25 * g * (row.right - row.left), 0.0, g * path / wheelbase, 0.0};
+    case Channel::turn:
+      return {0.0, 0.0, g * turn, 0.0};
+    case Channel::drift:
+      return {0.0, 0.0, g * row.duration, 0.0};
+    case Channel::advance:
+      return {g, 0.0, 0.0, 0.0};
+    case Channel::rotate:
+      return {0.0, 0.0, g, 0.0};
+    case Channel::creep:
+      return {0.0, g * path, 0.0, 0.0};
+    case Channel::compass:
+      return {0.0, 0.0, 0.0, g};
+    case Channel::lever:
+    case Channel::lever_left:
+    case Channel::range:
+    case Channel::range_scale:
+    case Channel::bearing:
+    case Channel::delay:
+      break;
+  }
+  return {};
+}
+
+ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate) {
+  ViewPattern view;
+  switch (channel) {
+    case Channel::lever:
+      view.ahead = g;
+      break;
+    case Channel::lever_left:
+      view.left = g;
+      break;
+    case Channel::range:
+      view.range = g;
+      break;
+    case Channel::range_scale:
+      view.range_scale = g;
+      break;
+    case Channel::bearing:
+      view.bearing = g;
+      break;
+    case Channel::delay:
+      view.ahead = -g * speed;
+      view.heading = -g * turn_rate;
+      break;
+    default:
+      break;
+  }
+  return view;
+}
+
+bool is_recordable(Channel channel) {
+  return channel != Channel::creep && channel != Channel::lever && channel != Channel::lever_left &&
+         channel != Channel::delay;
+}
+
+RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase) {
+  const DrivePattern more = drive_pattern(channel, g, row, wheelbase);
+  return {row.left + more.advance - 0.5 * wheelbase * more.turn,
+          row.right + more.advance + 0.5 * wheelbase * more.turn, row.duration};
+}
+
+Sighting without(Channel channel, double g, const Sighting& sighting) {
+  const ViewPattern more = view_pattern(channel, g, 0.0, 0.0);
+  Sighting result = sighting;
+  result.range = (sighting.range - more.range) / (1.0 + more.range_scale);
+  if (more.bearing != 0.0) result.bearing = wrap_angle(sighting.bearing - more.bearing);
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a channel does to a row of the drive, to a reading and to a view of a landmark: its physics,
+// and with it its exact column, for both are linear in g. With f the shape's value, one unit of a
+// coefficient adds
+//
+//   channel             per row of the drive                  shape taken at
+//   travel              path f                                middle of the row
+//   left, right         half the wheel's travel, and          middle
+//                       -+ travel/wheelbase of turn
+//   wheels              path f, turn f                        middle
+//   difference          (right - left)/4 f, path/wheelbase f  middle
+//   turn, drift, rotate turn f, duration f, f (turn)          middle
+//   advance             f (path)                              middle
+//   creep               path f, to the left                   middle
+//   compass             f                                     the reading's instant
+//   ... per sighting and truth row
+//   lever, lever_left   f ahead, to the left                  its instant
+//   range, range_scale, bearing   f (sightings only)          its instant
+//   delay               -speed f ahead, -turn rate f          its instant
+//
+// Path and turn are those of a row's wheels: (left + right)/2 and (right - left)/wheelbase. The
+// simulator finds readings by turning the physics round; it shares no formula with this file.
+#pragma once
+
+#include "trussmap/channel.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+namespace trussmap {
+
+/// Where a channel acts, and so where its shapes are taken.
+enum class ActsOn { drives, readings, views };
+[[nodiscard]] ActsOn acts_on(Channel channel);
+
+/// What the wheels show over one row.
+struct RowTravel {
+  double left = 0.0;      ///< m, signed travel
+  double right = 0.0;     ///< m
+  double duration = 0.0;  ///< s
+};
+
+/// What is added to a whole row.
+struct DrivePattern {
+  double advance = 0.0;  ///< m more forward travel
+  double slip = 0.0;     ///< m sideways, to the left
+  double turn = 0.0;     ///< rad more turn
+  double compass = 0.0;  ///< rad by which the reading exceeds the heading
+};
+
+/// What is added to a view of a landmark or to a truth row.
+struct ViewPattern {
+  double ahead = 0.0;        ///< m
+  double left = 0.0;         ///< m
+  double heading = 0.0;      ///< rad
+  double range = 0.0;        ///< m
+  double range_scale = 0.0;  ///< fraction
+  double bearing = 0.0;      ///< rad
+
+  [[nodiscard]] Eigen::Matrix<double, 6, 1> vector() const {
+    return (Eigen::Matrix<double, 6, 1>() << ahead, left, heading, range, range_scale, bearing)
+        .finished();
+  }
+};
+
+/// What g of this channel adds to a row; with g = f, the column of a coefficient. Nothing where the
+/// channel acts on views.
+[[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row,
+                                         double wheelbase);
+/// The same for a view or truth row at this speed (m/s) and turn rate (rad/s).
+[[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
+
+/// Whether a recording without the effect can be written down: not so for creep, lever, lever_left
+/// and delay.
+[[nodiscard]] bool is_recordable(Channel channel);
+
+/// The wheels' travels as they would be if the nominal model held, for a recordable channel that
+/// acts on drives.
+[[nodiscard]] RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase);
+/// A range and bearing freed from g of the channel range, range_scale or bearing.
+[[nodiscard]] Sighting without(Channel channel, double g, const Sighting& sighting);
+
+}  // namespace trussmap

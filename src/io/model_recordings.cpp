@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/effect_columns.hpp"
+#include "odometry/effect_correction.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+
+#include <stdexcept>
+
+namespace trussmap {
+
+Model read_model(const std::filesystem::path& file, const std::vector<Recording>& recordings) {
+  Model model = read_model(file);
+  if (model.effects.empty()) return model;
+  std::vector<SessionPath> paths;
+  for (const Recording& recording : recordings) {
+    paths.push_back({Pose(), row_path(recording.drive, model)});
+  }
+  const ShapeContext context(recordings, model.robot, paths);
+  // One effect after the other, so that the one at fault is known by its line.
+  for (const Effect& effect : model.effects) {
+    try {
+      static_cast<void>(effect_columns({effect}, context));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(file.string(), effect.line, error.what());
+    }
+  }
+  return model;
+}
+
+}  // namespace trussmap

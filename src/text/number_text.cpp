@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "text/number_text.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace trussmap {
+
+std::string shortest_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string short_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::general, 6)
+                       .ptr;
+  return {buffer.data(), end};
+}
+
+double rounded_within(double value, double scale) {
+  const int digits = 4 - static_cast<int>(std::floor(std::log10(scale)));
+  // A quotient or product of two whole numbers is the double nearest to the decimal number.
+  if (digits <= 0) {
+    const double unit = std::pow(10.0, -digits);
+    return std::round(value / unit) * unit;
+  }
+  const double parts = std::pow(10.0, digits);
+  return std::round(value * parts) / parts;
+}
+
+}  // namespace trussmap

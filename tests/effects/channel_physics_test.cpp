@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Columns of the channels against differences of what the table of channels says, written out here
+// once more.
+#include "effects/channel_physics.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kWheelbase = 0.4;
+
+/// What the robot did in a row, given what its wheels say: ds, slip, dtheta, reading less heading.
+Eigen::Vector4d motion(Channel channel, double g, const RowTravel& row) {
+  double left = row.left;
+  double right = row.right;
+  if (channel == Channel::left || channel == Channel::wheels) left *= 1.0 + g;
+  if (channel == Channel::right || channel == Channel::wheels) right *= 1.0 + g;
+  if (channel == Channel::difference) {
+    left *= 1.0 - g / 2.0;
+    right *= 1.0 + g / 2.0;
+  }
+  double ds = (left + right) / 2.0;
+  double dtheta = (right - left) / kWheelbase;
+  const double slip = channel == Channel::creep ? g * ds : 0.0;
+  if (channel == Channel::travel) ds *= 1.0 + g;
+  if (channel == Channel::advance) ds += g;
+  if (channel == Channel::turn) dtheta *= 1.0 + g;
+  if (channel == Channel::drift) dtheta += g * row.duration;
+  if (channel == Channel::rotate) dtheta += g;
+  return {ds, slip, dtheta, channel == Channel::compass ? g : 0.0};
+}
+
+/// A reading of a landmark 3 m ahead and 2 m to the left of the axle: range, bearing.
+Eigen::Vector2d reading(Channel channel, double g, double speed, double turn_rate) {
+  // A late stamp is believed to be from where the robot was g later.
+  const double late = channel == Channel::delay ? g : 0.0;
+  const Vector2 moved(speed * late, 0.0);
+  const double turned = turn_rate * late;
+  const Vector2 sensor(channel == Channel::lever ? g : 0.0,
+                       channel == Channel::lever_left ? g : 0.0);
+  // Where it stands at the stamp, the landmark is seen from where it stood before.
+  const Vector2 view = Vector2(3.0, 2.0) + moved - sensor;
+  double range = view.norm();
+  double bearing = direction(view) + turned;
+  if (channel == Channel::range) range += g;
+  if (channel == Channel::range_scale) range *= 1.0 + g;
+  if (channel == Channel::bearing) bearing += g;
+  return {range, bearing};
+}
+
+/// The same by a pattern's definition: the sensor `ahead` and `left` of the axle, looking `heading`
+/// further left.
+Eigen::Vector2d reading(const ViewPattern& pattern) {
+  const Vector2 view = Vector2(3.0, 2.0) - Vector2(pattern.ahead, pattern.left);
+  return {view.norm() * (1.0 + pattern.range_scale) + pattern.range,
+          direction(view) - pattern.heading + pattern.bearing};
+}
+
+RowTravel any_row(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> travel(-0.2, 0.3);
+  return {travel(random), travel(random), 0.1};
+}
+
+class EveryChannel : public ::testing::TestWithParam<Channel> {};
+
+TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
+  std::mt19937_64 random(2);
+  bool acts = false;
+  for (int k = 0; k < 50; ++k) {
+    const RowTravel row = any_row(random);
+    const double step = 1e-3;
+    const Eigen::Vector4d expected =
+        (motion(GetParam(), step, row) - motion(GetParam(), -step, row)) / (2.0 * step);
+    const DrivePattern found = drive_pattern(GetParam(), 1.0, row, kWheelbase);
+    EXPECT_LT(
+        (Eigen::Vector4d(found.advance, found.slip, found.turn, found.compass) - expected).norm(),
+        1e-12);
+    acts = acts || expected.norm() > 0.0;
+    // Linear in g: the column is the physics.
+    const DrivePattern twice = drive_pattern(GetParam(), -2.0, row, kWheelbase);
+    EXPECT_DOUBLE_EQ(twice.advance, -2.0 * found.advance);
+    EXPECT_DOUBLE_EQ(twice.turn, -2.0 * found.turn);
+  }
+  EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views);
+}
+
+TEST_P(EveryChannel, AddsToAViewWhatTheTableSays) {
+  const double speed = 0.6;
+  const double turn_rate = -0.3;
+  const double step = 1e-4;
+  const auto slope = [step](const Eigen::Vector2d& more, const Eigen::Vector2d& less) {
+    return Eigen::Vector2d((more - less) / (2.0 * step));
+  };
+  const Eigen::Vector2d expected = slope(reading(GetParam(), step, speed, turn_rate),
+                                         reading(GetParam(), -step, speed, turn_rate));
+  const Eigen::Vector2d found = slope(reading(view_pattern(GetParam(), step, speed, turn_rate)),
+                                      reading(view_pattern(GetParam(), -step, speed, turn_rate)));
+  EXPECT_LT((found - expected).norm(), 1e-6);
+  EXPECT_EQ(expected.norm() > 0.0, acts_on(GetParam()) == ActsOn::views);
+}
+
+TEST_P(EveryChannel, LeavesTheRobotsMotionWhereARecordingIsFreedFromIt) {
+  if (!is_recordable(GetParam()) || acts_on(GetParam()) != ActsOn::drives) return;
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 50; ++k) {
+    const RowTravel row = any_row(random);
+    const RowTravel nominal = without(GetParam(), 0.07, row, kWheelbase);
+    const Eigen::Vector4d did = motion(GetParam(), 0.07, row);
+    EXPECT_NEAR(0.5 * (nominal.left + nominal.right), did[0], 1e-15);
+    EXPECT_NEAR((nominal.right - nominal.left) / kWheelbase, did[2], 1e-14);
+  }
+}
+
+std::vector<Channel> all_channels() {
+  std::vector<Channel> all;
+  for (const ChannelFacts& one : channels()) all.push_back(one.channel);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(ChannelPhysics, EveryChannel, ::testing::ValuesIn(all_channels()),
+                         [](const auto& which) { return std::string(name_of(which.param)); });
+
+TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
+  const Sighting truth{1.0, "A", 2.5, 3.0};
+  const auto freed = [&](Channel channel, double range, double bearing) {
+    return without(channel, 0.2, Sighting{1.0, "A", range, bearing});
+  };
+  EXPECT_NEAR(freed(Channel::range, 2.7, 3.0).range, truth.range, 1e-15);
+  EXPECT_NEAR(freed(Channel::range_scale, 3.0, 3.0).range, truth.range, 1e-15);
+  EXPECT_NEAR(freed(Channel::bearing, 2.5, wrap_angle(3.2)).bearing, truth.bearing, 1e-15);
+  EXPECT_EQ(freed(Channel::range, 2.7, 3.0).bearing, truth.bearing);
+}
+
+TEST(Channels, HaveOneNameEach) {
+  EXPECT_EQ(channels().size(), 17U);
+  for (const ChannelFacts& one : channels()) {
+    EXPECT_EQ(parse_channel(one.name), one.channel);
+    EXPECT_EQ(channel_named(one.name), one.channel);
+    EXPECT_EQ(name_of(one.channel), one.name);
+    EXPECT_GT(one.prior_sd, 0.0);
+  }
+  EXPECT_EQ(parse_channel("Turn"), std::nullopt);
+  try {
+    (void)channel_named("steer");
+    ADD_FAILURE() << "an unknown channel was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(
+        std::string(error.what()).rfind("channel \"steer\" is unknown, expected one of travel,", 0),
+        0U);
+  }
+}
+
+}  // namespace
+}  // namespace trussmap

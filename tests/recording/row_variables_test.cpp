@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The variables that shapes speak of.
+#include "recording/row_variables.hpp"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+using Values = std::vector<double>;
+
+/// 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s back; rows of 0.1 s.
+Drive plain_drive() {
+  Drive drive;
+  const auto add = [&drive](int rows, double left, double right) {
+    for (int k = 0; k < rows; ++k) {
+      drive.t.push_back(10.0 + 0.1 * static_cast<double>(drive.rows() + 1));
+      drive.left.push_back(left);
+      drive.right.push_back(right);
+    }
+  };
+  add(20, 0.0, 0.0);
+  add(20, -0.02, 0.02);
+  add(30, 0.05, 0.05);
+  add(30, -0.05, -0.05);
+  drive.covariates.push_back({"lights", Values(100, 1.0)});
+  return drive;
+}
+
+RowVariables variables_of(const Drive& drive) {
+  return row_variables(drive, 0.4, {}, std::vector<Pose>(drive.rows()), 2);
+}
+
+TEST(RowVariables, AreTheReservedOnesAndTheCovariates) {
+  std::vector<std::string> names;
+  for (const auto& [name, values] : variables_of(plain_drive())) names.push_back(name);
+  std::vector<std::string> expected = reserved_variables();
+  expected.emplace_back("lights");
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(names, expected);
+  EXPECT_TRUE(is_event("spins") && is_rate("speed"));
+  EXPECT_FALSE(is_event("speed") || is_rate("lights") || is_event("x"));
+}
+
+TEST(RowVariables, RatesAreThoseOfTheMotionAndStayWithinIt) {
+  const RowVariables v = variables_of(plain_drive());
+  EXPECT_NEAR(v.at("speed")[39], 0.0, 1e-12);  // the last of the spin
+  EXPECT_NEAR(v.at("speed")[40], 0.5, 1e-12);  // the first of the drive
+  EXPECT_NEAR(v.at("turn_rate")[20], 1.0, 1e-12);
+  EXPECT_NEAR(v.at("turn_rate")[19], 0.0, 1e-12);
+  EXPECT_NEAR(v.at("turn_rate")[40], 0.0, 1e-12);
+  EXPECT_EQ(v.at("lights")[7], 1.0);
+  EXPECT_EQ(v.at("session")[7], 2.0);
+}
+
+TEST(RowVariables, EventsComeOnce) {
+  const RowVariables v = variables_of(plain_drive());
+  const auto count = [&v](const char* name) {
+    double sum = 0.0;
+    for (const double value : v.at(name)) sum += value;
+    return sum;
+  };
+  EXPECT_EQ(count("starts"), 1.0);
+  EXPECT_EQ(v.at("starts")[40], 1.0);
+  EXPECT_EQ(count("spins"), 1.0);
+  EXPECT_EQ(v.at("spins")[20], 1.0);
+  EXPECT_EQ(count("reverses_left"), 2.0);  // backwards, ahead, backwards
+  EXPECT_EQ(v.at("reverses_left")[40], 1.0);
+  EXPECT_EQ(v.at("reverses_right")[70], 1.0);
+}
+
+TEST(RowVariables, TimeAndDistanceAreAtTheRowsMiddle) {
+  const RowVariables v = variables_of(plain_drive());
+  EXPECT_NEAR(v.at("t")[0], 0.05, 1e-12);
+  EXPECT_NEAR(v.at("t")[99], 9.95, 1e-12);
+  EXPECT_NEAR(v.at("distance")[40], 0.025, 1e-12);
+  EXPECT_NEAR(v.at("distance")[99], 3.0 - 0.025, 1e-12);
+}
+
+/// Encoder noise of single rows is averaged over ten of them.
+TEST(RowVariables, RatesAreSmoothed) {
+  Drive drive = plain_drive();
+  for (std::size_t row = 40; row < 70; ++row) {
+    drive.left[row] += row % 2 == 0 ? 0.01 : -0.01;
+    drive.right[row] += row % 2 == 0 ? 0.01 : -0.01;
+  }
+  const RowVariables v = variables_of(drive);
+  for (std::size_t row = 45; row < 65; ++row) {
+    EXPECT_NEAR(v.at("speed")[row], 0.5, 0.1 / 11.0 + 1e-9) << row;  // a single row is off by 0.1
+  }
+}
+
+}  // namespace
+}  // namespace trussmap

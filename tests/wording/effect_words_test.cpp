@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "wording/effect_words.hpp"
+
+#include "trussmap/catalogue.hpp"
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {
+  Effect patch = catalogue_effect("slippery patch (x=12.345, y=-9.8, r=3.06)");
+  EXPECT_EQ(name_in_words(patch), "slippery patch at x 12.3 m, y -9.8 m, radius 3.1 m");
+  EXPECT_EQ(short_name(patch), "slippery patch");
+  ASSERT_TRUE(place_of(patch));
+  EXPECT_EQ(*place_of(patch), Vector2(12.345, -9.8));
+  patch.shape = {"exp(-((x-1)^2+(y-2)^2)/(2*0.5^2))"};
+  EXPECT_EQ(*place_of(patch), Vector2(1.0, 2.0));
+  patch.per_session = true;
+  EXPECT_FALSE(place_of(patch));
+  EXPECT_FALSE(place_of(catalogue_effect("slope")));
+}
+
+TEST(EffectWords, NamesSayWhatIsOpenInThem) {
+  EXPECT_EQ(name_in_words(catalogue_effect("missed ticks (v0=0.4)")), "missed ticks above 0.4 m/s");
+  EXPECT_EQ(name_in_words(catalogue_effect("tyre drift (t)")), "tyre drift with time");
+  EXPECT_EQ(name_in_words({"turn with turn_rate", Channel::turn, {"turn_rate"}, {}}),
+            "turning error with turn rate");
+  EXPECT_EQ(name_in_words(
+                {"creep at a place", Channel::creep, {"exp(-((x-1)^2+(y-2)^2)/(2*0.5^2))"}, {}}),
+            "sideways slip at x 1.0 m, y 2.0 m");
+  EXPECT_EQ(name_in_words({"my own", Channel::turn, {"x"}, {}}), "my own");
+}
+
+TEST(EffectWords, AWaveGoesRoundWithWhatIsInIt) {
+  Effect iron = catalogue_effect("soft iron", {0.03, -0.04});
+  EXPECT_EQ(in_words(iron, {0.001, 0.001}),
+            "the compass reads up to 2.865 +- 0.057 deg too much, and as much the other way, as "
+            "2*heading goes round");
+  iron.shape = {"sin(heading)", "cos(2*heading)"};
+  EXPECT_EQ(in_words(iron, {0.001, 0.001}).find("goes round"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace trussmap

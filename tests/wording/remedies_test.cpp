@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/diagnosis.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+constexpr const char* kApart =
+    "stand for some minutes between tours, and drive fast and slow ones: time, distance and ";
+
+TEST(SeparatingDrive, TakesTimeApartFromAnyCovariateThatVariesSlowly) {
+  const Effect aged = catalogue_effect("tyre drift (t)");
+  for (const char* name : {"temperature_C", "battery_V", "t_motor"}) {
+    const Effect warmed = catalogue_effect("tyre drift (" + std::string(name) + ")");
+    const std::string expected = std::string(kApart) + name + " then go apart";
+    EXPECT_EQ(separating_drive(aged, warmed, {name}), expected);
+    EXPECT_EQ(separating_drive(warmed, aged, {"lights_on", name}), expected);
+  }
+}
+
+TEST(SeparatingDrive, TakesTimeApartFromDistance) {
+  EXPECT_EQ(separating_drive(catalogue_effect("tyre drift (t)"),
+                             catalogue_effect("tyre drift (distance)"), {"battery_V"}),
+            std::string(kApart) + "temperature then go apart");
+}
+
+TEST(SeparatingDrive, HasItsOwnAdviceWhereNothingGoesWithTime) {
+  const Effect wheelbase = catalogue_effect("wheelbase");
+  EXPECT_NE(separating_drive(wheelbase, catalogue_effect("twist per spin"), {"battery_V"})
+                .find("turn on the spot"),
+            std::string::npos);
+  // Two covariates of a slow kind: nothing about time.
+  EXPECT_EQ(separating_drive(catalogue_effect("compass disturbance (a)"),
+                             catalogue_effect("load on both wheels (b)"), {"a", "b"})
+                .find("stand for some minutes"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace trussmap
