@@ -340,17 +340,24 @@ void setup_build(CLI::App& app) {
   auto options = std::make_shared<BuildOptions>();
   CLI::App* command = app.add_subcommand(
       "build", "Build a landmark map from recordings (several folders: several sessions)");
-  command->add_option("RECORDING", options->recordings, "Folders of CSV streams")->required();
-  command->add_option("--model", options->model, "The robot and its noise (TOML)")->required();
+  command->add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--model", options->model, "The robot and its noise (TOML)")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option(
           "--method", options->method,
           "How the map is made: leg by leg, or by an adjustment of all measurements at once")
       ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
       ->capture_default_str();
-  command->add_option("--out", options->out, "The map (.graphml, .g2o, .geojson or .dot)");
-  command->add_option("--json", options->json_file, "The figures, complete (JSON)");
-  command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
+  command->add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
+      ->type_name("FILE");
+  command->add_option("--json", options->json_file, "Write every figure as JSON")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
+      ->type_name("FILE");
   add_html_option(*command, options->page);
   add_plots_option(*command, options->page);
   command
@@ -358,6 +365,7 @@ void setup_build(CLI::App& app) {
           "--eta", options->eta,
           "How many landmarks a refinement of the elastic methods may move: a number, all, "
           "or auto")
+      ->type_name("N|all|auto")
       ->check(eta_text())
       ->capture_default_str();
   command

@@ -92,11 +92,13 @@ void setup_convert(CLI::App& app) {
       ->add_option("IN", options->in,
                    "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
                    "..._run-NN.csv (plain or .xz files)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("OUT", options->out,
                    "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
-      ->required();
+      ->required()
+      ->type_name("FILE|DIR");
   command->callback([options] { run_convert(*options); });
 }
 

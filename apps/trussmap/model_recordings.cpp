@@ -38,8 +38,9 @@ void check_effects(const Model& model, const std::vector<Recording>& recordings,
 }  // namespace
 
 void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
-  command.add_option("RECORDING", options.recordings, "Folders of CSV streams, one per session")
-      ->required();
+  command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
+      ->required()
+      ->type_name("DIR");
   command.add_option("--model", options.model, "Model of the robot (TOML)")
       ->required()
       ->type_name("FILE");
