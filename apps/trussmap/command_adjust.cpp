@@ -157,8 +157,10 @@ void setup_adjust(CLI::App& app) {
   command->add_flag("--robust", options->robust,
                     "Leave out loop closures that contradict the rest, and say which");
   command
-      ->add_option("--gate", options->gate,
-                   "With --robust: largest e'Omega e of an edge that is kept")
+      ->add_option(
+          "--gate", options->gate,
+          "With --robust: leave loop closures out whose e'Omega e, against the best fit of "
+          "all others, exceeds this (squared standard deviations)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->footer(

@@ -14,6 +14,7 @@
 #include "report/map_page.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/gate.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -52,9 +53,6 @@ struct BuildOptions {
 };
 
 constexpr std::size_t kRejectedShown = 10;
-
-/// A sighting of the adjustment is weighed against all others, which leaves less room for doubt.
-constexpr double kAdjustmentGate = 4.0;
 
 /// The map builder's part; an adjustment takes only legs and routes from it.
 RecordingMapOptions map_options(const BuildOptions& options) {
@@ -374,10 +372,12 @@ void setup_build(CLI::App& app) {
       ->check(zero_or_more())
       ->capture_default_str();
   command
-      ->add_option("--gate", options->gate,
-                   "Keep out sightings that contradict the map by more standard deviations; by "
-                   "default 8, of the sighting, the reckoning and the map together, and for "
-                   "adjustment 4, of the sighting alone")
+      ->add_option(
+          "--gate", options->gate,
+          fmt::format("Leave sightings out that contradict the map by more standard deviations "
+                      "than this; by default {:g}, of the sighting, the reckoning and the "
+                      "map jointly, with --method adjustment {:g}, of the sighting alone",
+                      kMapGate, kAdjustmentGate))
       ->check(above_zero());
   command->callback([options] { run_build(*options); });
 }

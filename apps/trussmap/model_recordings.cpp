@@ -66,8 +66,8 @@ void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
       ->type_name("WHAT,...");
   command
       .add_option("--gate", options.gate,
-                  "Leave sightings out that the others contradict by so many standard deviations "
-                  "(0: none)")
+                  "Leave sightings out that all others contradict by more standard deviations than "
+                  "this (0: leave none out)")
       ->check(zero_or_more())
       ->capture_default_str();
 }

@@ -4,6 +4,7 @@
 // The command line as a user meets it: status, one line for what is wrong, nothing half-written.
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
+#include "trussmap/gate.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -47,6 +49,26 @@ TEST(Command, HelpSpellsTypesInOneWay) {
     EXPECT_FALSE(std::regex_search(help, other)) << help;
     EXPECT_FALSE(std::regex_search(help, no_file)) << help;
   }
+}
+
+/// Help as one line, so that line breaks do not matter.
+std::string help_in_one_line(const std::string& command) {
+  static const std::regex kBlanks(R"(\s+)");
+  return std::regex_replace(run_trussmap(command + " --help").output, kBlanks, " ");
+}
+
+TEST(Command, HelpStatesTheDefaultOfEveryGate) {
+  const std::string build = help_in_one_line("build");
+  EXPECT_NE(build.find(fmt::format("by default {:g}, of the sighting", kMapGate)),
+            std::string::npos);
+  EXPECT_NE(build.find(fmt::format("with --method adjustment {:g},", kAdjustmentGate)),
+            std::string::npos);
+  for (const std::string command : {"compare", "diagnose", "discover", "fit"}) {
+    const std::string help = help_in_one_line(command);
+    EXPECT_NE(help.find(fmt::format("--gate X={:g} ", kModelGate)), std::string::npos) << help;
+  }
+  const std::string adjust = help_in_one_line("adjust");
+  EXPECT_NE(adjust.find(fmt::format("--gate X={:g} ", kPoseGraphGate)), std::string::npos);
 }
 
 TEST(Command, HelpSaysWhatARecordingIs) {
