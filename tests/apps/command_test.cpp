@@ -81,6 +81,16 @@ TEST(Command, HelpSaysWhatARecordingIs) {
   }
 }
 
+TEST(Command, AGraphWithPosesIsNoMapAndIsNamed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string graph = scratch.write("poses.g2o", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n").string();
+  const Ran ran = run_trussmap("convert " + graph + " " + at + "/x.geojson");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_EQ(ran.output.rfind("trussmap: " + graph + ": the graph has poses", 0), 0U) << ran.output;
+  EXPECT_EQ(scratch.contents().size(), 1U);
+}
+
 TEST(Command, AnMrclamRobotWithoutItsOdometryIsNamed) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string();
