@@ -4,8 +4,10 @@
 # A short way to the usual things; CMake does the work (see CMakePresets.json).
 #   make               configure and build into build/
 #   make demo          install what is missing (Debian), build the command, run the worked examples
-#   make test          install what is missing (Debian), build everything, run all tests; pages are
-#                      tested in a browser (Chromium), which is installed too
+#   make check         install what is missing (Debian), build everything, run the fast tests: those
+#                      of pages in a browser and the slow ones are left to make test
+#   make test          the same with all tests; pages are tested in a browser (Chromium), which is
+#                      installed too
 #   make install-deps  install the Debian packages that the build needs
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -15,7 +17,7 @@ ifeq ($(wildcard build/CMakeCache.txt),)
 GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
-.PHONY: all demo test install-deps test-deps configure build command clean
+.PHONY: all check demo test install-deps test-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -32,6 +34,9 @@ command: configure
 
 demo: install-deps command
 	@maps/demo.sh
+
+check: install-deps build
+	@.ci/test build --parallel $(JOBS) --label-exclude 'slow|browser'
 
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)

@@ -70,11 +70,14 @@ void run_add(const AddOptions& options) {
 void setup_add(CLI::App& app) {
   auto options = std::make_shared<AddOptions>();
   CLI::App* command = app.add_subcommand("add", "Add a physical effect to a model");
-  command->add_option("MODEL", options->model, "Model of the robot (TOML)")->required();
+  command->add_option("MODEL", options->model, "Model of the robot (TOML)")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("EFFECT", options->effect,
                    "Name from the catalogue (trussmap simulate --help lists it), or your own")
-      ->required();
+      ->required()
+      ->type_name("NAME");
   command->add_option("--channel", options->channel, "Where an effect of your own acts")
       ->type_name("CHANNEL");
   command

@@ -142,23 +142,25 @@ void setup_adjust(CLI::App& app) {
   auto options = std::make_shared<AdjustOptions>();
   CLI::App* command = app.add_subcommand(
       "adjust", "Adjust a pose graph: find the poses and landmarks of least chi2");
-  command->add_option("GRAPH", options->graph, "pose graph to adjust, m and rad")
+  command->add_option("GRAPH", options->graph, "Pose graph to adjust, m and rad")
       ->required()
       ->type_name("FILE");
-  command->add_option("--out", options->out, "write the adjusted graph as g2o")->type_name("FILE");
-  command->add_option("--json", options->json, "write the result as JSON")->type_name("FILE");
+  command->add_option("--out", options->out, "Write the adjusted graph as g2o")->type_name("FILE");
+  command->add_option("--json", options->json, "Write every figure as JSON")->type_name("FILE");
   command
       ->add_option("--start", options->start,
-                   "estimates to start from: the file's, those that odometry gives (the file's "
+                   "Estimates to start from: the file's, those that odometry gives (the file's "
                    "are ignored), or the best of both; in each case other starts, drawn from the "
                    "measurements, are tried as well and the lowest chi2 is kept")
       ->check(CLI::IsMember({"best", "file", "odometry"}))
       ->capture_default_str();
   command->add_flag("--robust", options->robust,
-                    "leave out loop closures that contradict the rest, and say which");
+                    "Leave out loop closures that contradict the rest, and say which");
   command
-      ->add_option("--gate", options->gate,
-                   "with --robust: largest e'Omega e of an edge that is still believed")
+      ->add_option(
+          "--gate", options->gate,
+          "With --robust: leave loop closures out whose e'Omega e, against the best fit of "
+          "all others, exceeds this (squared standard deviations)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->footer(

@@ -14,6 +14,7 @@
 #include "report/map_page.hpp"
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/gate.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -52,9 +53,6 @@ struct BuildOptions {
 };
 
 constexpr std::size_t kRejectedShown = 10;
-
-/// A sighting of the adjustment is weighed against all others, which leaves less room for doubt.
-constexpr double kAdjustmentGate = 4.0;
 
 /// The map builder's part; an adjustment takes only legs and routes from it.
 RecordingMapOptions map_options(const BuildOptions& options) {
@@ -340,17 +338,24 @@ void setup_build(CLI::App& app) {
   auto options = std::make_shared<BuildOptions>();
   CLI::App* command = app.add_subcommand(
       "build", "Build a landmark map from recordings (several folders: several sessions)");
-  command->add_option("RECORDING", options->recordings, "Folders of CSV streams")->required();
-  command->add_option("--model", options->model, "The robot and its noise (TOML)")->required();
+  command->add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--model", options->model, "The robot and its noise (TOML)")
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option(
           "--method", options->method,
           "How the map is made: leg by leg, or by an adjustment of all measurements at once")
       ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
       ->capture_default_str();
-  command->add_option("--out", options->out, "The map (.graphml, .g2o, .geojson or .dot)");
-  command->add_option("--json", options->json_file, "The figures, complete (JSON)");
-  command->add_option("--svg", options->svg, "A picture of the map before and after (SVG)");
+  command->add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
+      ->type_name("FILE");
+  command->add_option("--json", options->json_file, "Write every figure as JSON")
+      ->type_name("FILE");
+  command->add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
+      ->type_name("FILE");
   add_html_option(*command, options->page);
   add_plots_option(*command, options->page);
   command
@@ -358,6 +363,7 @@ void setup_build(CLI::App& app) {
           "--eta", options->eta,
           "How many landmarks a refinement of the elastic methods may move: a number, all, "
           "or auto")
+      ->type_name("N|all|auto")
       ->check(eta_text())
       ->capture_default_str();
   command
@@ -366,10 +372,12 @@ void setup_build(CLI::App& app) {
       ->check(zero_or_more())
       ->capture_default_str();
   command
-      ->add_option("--gate", options->gate,
-                   "Keep out sightings that contradict the map by more standard deviations; by "
-                   "default 8, of the sighting, the reckoning and the map together, and for "
-                   "adjustment 4, of the sighting alone")
+      ->add_option(
+          "--gate", options->gate,
+          fmt::format("Leave sightings out that contradict the map by more standard deviations "
+                      "than this; by default {:g}, of the sighting, the reckoning and the "
+                      "map jointly, with --method adjustment {:g}, of the sighting alone",
+                      kMapGate, kAdjustmentGate))
       ->check(above_zero());
   command->callback([options] { run_build(*options); });
 }

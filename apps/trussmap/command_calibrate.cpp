@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth or survey.
-#include "calibration/truth_holdout.hpp"
-#include "calibration/wheel_calibration.hpp"
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "report/calibration_pages.hpp"
 #include "terminal.hpp"
+#include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -37,61 +36,26 @@ struct CalibrateOptions {
   std::string model;
   std::string out;
   std::string json;
-  double holdout = 0.3;
-  double leg = 1.0;  // m
+  CalibrationOptions calibration;
   std::vector<std::string> test;
   std::vector<std::string> without;
   PageOptions page;
 };
 
-struct HeldOut {
-  ArrivalErrors nominal;
-  ArrivalErrors calibrated;
-
-  [[nodiscard]] int legs() const { return calibrated.legs(); }
-};
-
-/// Drives that the calibration has not seen.
+/// Dead reckoning of drives that the calibration has not seen.
 struct Tested {
   std::vector<std::string> names;
   std::vector<DriveError> nominal;
   std::vector<DriveError> calibrated;
 };
 
-WheelCalibrationOptions calibration_options(const CalibrateOptions& options) {
+CalibrationOptions calibration_options(const CalibrateOptions& options) {
   const auto left_out = [&options](const char* what) {
     return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
   };
-  WheelCalibrationOptions result;
-  result.problem.survey = !left_out("survey");
-  result.problem.truth = !left_out("truth");
-  return result;
-}
-
-/// How well a calibration by the other legs predicts the held-out ones. None without truth.
-HeldOut held_out(const std::vector<Recording>& recordings, const Model& model,
-                 const CalibrateOptions& options) {
-  HeldOut result;
-  WheelCalibrationOptions how = calibration_options(options);
-  if (!how.problem.truth || !(options.holdout > 0.0)) return result;
-  const std::vector<TruthLeg> legs = truth_legs(recordings, options.holdout, options.leg);
-  const TrainingSegments training_segments = without_held_out(recordings, legs);
-  if (training_segments.recordings.empty() ||
-      std::none_of(legs.begin(), legs.end(), [](const TruthLeg& leg) { return leg.held_out; })) {
-    return result;
-  }
-  how.noise = false;
-  how.sessions = training_segments.sessions;
-  try {
-    const WheelCalibration other = calibrate_wheels(training_segments.recordings, model, how);
-    const std::vector<Recording> straight = aligned(recordings, other.truth, model.robot);
-    result.nominal = arrival_errors(straight, legs, model);
-    result.calibrated = arrival_errors(straight, legs, other.model);
-  } catch (const SolveError&) {  // too few legs are left to calibrate by
-    return {};
-  } catch (const InputError&) {
-    return {};
-  }
+  CalibrationOptions result = options.calibration;
+  result.survey = !left_out("survey");
+  result.truth = !left_out("truth");
   return result;
 }
 
@@ -104,24 +68,12 @@ Tested tested(const std::vector<Recording>& recordings, const Model& nominal,
   return result;
 }
 
-double rms_end(const std::vector<DriveError>& errors) {
-  double sum = 0.0;
-  for (const DriveError& one : errors) sum += one.end * one.end;
-  return std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
-double rms_heading(const std::vector<DriveError>& errors) {
-  double sum = 0.0;
-  for (const DriveError& one : errors) sum += one.heading_per_metre() * one.heading_per_metre();
-  return std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
 ordered_json json(const Tested& test) {
   ordered_json out = {{"recordings", test.names.size()},
                       {"end_rms_m", rms_end(test.calibrated)},
                       {"end_rms_nominal_m", rms_end(test.nominal)},
-                      {"heading_rms_rad_per_m", rms_heading(test.calibrated)},
-                      {"heading_rms_nominal_rad_per_m", rms_heading(test.nominal)}};
+                      {"heading_rms_rad_per_m", rms_heading_per_metre(test.calibrated)},
+                      {"heading_rms_nominal_rad_per_m", rms_heading_per_metre(test.nominal)}};
   for (std::size_t k = 0; k < test.names.size(); ++k) {
     out["each"].push_back({{"recording", test.names[k]},
                            {"driven_m", test.nominal[k].driven},
@@ -133,7 +85,17 @@ ordered_json json(const Tested& test) {
   return out;
 }
 
-ordered_json json(const WheelCalibration& found, const HeldOut& held,
+ordered_json json(const CalibrationValidation& held) {
+  const bool judged = held.legs() > 0;
+  return {{"legs", held.legs()},
+          {"held_out", held.scheme == HoldoutScheme::none     ? ordered_json()
+                       : held.scheme == HoldoutScheme::blocks ? "blocks of legs"
+                                                              : "recordings"},
+          {"arrival_rms_m", judged ? ordered_json(held.calibrated.rms()) : ordered_json()},
+          {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
+}
+
+ordered_json json(const WheelCalibration& found, const CalibrationValidation& held,
                   const std::optional<Tested>& test) {
   ordered_json out;
   const auto add = [&out](const char* name, const std::optional<Calibrated>& one) {
@@ -147,11 +109,7 @@ ordered_json json(const WheelCalibration& found, const HeldOut& held,
   add("k_right", found.noise_right);
   out["chi2"] = found.chi2;
   out["dof"] = found.dof;
-  const bool judged = held.legs() > 0;
-  out["heldout"] = {
-      {"legs", held.legs()},
-      {"arrival_rms_m", judged ? ordered_json(held.calibrated.rms()) : ordered_json()},
-      {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
+  out["heldout"] = json(held);
   if (test) out["test"] = json(*test);
   if (!found.truth.clocks.empty()) {
     ordered_json clocks = ordered_json::array();
@@ -167,41 +125,34 @@ ordered_json json(const WheelCalibration& found, const HeldOut& held,
   return out;
 }
 
-/// What the held-out legs say of the calibration: nothing that their scatter does not bear out.
 struct Verdict {
   Mood mood = Mood::doubt;
   std::string text;
 };
 
-Verdict verdict(const HeldOut& held) {
-  if (held.legs() == 0) {
-    return {Mood::doubt, "calibrated; no legs with truth could be held out to judge it by"};
+/// What the held-out legs say of the calibration.
+Verdict verdict(const CalibrationValidation& held) {
+  const std::string errors = fmt::format(
+      "{} {} end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
+      held.scheme == HoldoutScheme::recordings ? "legs, each recording held out in turn,"
+                                               : "held-out legs",
+      1000.0 * held.calibrated.rms(), 1000.0 * held.nominal.rms());
+  switch (held.gain()) {
+    case CalibrationGain::unknown:
+      return {Mood::doubt, "calibrated; no legs with truth could be held out to judge it by"};
+    case CalibrationGain::uncertain:
+      return {Mood::doubt,
+              "calibrated: " + errors + "; too few legs, or too short, to tell which is better"};
+    case CalibrationGain::better:
+      return {Mood::good, "calibrated: " + errors};
+    case CalibrationGain::worse:
+      break;
   }
-  const std::string figures =
-      fmt::format("{} held-out legs end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
-                  1000.0 * held.calibrated.rms(), 1000.0 * held.nominal.rms());
-  constexpr int kFewest = 5;
-  const double n = held.legs();
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < held.nominal.distances.size(); ++k) {
-    const double gain =
-        std::pow(held.nominal.distances[k], 2) - std::pow(held.calibrated.distances[k], 2);
-    sum += gain;
-    squares += gain * gain;
-  }
-  const double gain = sum / n;
-  const double sd = n > 1.0 ? std::sqrt(std::max(0.0, squares / n - gain * gain) / (n - 1.0)) : 0.0;
-  if (held.legs() < kFewest || std::abs(gain) < 2.0 * sd) {
-    return {Mood::doubt,
-            "calibrated: " + figures + "; too few legs, or too short, to tell which is better"};
-  }
-  return gain > 0.0 ? Verdict{Mood::good, "calibrated: " + figures}
-                    : Verdict{Mood::bad, "calibration does not help: " + figures};
+  return {Mood::bad, "calibration does not help: " + errors};
 }
 
 /// The same as a sentence.
-std::string page_verdict(const HeldOut& held) {
+std::string page_verdict(const CalibrationValidation& held) {
   std::string sentence = verdict(held).text + ".";
   sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
   return sentence;
@@ -215,8 +166,8 @@ std::string text(const Tested& test) {
              "\n{} kept for the test, nominal -> calibrated (rms):\n",
              test.names.size() == 1 ? "1 drive" : fmt::format("{} drives", test.names.size())) +
          line("end point off by        ", rms_end(test.nominal), rms_end(test.calibrated), "mm") +
-         line("heading off by, per metre", rms_heading(test.nominal), rms_heading(test.calibrated),
-              "mrad/m");
+         line("heading off by, per metre", rms_heading_per_metre(test.nominal),
+              rms_heading_per_metre(test.calibrated), "mrad/m");
 }
 
 std::string text(const TruthAlignment& truth) {
@@ -233,7 +184,7 @@ std::string text(const TruthAlignment& truth) {
       1000.0 * last);
 }
 
-std::string text(const WheelCalibration& found, const HeldOut& held,
+std::string text(const WheelCalibration& found, const CalibrationValidation& held,
                  const std::optional<Tested>& test) {
   const auto [mood, said] = verdict(held);
   std::string out = verdict_text(mood, said) + "\n";
@@ -267,18 +218,19 @@ void run_calibrate(const CalibrateOptions& options) {
   for (const std::string& folder : options.recordings) {
     recordings.push_back(read_recording(folder));
   }
-  std::vector<Recording> unseen;
-  for (const std::string& folder : options.test) unseen.push_back(read_recording(folder));
+  std::vector<Recording> test_drives;
+  for (const std::string& folder : options.test) test_drives.push_back(read_recording(folder));
   const Model model = read_model(options.model, recordings);
   WheelCalibration found;
-  HeldOut held;
+  CalibrationValidation held;
   std::optional<Tested> test;
+  const CalibrationOptions how = calibration_options(options);
   try {
     progress.next();
-    found = calibrate_wheels(recordings, model, calibration_options(options));
+    found = calibrate_wheels(recordings, model, how);
     progress.next();
-    held = held_out(recordings, model, options);
-    if (!unseen.empty()) test = tested(unseen, model, found.model);
+    held = validate_calibration(recordings, model, how);
+    if (!test_drives.empty()) test = tested(test_drives, model, found.model);
   } catch (const std::invalid_argument& error) {
     throw InputError(options.model, 0, error.what());
   }
@@ -305,7 +257,9 @@ void setup_calibrate(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "calibrate",
       "Calibrate wheels, wheelbase and wheel noise from recordings with truth or survey");
-  command->add_option("RECORDING", options->recordings, "Folders of CSV streams")->required();
+  command->add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+      ->required()
+      ->type_name("DIR");
   command->add_option("--model", options->model, "Model to start from (TOML)")
       ->required()
       ->type_name("FILE");
@@ -313,17 +267,18 @@ void setup_calibrate(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--json", options->json, "Write every figure as JSON")->type_name("FILE");
   command
-      ->add_option("--holdout", options->holdout,
-                   "Share of the legs with truth that are kept aside to judge the calibration")
+      ->add_option("--holdout", options->calibration.holdout,
+                   "Share of the legs with truth that are held out to judge the calibration by; "
+                   "with a few short recordings each is held out in turn (0: none)")
       ->check(CLI::Range(0.0, 0.9))
       ->capture_default_str();
-  command->add_option("--leg", options->leg, "Length of such a leg [m of driven path]")
+  command->add_option("--leg", options->calibration.leg, "Length of such a leg [m of driven path]")
       ->check(above_zero())
       ->capture_default_str();
   command
       ->add_option("--test", options->test,
                    "Recordings with truth, not calibrated by, to test the calibration on")
-      ->type_name("RECORDING...");
+      ->type_name("DIR");
   command->add_option("--without", options->without, "Do not use the survey, or the truth")
       ->delimiter(',')
       ->check(CLI::IsMember({"survey", "truth"}))

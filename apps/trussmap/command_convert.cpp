@@ -4,12 +4,14 @@
 // trussmap convert: maps between formats, and foreign recordings to recordings.
 #include "commands.hpp"
 #include "map_files.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
@@ -64,6 +66,15 @@ void check_folder(const fs::path& out) {
   }
 }
 
+/// What the file holds may be no landmark map: a pose graph, say.
+LandmarkGraph require_map(const fs::path& file) {
+  try {
+    return read_map(file);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(file.string(), 0, error.what());
+  }
+}
+
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
@@ -76,7 +87,7 @@ void run_convert(const ConvertOptions& options) {
     convert_optiodom(in, out);
     return;
   }
-  const LandmarkGraph map = read_map(in);
+  const LandmarkGraph map = require_map(in);
   write_file(out, format_map(map, out, ""));
   fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
              out.string());
@@ -92,11 +103,13 @@ void setup_convert(CLI::App& app) {
       ->add_option("IN", options->in,
                    "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
                    "..._run-NN.csv (plain or .xz files)")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("OUT", options->out,
                    "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
-      ->required();
+      ->required()
+      ->type_name("FILE|DIR");
   command->callback([options] { run_convert(*options); });
 }
 

@@ -41,17 +41,7 @@ struct NoiseOptions {
   TapeOptions tape;
 };
 
-struct Result {
-  NoiseExperiment experiment;
-  EndErrors errors;
-  NoiseEstimate first_order;  // the paper's
-  NoiseEstimate exact;
-  NoiseEstimate estimate;  // the one in use: the paper's, unless the noise bends the path
-  NoiseFit fit;
-  std::vector<std::string> doubts;
-};
-
-/// The wheelbase is the corrected one: the model's errors of geometry are taken out already.
+/// The wheelbase is the corrected one: the model's errors of geometry are corrected for.
 NoiseExperiment make_experiment(const NoiseOptions& options, const Model& model) {
   NoiseExperiment experiment;
   try {
@@ -67,15 +57,6 @@ NoiseExperiment make_experiment(const NoiseOptions& options, const Model& model)
   return experiment;
 }
 
-/// How far off a run can end: the path, and half the wheelbase times what it turns besides.
-double longest_error(const NoiseExperiment& experiment) {
-  double longest = 0.0;
-  for (const PathSegment& segment : experiment.path) {
-    longest += std::abs(segment.distance) + 0.5 * experiment.wheelbase * std::abs(segment.turn);
-  }
-  return longest;
-}
-
 EndErrors simulated_errors(const NoiseOptions& options, const NoiseExperiment& experiment) {
   std::mt19937_64 random = random_stream(options.tape.seed, Stream::wheels);
   const TapeRobot robot = simulated_robot(options.tape, experiment.wheelbase);
@@ -86,23 +67,13 @@ EndErrors simulated_errors(const NoiseOptions& options, const NoiseExperiment& e
   return errors;
 }
 
-Result analyse(const NoiseOptions& options, const Model& model) {
-  Result result;
-  result.experiment = make_experiment(options, model);
-  result.errors = options.tape.simulate
-                      ? simulated_errors(options, result.experiment)
-                      : read_end_errors(options.file, longest_error(result.experiment));
-  result.first_order = estimate_wheel_noise(result.errors, result.experiment);
-  result.experiment.order = NoiseOrder::exact;
-  result.exact = estimate_wheel_noise(result.errors, result.experiment);
-  result.estimate = result.exact;
-  if (!check_noise(result.errors, result.experiment, result.exact).nonlinear) {
-    result.estimate = result.first_order;
-    result.experiment.order = NoiseOrder::first;
-  }
-  result.fit = check_noise(result.errors, result.experiment, result.estimate);
-  result.doubts = noise_doubts(result.errors, result.experiment, result.estimate, result.fit);
-  return result;
+NoiseAnalysis analyse(const NoiseOptions& options, const Model& model) {
+  const NoiseExperiment experiment = make_experiment(options, model);
+  return analyse_wheel_noise(
+      options.tape.simulate
+          ? simulated_errors(options, experiment)
+          : read_end_errors(options.file, largest_end_error(experiment.path, experiment.wheelbase)),
+      experiment);
 }
 
 ordered_json constants_json(const NoiseEstimate& e) {
@@ -118,8 +89,8 @@ ordered_json constants_json(const NoiseEstimate& e) {
           {"sd_k_right_squared", std::sqrt(e.squared_covariance(1, 1))}};
 }
 
-/// The figures in use; both kinds under `first_order` and `exact`.
-ordered_json json(const Result& result, const NoiseOptions& options) {
+/// The estimates in use; both kinds under `first_order` and `exact`.
+ordered_json json(const NoiseAnalysis& result, const NoiseOptions& options) {
   const NoiseEstimate& e = result.estimate;
   ordered_json out = constants_json(e);
   out["runs"] = e.runs;
@@ -147,7 +118,7 @@ ordered_json json(const Result& result, const NoiseOptions& options) {
   return out;
 }
 
-std::string constants_text(const Result& result) {
+std::string constants_text(const NoiseAnalysis& result) {
   TextTable table{{Align::left, Align::right, Align::left, Align::left, Align::left}, {}, false, 2};
   const double length = path_length(result.experiment.path);
   const auto row = [&](const char* name, const WheelConstant& wheel) {
@@ -168,7 +139,7 @@ std::string constants_text(const Result& result) {
   return "\n" + table_text(table);
 }
 
-std::string scatter_text(const Result& result) {
+std::string scatter_text(const NoiseAnalysis& result) {
   TextTable table;
   table.columns = {Align::left, Align::right, Align::right, Align::right};
   table.has_heading = true;
@@ -184,7 +155,7 @@ std::string scatter_text(const Result& result) {
   return "\n" + table_text(table);
 }
 
-std::string fit_text(const Result& result) {
+std::string fit_text(const NoiseAnalysis& result) {
   TextTable table;
   table.columns = {Align::left, Align::right, Align::right};
   table.has_heading = true;
@@ -201,7 +172,7 @@ std::string fit_text(const Result& result) {
   return "\n" + table_text(table);
 }
 
-std::string text(const Result& result) {
+std::string text(const NoiseAnalysis& result) {
   const std::string verdict =
       fmt::format("the wheels' noise {} the end errors of {} runs",
                   result.fit.good ? "explains" : "does not explain", result.estimate.runs);
@@ -212,7 +183,7 @@ std::string text(const Result& result) {
 
 void run_noise(const NoiseOptions& options) {
   Model model = starting_model(options.tape);
-  const Result result = analyse(options, model);
+  const NoiseAnalysis result = analyse(options, model);
   Files files;
   if (!options.tape.out.empty()) {
     model.noise.left = result.estimate.left.k;
@@ -247,7 +218,7 @@ constexpr const char* kFooter =
     "stand\n"
     "after the path minus where its odometry had it; x [m] ahead at the start, y [m] to the left,\n"
     "heading [rad] counter-clockwise.\n\n"
-    "PATH: pieces in the order driven, separated by commas. 10 is a straight drive of 10 m, -10 "
+    "PATH: segments in the order driven, separated by commas. 10 is a straight drive of 10 m, -10 "
     "one\n"
     "backwards, a90 a turn on the spot by 90 degrees counter-clockwise, 3@45 an arc of 3 m that\n"
     "turns by 45 degrees. Quote it: --path \"10,-10\".\n\n"

@@ -35,8 +35,10 @@ void setup_reveal(CLI::App& app) {
   auto options = std::make_shared<RevealOptions>();
   CLI::App& command =
       *app.add_subcommand("reveal", "Open the answer that simulate --hide sealed: the effects.");
-  command.add_option("recording", options->folder, "Folder that simulate --hide wrote")->required();
-  command.add_option("--json", options->json, "Write the answer to this file as JSON");
+  command.add_option("FOLDER", options->folder, "Recording that simulate --hide wrote")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--json", options->json, "Write the answer as JSON")->type_name("FILE");
   command.callback([options] { run_reveal(*options); });
 }
 

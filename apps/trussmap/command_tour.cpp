@@ -42,7 +42,7 @@ struct CommandOptions {
 TourOptions experiment_options(const CommandOptions& options) {
   TourOptions result;
   if (options.x_lines.empty() != options.y_lines.empty()) {
-    throw UsageError("--x-lines and --y-lines go together");
+    throw UsageError("--x-lines and --y-lines are given both or not at all");
   }
   try {
     result.mesh = options.x_lines.empty()
@@ -61,14 +61,14 @@ TourOptions experiment_options(const CommandOptions& options) {
   return result;
 }
 
-json metrics_json(const TourMetrics& figures) {
-  json result = {{"stretch_error", figures.stretch_error.mean},
-                 {"stretch_error_se", figures.stretch_error.standard_error},
-                 {"orientation_error_rad", figures.orientation_error.mean},
-                 {"orientation_error_rad_se", figures.orientation_error.standard_error}};
-  if (figures.position_error) {
-    result["position_error_m"] = figures.position_error->mean;
-    result["position_error_m_se"] = figures.position_error->standard_error;
+json metrics_json(const TourMetrics& metrics) {
+  json result = {{"stretch_error", metrics.stretch_error.mean},
+                 {"stretch_error_se", metrics.stretch_error.standard_error},
+                 {"orientation_error_rad", metrics.orientation_error.mean},
+                 {"orientation_error_rad_se", metrics.orientation_error.standard_error}};
+  if (metrics.position_error) {
+    result["position_error_m"] = metrics.position_error->mean;
+    result["position_error_m_se"] = metrics.position_error->standard_error;
   }
   return result;
 }
@@ -77,7 +77,7 @@ json result_json(const TourResult& result) {
   json tours = json::array();
   for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
     json methods;
-    for (const auto& [name, figures] : result.tours[tour]) methods[name] = metrics_json(figures);
+    for (const auto& [name, metrics] : result.tours[tour]) methods[name] = metrics_json(metrics);
     tours.push_back({{"tour", tour + 1}, {"methods", methods}});
   }
   return {{"tours", tours},
@@ -118,8 +118,8 @@ void print_result(const TourResult& result, const CommandOptions& options) {
   const MethodMetrics& last = result.tours.back();
   const double raw = last.at("raw").stretch_error.mean;
   fmt::print(
-      "after {} tours the elastic map's routes are {:.2f} % too long or short and {:.4f} rad "
-      "askew\n"
+      "after {} tours the elastic map's mean error is {:.2f} % of a route's stretch and {:.4f} rad "
+      "of its orientation\n"
       "(single measurements: {:.2f} %, {:.4f} rad; the best possible, the adjustment: {:.2f} %, "
       "{:.4f} rad);\nmeans over {} seeds\n",
       result.tours.size(), 100.0 * last.at("elastic").stretch_error.mean,
@@ -165,6 +165,7 @@ void run_tour(const CommandOptions& options) {
 
 void add_world(CLI::App& command, CommandOptions& options) {
   command.add_option("--mesh", options.mesh, "Landmarks along x and along y, like 6x6")
+      ->type_name("NxN")
       ->capture_default_str();
   command.add_option("--spacing", options.spacing, "Distance between neighbours [m]")
       ->check(above_zero())
@@ -172,8 +173,10 @@ void add_world(CLI::App& command, CommandOptions& options) {
   command
       .add_option("--x-lines", options.x_lines,
                   "Uneven mesh: x of its columns [m], like 0,1,9,11 (with --y-lines)")
+      ->type_name("X,X...")
       ->delimiter(',');
   command.add_option("--y-lines", options.y_lines, "Uneven mesh: y of its rows [m]")
+      ->type_name("X,X...")
       ->delimiter(',');
   command.add_option("--walk", options.walk, "How a tour covers the routes; drawn anew each tour")
       ->check(CLI::IsMember({"euler", "face", "depth-first", "random"}))
@@ -209,9 +212,11 @@ void setup_tour(CLI::App& app) {
   command
       ->add_option("--eta", options->eta,
                    "Landmarks a refinement may move: a number, all, or auto (estimated each time)")
+      ->type_name("N|all|auto")
       ->check(eta_text())
       ->capture_default_str();
-  command->add_option("--json", options->json_file, "The figures, complete (JSON)");
+  command->add_option("--json", options->json_file, "Write every figure as JSON")
+      ->type_name("FILE");
   add_html_option(*command, options->page);
   add_plots_option(*command, options->page);
   command->callback([options] { run_tour(*options); });

@@ -84,12 +84,15 @@ Effect applicable(const Effect& effect) {
 void add_effect_options(CLI::App& command, EffectOptions& options) {
   command
       .add_option("--effect", options.named,
-                  "NAME=VALUE[,VALUE...]: a physical effect of the catalogue (its names: below), "
+                  "A physical effect of the catalogue (its names: below), "
                   "with a coefficient per shape; again for more effects")
+      ->type_name("NAME=X[,X...]")
       ->allow_extra_args(false);
-  command.add_option("--effects", options.model,
-                     "Model file whose [[effect]]s, with their coefficients, act too: any channel "
-                     "and shape");
+  command
+      .add_option(
+          "--effects", options.model,
+          "Model whose [[effect]]s, with their coefficients, act too: any channel and shape")
+      ->type_name("FILE");
 }
 
 std::vector<Effect> effects_of(const EffectOptions& options) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "commands.hpp"
+#include "help.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -52,7 +53,8 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   clean_up_on_signals();
-  CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses."};
+  CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses.", "trussmap"};
+  trussmap::app::begin_help(app);
   app.require_subcommand(1);
   app.set_version_flag("--version", "trussmap " TRUSSMAP_VERSION);
   trussmap::app::setup_add(app);
@@ -69,6 +71,7 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_simulate(app);
   trussmap::app::setup_tour(app);
   trussmap::app::setup_umbmark(app);
+  trussmap::app::finish_help(app);
   try {
     check_command(app, argc, argv);
     app.parse(argc, argv);

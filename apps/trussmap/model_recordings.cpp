@@ -12,8 +12,9 @@
 
 namespace trussmap::app {
 void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
-  command.add_option("RECORDING", options.recordings, "Folders of CSV streams, one per session")
-      ->required();
+  command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
+      ->required()
+      ->type_name("DIR");
   command.add_option("--model", options.model, "Model of the robot (TOML)")
       ->required()
       ->type_name("FILE");
@@ -39,8 +40,8 @@ void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
       ->type_name("WHAT,...");
   command
       .add_option("--gate", options.gate,
-                  "Leave sightings out that the others contradict by so many standard deviations "
-                  "(0: none)")
+                  "Leave sightings out that all others contradict by more standard deviations than "
+                  "this (0: leave none out)")
       ->check(zero_or_more())
       ->capture_default_str();
 }

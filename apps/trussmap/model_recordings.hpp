@@ -5,6 +5,7 @@
 #pragma once
 
 #include "criticism/comparison.hpp"
+#include "trussmap/gate.hpp"
 
 #include <string>
 #include <vector>
@@ -19,7 +20,7 @@ struct ModelRecordingsOptions {
   std::string model;
   std::string json;
   std::vector<std::string> without;
-  double gate = 0.0;  // sd, 0: none
+  double gate = kModelGate;  // sd, 0: none
   LegOptions legs;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// truth.json of `simulate --hide`: the answer, sealed against a glance, not against a will to look.
+// truth.json of `simulate --hide`: the answer, encoded so that it is not read by accident.
 //
 //   {"note": "...", "sealed": base64 of the answer's JSON, "checksum": FNV-1a of that JSON, hex}
 #pragma once

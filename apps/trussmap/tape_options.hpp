@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What the calibrations with a tape measure have in common: the model they start from, the robot
-// that rehearses them, and files written together.
+// that rehearses them, and tables of estimates.
 #pragma once
 
 #include "page_runtime.hpp"

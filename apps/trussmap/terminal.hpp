@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What is printed, where somebody looks: the verdict's word in its colour, heads of tables dim.
-// Anywhere else (a file, a pipe, NO_COLOR, a terminal that is dumb) it is plain text.
+// Colour on a terminal: the verdict's word in its colour, headings of tables dim. Plain text
+// anywhere else (a file, a pipe, NO_COLOR, TERM=dumb).
 #pragma once
 
 #include "trussmap/table.hpp"

@@ -87,8 +87,8 @@ Run run_apart(const std::function<double(Stages&)>& work) {
   }
   close(ends[0]);
   int status = 0;
-  waitpid(child, &status, 0);
-  if (status != 0) throw std::runtime_error("a rival's process failed");
+  if (waitpid(child, &status, 0) != child || status != 0)
+    throw std::runtime_error("a rival's process failed");
   Run run;
   int used = 0;
   std::sscanf(text.c_str(), "%lf %lf\n%n", &run.answer, &run.megabytes, &used);

@@ -17,6 +17,7 @@
 // Edges speak of vertices by their place in `vertices`; ids are the user's names for them.
 #pragma once
 
+#include "trussmap/gate.hpp"
 #include "trussmap/planar.hpp"
 
 #include <cstdint>
@@ -159,7 +160,7 @@ struct PoseGraphAdjustment {
 
 struct RobustOptions {
   AdjustmentOptions adjustment;
-  double gate = 16.27;  ///< c^2: one right edge in a thousand has more (chi^2, 3 dof)
+  double gate = kPoseGraphGate;  ///< c^2: one right edge in a thousand has more (chi^2, 3 dof)
 };
 
 struct RobustAdjustment {

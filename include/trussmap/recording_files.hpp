@@ -54,7 +54,7 @@ struct MrclamRecording {
   int unordered_sightings = 0;  ///< sightings earlier than the one before, sorted in
 };
 
-/// True if `prefix` (DIR/RobotN) names such files.
+/// True if `prefix` (DIR/RobotN) names such files, complete or not.
 [[nodiscard]] bool is_mrclam(const std::filesystem::path& prefix);
 
 /// Throws InputError with file and line.

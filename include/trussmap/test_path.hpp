@@ -1,8 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A path that a robot is told to drive for a calibration, as segments of constant curvature.
-// Heading +x at the start, y to the left, angles counter-clockwise.
+// A path that a robot is told to drive for a calibration: segments of constant curvature, in the
+// order driven. Heading +x at the start, y to the left, angles counter-clockwise.
+//
+// As text, segments are separated by commas:
+//
+//   10        straight, 10 m ahead           -10       straight, 10 m backwards
+//   a90       turn on the spot by 90 degrees, counter-clockwise (a-90: clockwise)
+//   3@45      an arc of length 3 m that turns by 45 degrees in all (-3@45: driven backwards)
+//
+// "10,-10" is Chong & Kleeman's (1997) experiment: out and back.
 #pragma once
 
 #include <string>
@@ -26,14 +34,9 @@ enum class Direction { cw, ccw };
 /// Driven length of the axle's centre, m.
 [[nodiscard]] double path_length(const TestPath& path);
 
-// ----------------------------------------
-// Test paths as text: segments in the order driven, separated by commas.
-//
-//   10        straight, 10 m ahead           -10       straight, 10 m backwards
-//   a90       turn on the spot by 90 degrees, counter-clockwise (a-90: clockwise)
-//   3@45      an arc of length 3 m that turns by 45 degrees in all (-3@45: driven backwards)
-//
-// "10,-10" is Chong & Kleeman's (1997) experiment: out and back.
+/// The driven length and half the wheelbase (m) times all that is turned: no run ends further off
+/// than that, m.
+[[nodiscard]] double largest_end_error(const TestPath& path, double wheelbase);
 
 /// Throws std::invalid_argument: an empty segment, text, a number that is not finite, no motion at
 /// all. The message names the segment and says what was expected.

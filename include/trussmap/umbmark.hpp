@@ -1,22 +1,47 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// The two systematic errors of a differential drive, and what undoes them.
+// UMBmark: wheel diameters and wheelbase of a differential drive, from a square driven several
+// times in both directions and a tape measure (Borenstein & Feng 1996).
 //
-//   E_d   D_R / D_L, ratio of the actual wheel diameters, right over left          -
-//   E_b   actual over nominal wheelbase                                            -
-//   c_L   factor for the left wheel's travel:  2 / (E_d + 1)                       -
-//   c_R   factor for the right wheel's travel: 2 / (1/E_d + 1) = E_d c_L           -
+//        ccw            start at (0, 0), heading +x; error = absolute - calculated, in these axes
+//     +--<--+           L      side                                                   m
+//     v     ^           b      wheelbase that the robot calculates with               m
+//     o-->--+           alpha  what a quarter turn lacks; > 0: wheels wider than b    rad
+//                       beta   turn to the left over one leg; > 0: right wheel larger rad
 //
-// Borenstein & Feng (1996), eq. 2.3, 2.4, 4.29-4.33. The factors' mean is 1: the mean wheel size,
-// which a tape along one straight drive gives, is not part of it.
-// Factors of several rounds multiply, and are then brought back to a mean of 1.
+//   E_d   D_R / D_L, ratio of the actual wheel diameters, right over left             -
+//   E_b   actual over nominal wheelbase                                               -
+//   c_L   factor for the left wheel's travel,  2 / (E_d + 1)                          -
+//   c_R   factor for the right wheel's travel, 2 / (1/E_d + 1) = E_d c_L              -
+//
+// The factors' mean is 1: the mean wheel size, which a tape along one straight drive gives, is not
+// part of it (their eq. 2.3, 2.4, 4.29-4.33).
+//
+// For small angles (their 4.10a, 4.20, 4.22, 4.24 repaired), with x and y of the centres of
+// gravity:
+//   cw centre   (-2L(alpha + beta), -2L(alpha + beta))
+//   ccw centre  (-2L(alpha - beta),  2L(alpha - beta))
+//   alpha = mean of (x_cw + x_ccw), (y_cw - y_ccw), over -4L
+//   beta  = mean of (x_cw - x_ccw), (y_cw + y_ccw), over -4L
+//   E_d = (L + b sin(beta/2)) / (L - b sin(beta/2)),   E_b = (pi/2) / (pi/2 - alpha)
+// Chong & Kleeman (1997) print pi/(pi - alpha) for E_b, which removes half of the error.
+//
+// The formulas drop second-order terms: at E_d = 1.005 and E_b = 1.01 some 2 % of the error is left
+// for a second round. The exact solution fits E_d and E_b to the kinematics, by least squares on
+// the four coordinates of the centres, and needs no second round on that account. Standard errors
+// follow from the scatter of the runs, whatever its distribution; without scatter there are none.
+//
+// Four coordinates determine two unknowns, so two combinations of them are left to contradict.
+// Exchanged labels cw/ccw do so in a way of their own: alpha from x and alpha from y get opposite
+// signs, and so do the betas. An axis y that points to the right does the same.
 #pragma once
 
 #include "trussmap/estimate.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/test_path.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +49,7 @@
 
 namespace trussmap {
 
+/// The two systematic errors of a differential drive, and what undoes them.
 struct GeometryErrors {
   double diameter_ratio = 1.0;   ///< E_d
   double wheelbase_ratio = 1.0;  ///< E_b
@@ -32,7 +58,7 @@ struct GeometryErrors {
   [[nodiscard]] double right_factor() const { return diameter_ratio * left_factor(); }
 };
 
-/// What is found by a robot that already corrects for `in_force`, on top of that.
+/// What is found by a robot that already corrects for `in_force`, on top of that: ratios multiply.
 [[nodiscard]] GeometryErrors combined(const GeometryErrors& in_force, const GeometryErrors& found);
 
 /// The effects `wheel diameter ratio` (channel difference, 2 (E_d - 1)/(E_d + 1)) and `wheelbase`
@@ -55,26 +81,6 @@ struct PathError {
 [[nodiscard]] PathError path_error(const TestPath& path, double wheelbase,
                                    const GeometryErrors& errors);
 
-// ----------------------------------------
-// UMBmark: a square driven several times in both senses, a tape measure, and two factors.
-//
-//        ccw            start at (0, 0), heading +x; error = absolute - calculated, in these axes
-//     +--<--+           L      side, m                 b   wheelbase the robot calculates with, m
-//     v     ^           alpha  what a quarter turn lacks, rad; > 0: wheels farther apart than b
-//     o-->--+           beta   turn over one leg to the left, rad; > 0: right wheel larger
-//
-// Borenstein & Feng (1996), for small angles (their 4.10a, 4.20, 4.22, 4.24 repaired):
-//   cw centre (-2L(alpha + beta), -2L(alpha + beta)),  ccw centre (-2L(alpha - beta), 2L(alpha -
-//   beta)) alpha = mean of (x_cw + x_ccw), (y_cw - y_ccw), over -4L beta  = mean of (x_cw - x_ccw),
-//   (y_cw + y_ccw), over -4L E_d = (L + b sin(beta/2)) / (L - b sin(beta/2)),  E_b = (pi/2) / (pi/2
-//   - alpha)
-// Chong & Kleeman (1997) print pi/(pi - alpha) for E_b, which removes half of the error.
-//
-// The formulas drop second-order terms: at E_d = 1.005 and E_b = 1.01 some 2 % of the error is left
-// for a second round. solve_square() fits E_d and E_b to the exact kinematics, by least squares on
-// the four coordinates of the centres, and needs no second round on that account.
-// Standard errors follow from the scatter of the runs; no scatter law is assumed.
-
 /// End errors (absolute - calculated), m, in the frame of the start.
 struct SquareRuns {
   std::vector<Eigen::Vector2d> cw;
@@ -96,6 +102,17 @@ struct SquareClusters {
   bool second_round_worthwhile = false;
 };
 
+/// Throws std::invalid_argument on fewer than two runs in a direction.
+[[nodiscard]] SquareClusters square_clusters(const SquareRuns& runs);
+
+/// alpha and beta from x alone and from y alone: they agree where E_d and E_b are all there is.
+struct SquareAngles {
+  Estimate alpha_x, alpha_y;  ///< rad
+  Estimate beta_x, beta_y;    ///< rad
+};
+
+[[nodiscard]] SquareAngles square_angles(const SquareClusters& clusters, double side);
+
 struct SquareSolution {
   Estimate alpha;            ///< rad
   Estimate beta;             ///< rad
@@ -110,17 +127,6 @@ struct SquareSolution {
   }
 };
 
-/// alpha and beta from x alone and from y alone: they agree where E_d and E_b are all there is.
-struct SquareAngles {
-  Estimate alpha_x, alpha_y;  ///< rad
-  Estimate beta_x, beta_y;    ///< rad
-};
-
-/// Throws std::invalid_argument on fewer than two runs in a direction.
-[[nodiscard]] SquareClusters square_clusters(const SquareRuns& runs);
-
-[[nodiscard]] SquareAngles square_angles(const SquareClusters& clusters, double side);
-
 /// The papers' formulas. Throws SolveError where they have no answer (a turn of 90 degrees or more
 /// missing, or a wheel ratio of 0).
 [[nodiscard]] SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup);
@@ -129,13 +135,7 @@ struct SquareAngles {
 /// converge: errors as large as the square.
 [[nodiscard]] SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& setup);
 
-// ----------------------------------------
-// Whether runs round a square can be what they are said to be, and what one direction alone hides.
-//
-// Four coordinates determine two unknowns, so two combinations of them are left to contradict.
-// Exchanged labels cw/ccw do so in a way of their own: alpha from x and alpha from y get opposite
-// signs, and so do the betas. An axis y that points to the right does the same.
-
+/// Whether the centres can be what they are said to be.
 struct SquareConsistency {
   double residual = 0.0;  ///< root mean square of what the exact solution leaves of the centres, m
   double residual_exchanged = 0.0;  ///< the same with cw and ccw exchanged, m
@@ -147,7 +147,7 @@ struct SquareConsistency {
                                                    const SquareSetup& setup);
 
 /// Doubts, a sentence each, that a person can act on: exchanged labels, a contradiction, runs all
-/// equal, millimetres. `errors`: those in the clusters.
+/// equal, millimetres.
 [[nodiscard]] std::vector<std::string> square_doubts(const SquareClusters& clusters,
                                                      const SquareSetup& setup);
 
@@ -156,8 +156,51 @@ struct SquareConsistency {
 /// than 4.
 [[nodiscard]] std::vector<std::string> square_outliers(const SquareRuns& runs);
 
-/// Borenstein & Feng (1996), Fig. 4: a robot with both errors, its wheelbase alone tuned until the
-/// square closes in one direction.
+/// A round: runs driven with the corrections of all rounds before, and what they call for.
+struct SquareRound {
+  SquareRuns runs;
+  SquareSetup setup;        ///< with the wheelbase that the robot calculated with
+  GeometryErrors in_force;  ///< corrected for while driving
+  SquareClusters clusters;
+  SquareAngles angles;
+  SquareSolution exact;
+  SquareSolution formulas;
+  SquareConsistency consistency;
+  std::vector<std::string> doubts;  ///< square_doubts and square_outliers
+};
+
+/// Throws as the functions above do.
+[[nodiscard]] SquareRound analyse_round(SquareRuns runs, const SquareSetup& setup,
+                                        const GeometryErrors& in_force = {});
+
+enum class SquareMethod { exact, formulas };
+
+/// What the robot's software should use after a round: what was in force, times what was found.
+struct SquareCorrections {
+  GeometryErrors errors;
+  Estimate wheelbase;     ///< m
+  Estimate left_factor;   ///< c_L of the product
+  Estimate right_factor;  ///< c_R of the product
+};
+
+[[nodiscard]] SquareCorrections corrections_after(const SquareRound& round, SquareMethod method);
+
+/// Drives a round, or reads one: `setup` and `in_force` are what the robot works with.
+using DriveRound = std::function<SquareRuns(std::size_t round, const SquareSetup& setup,
+                                            const GeometryErrors& in_force)>;
+
+/// Round after round, each with the corrections that the method found in those before.
+/// `wheelbase`: nominal, m; `in_force`: corrected for in the first round.
+[[nodiscard]] std::vector<SquareRound> square_rounds(std::size_t count, double side,
+                                                     double wheelbase,
+                                                     const GeometryErrors& in_force,
+                                                     SquareMethod method, const DriveRound& drive);
+
+/// Of all rounds; named by their round where there are several.
+[[nodiscard]] std::vector<std::string> all_doubts(const std::vector<SquareRound>& rounds);
+
+/// What one direction alone hides (Borenstein & Feng 1996, Fig. 4): a robot with both errors, its
+/// wheelbase alone tuned until the square closes in one direction.
 struct OneWayTuning {
   double wheelbase_ratio = 1.0;  ///< tuned over nominal wheelbase
   double error_before = 0.0;     ///< m, in the direction driven

@@ -1,30 +1,36 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// How noisy each wheel is, from the end errors of one path driven many times.
+// How noisy each wheel is, from the end errors of one path driven many times (Chong & Kleeman
+// 1997).
 //
 //   e_i     end error (absolute - calculated) of run i: x, y [m], heading [rad], start frame
 //   k_L     noise of the left wheel: variance of its travel = k_L^2 |travel|, m^(1/2); k_R likewise
-//   M_L     covariance of the path's end for k_L = 1, k_R = 0 (odometry/arc.hpp); M_R likewise
+//   M_L     covariance of the path's end for k_L = 1, k_R = 0 (trussmap/arc.hpp); M_R likewise
 //   Sigma   k_L^2 M_L + k_R^2 M_R + Sigma_sensor
 //   S       mean of e_i e_i'; with the mean subtracted, divided by n - 1
 //
-// Chong & Kleeman (1997) find k_L and k_R by trial and error. Here they maximise the likelihood,
+// The paper finds k_L and k_R by trial and error. Here they maximise the likelihood,
 //   -n/2 [log det Sigma + trace(Sigma^-1 S)]            (n - 1 for n with the mean subtracted),
 // over k^2 = (k_L^2, k_R^2), by Fisher scoring. Standard errors are those of the Fisher information
 //   F_ab = n/2 trace(Sigma^-1 M_a Sigma^-1 M_b),        sd(k) = sd(k^2)/(2 k).
 //
-// k^2 is estimated without a bound at 0, so that it is right on average; k itself
-// is some sd(k)^2/(2k) too small. Where sensor noise hides a wheel's own, k^2 may come out
-// negative: k is then 0, the other wheel is fitted again without it, and an upper limit says what
-// could be hidden.
+// k^2 is estimated without a bound at 0, so that it is unbiased; k itself is some sd(k)^2/(2k) too
+// small. Where sensor noise hides a wheel's own, k^2 may come out negative: k is then 0, the other
+// wheel is fitted again without it, and an upper limit says what could be hidden.
 //
-// NoiseOrder::first takes M from the first order, as the paper does, and a mean of 0. It is right
-// to 0.5 to 0.9 % of k^2 for the paper's robot (k = 0.0005, 10 m out and back, B = 0.5 m), and
-// misleading for one with ten times its noise, whose wandering heading bends the path as much as
-// the wheels scatter along it. NoiseOrder::exact takes mean and covariance as they are
-// (end_moments.hpp); the likelihood stays Gaussian, which long tails of the bend make a little
-// less sharp, and right on average.
+// First order: M by linearisation, as in the paper, and a mean of 0. Right to 0.5 to 0.9 % of k^2
+// for the paper's robot (k = 0.0005, 10 m out and back, B = 0.5 m); at ten times its noise the
+// wandering heading moves the end as much as the wheels' own scatter does. Exact: mean and
+// covariance without linearisation; the likelihood stays Gaussian, which the errors' long tails
+// make a little less efficient, and unbiased.
+//
+// Does the model fit the runs? Ellipses: 95 % of the runs should end within the model's 95 %
+// ellipse, in each plane and in all three coordinates. Distances: the squared Mahalanobis distances
+// should be chi-square(3) (Kolmogorov-Smirnov; the constants come from the same runs, so that the
+// test rejects a little too seldom). Shape: a covariance with two constants against one with all
+// six entries free (likelihood ratio, chi-square(4), with Bartlett's correction), which sees a
+// wrong wheelbase, degrees for radians, or noise that is not the wheels'.
 #pragma once
 
 #include "trussmap/planar.hpp"
@@ -71,30 +77,21 @@ struct NoiseEstimate {
   Matrix2 squared_covariance = Matrix2::Zero();  ///< m^2
   int runs = 0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< of the errors
-  Eigen::Vector3d linearization_offset =
-      Eigen::Vector3d::Zero();  ///< mean that the noise itself causes; 0: first
-  /// Probability of a mean as far from the bend if there were no systematic error (Hotelling's
+  /// Mean that the noise itself causes; 0 at first order.
+  Eigen::Vector3d linearization_offset = Eigen::Vector3d::Zero();
+  /// Probability of a mean as far from that offset if there were no systematic error (Hotelling's
   /// T^2); NaN with too few runs.
   double mean_p_value = 0.0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< the mean if subtracted, else the bend
-  Matrix3 observed = Matrix3::Zero();                ///< S
-  Matrix3 modelled = Matrix3::Zero();                ///< Sigma at (k_L, k_R)
+  /// The mean if subtracted, else the offset.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Matrix3 observed = Matrix3::Zero();  ///< S
+  Matrix3 modelled = Matrix3::Zero();  ///< Sigma at (k_L, k_R)
 };
 
 /// Throws std::invalid_argument on fewer than two runs, negative sensor noise or a bad wheelbase;
 /// SolveError where the runs are all equal, or the path shows both wheels alike.
 [[nodiscard]] NoiseEstimate estimate_wheel_noise(const EndErrors& errors,
                                                  const NoiseExperiment& experiment);
-
-// ----------------------------------------
-// Whether the noise model fits the runs it was fitted to.
-//
-// Ellipses: 95 % of the runs should end within the model's 95 % ellipse, in each plane and in all
-// three coordinates. Distances: the squared Mahalanobis distances should be chi-square(3)
-// (Kolmogorov-Smirnov; the constants come from the same runs, which makes the test a little
-// forgiving). Shape: a covariance with two constants against one with all six entries free
-// (likelihood ratio, chi-square(4), with Bartlett's correction): this one sees a wrong wheelbase,
-// degrees for radians, or noise that is not the wheels'.
 
 /// How many runs are within the 95 % ellipse (or ellipsoid) of the model.
 struct EllipseCount {
@@ -106,14 +103,14 @@ struct EllipseCount {
 
 struct NoiseFit {
   std::vector<EllipseCount> ellipses;
-  double distance_p_value = 0.0;  ///< Kolmogorov-Smirnov; NaN where the path bends
+  double distance_p_value = 0.0;  ///< Kolmogorov-Smirnov; NaN where nonlinear
   double shape_p_value = 0.0;     ///< likelihood ratio; NaN there, and with fewer than 8 runs
-  bool nonlinear = false;         ///< bend_share above 0.2: the errors are not Gaussian
+  bool nonlinear = false;         ///< nonlinear_share above 0.2: the errors are not Gaussian
   bool good = false;              ///< no p-value below 0.01
 };
 
-/// How far the noise's own bend moves the mean end, in the standard deviations that it has by the
-/// first order: of x or y, the larger.
+/// The mean end error that the noise itself causes, in standard deviations of first order: of x or
+/// y, the larger.
 [[nodiscard]] double nonlinear_share(const NoiseExperiment& experiment,
                                      const NoiseEstimate& estimate);
 
@@ -125,6 +122,20 @@ struct NoiseFit {
                                                     const NoiseExperiment& experiment,
                                                     const NoiseEstimate& estimate,
                                                     const NoiseFit& fit);
+
+/// Both estimates, the better one, and what to make of it.
+struct NoiseAnalysis {
+  NoiseExperiment experiment;  ///< with the order in use
+  EndErrors errors;
+  NoiseEstimate first_order;  ///< the paper's
+  NoiseEstimate exact;
+  NoiseEstimate estimate;  ///< in use: first order, or exact where nonlinear
+  NoiseFit fit;            ///< of the estimate in use
+  std::vector<std::string> doubts;
+};
+
+/// Throws as estimate_wheel_noise does; the experiment's order is chosen here.
+[[nodiscard]] NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment);
 
 /// Square root of the 95 % quantile of chi-square: semi-axis of the ellipse per square root of the
 /// covariance's eigenvalue. 2.4477 in a plane, 2.7955 in space.

@@ -20,7 +20,7 @@ namespace trussmap {
 /// `path` is then as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Several files that belong together: all temporaries are written before the first is renamed, so
+/// Several files at once: all temporaries are written before the first is renamed, so
 /// that a full disk or a missing right leaves all of them as they were. Folders are not made. A
 /// link is followed; a pipe or device (/dev/stdout) is written to as it is. Throws InputError, too,
 /// where a path is a folder or is named twice.

@@ -25,6 +25,7 @@
 #pragma once
 
 #include "recording/legs.hpp"
+#include "trussmap/gate.hpp"
 #include "trussmap/map_builder.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
@@ -41,7 +42,7 @@ struct RecordingMapOptions {
   /// Without a compass headings rest on single sightings; one that comes late while the robot turns
   /// is off by more than its noise. Added to that, rad.
   double bearing_slack = 0.1;
-  double gate = 8.0;                     ///< standard deviations; infinity: no gate
+  double gate = kMapGate;                ///< standard deviations; infinity: no gate
   double map_sd = 0.3;                   ///< m per coordinate: how wrong the map itself may be
   int confirmations = 3;                 ///< of a landmark that is only seen from afar
   int looks = 2;                         ///< without a compass; with one, one look is enough

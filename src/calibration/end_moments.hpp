@@ -3,14 +3,14 @@
 //
 // Where a path with noisy wheels ends: mean and covariance, exactly.
 //
-// A heading that wanders bends the way that follows: the end lags behind on average, and scatters
-// along the way by the square of the heading's wander. The covariance of first order
-// (odometry/arc.hpp) has none of that; at 10 m out and back and k = 0.003 m^(1/2) the bend is as
-// large as the wheels' own scatter along the way.
+// A heading error curves the path that follows: the end lags behind on average, and scatters along
+// the path by the square of the heading error. The covariance of first order (trussmap/arc.hpp) has
+// none of that; at 10 m out and back and k = 0.003 m^(1/2) it is as large as the wheels' own
+// scatter along the path.
 //
 // With z = x + i y, u = e^(i heading) and wheel noise that comes evenly along the path,
 //   dz = u (ds + dxi),  dheading = dphi + domega
-// (a product of noises that come together counts half, Stratonovich's sense) E u and E u^2 are
+// (a product of simultaneous noises counts half, Stratonovich's sense) E u and E u^2 are
 // exponentials, and the second moments of z, u and the heading's error obey linear differential
 // equations on each segment. They are integrated by Runge-Kutta steps of fourth order, to some 1e-9
 // of their size.

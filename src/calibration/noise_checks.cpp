@@ -1,39 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "calibration/end_moments.hpp"
-#include "trussmap/error.hpp"
+#include "calibration/noise_distances.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
 constexpr double kConfidence = 0.95;
-constexpr double kBadFit = 0.01;
-constexpr double kBends = 0.2;  // some 2 x 0.2^2 = 8 % of k^2 by first-order figures
-
-/// Squared Mahalanobis distances in some of the coordinates.
-std::vector<double> squared_distances(const EndErrors& errors, const NoiseEstimate& estimate,
-                                      const std::vector<int>& coordinates) {
-  const Eigen::MatrixXd covariance = estimate.modelled(coordinates, coordinates);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
-  std::vector<double> result;
-  for (const Eigen::Vector3d& e : errors) {
-    const Eigen::VectorXd off = (e - estimate.centre)(coordinates);
-    result.push_back(off.dot(factor.solve(off)));
-  }
-  return result;
-}
+constexpr double kNonlinear = 0.2;  // some 2 x 0.2^2 = 8 % of k^2 at first order
 
 EllipseCount count_inside(const std::vector<double>& distances, std::string coordinates,
                           int dimensions) {
@@ -89,18 +73,6 @@ double shape_p(const NoiseEstimate& estimate, double count) {
   return boost::math::cdf(boost::math::complement(law, std::max(statistic, 0.0)));
 }
 
-/// How well the runs fit with their headings multiplied by a factor.
-double shape_p_scaled(const EndErrors& errors, const NoiseExperiment& experiment, double factor) {
-  EndErrors scaled = errors;
-  for (Eigen::Vector3d& e : scaled) e[2] *= factor;
-  try {
-    const NoiseEstimate estimate = estimate_wheel_noise(scaled, experiment);
-    return check_noise(scaled, experiment, estimate).shape_p_value;
-  } catch (const SolveError&) {
-    return 0.0;
-  }
-}
-
 }  // namespace
 
 double ellipse95_scale(int dimensions) {
@@ -131,83 +103,33 @@ NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
   fit.distance_p_value = distance_p(squared_distances(errors, estimate, {0, 1, 2}));
   const double count = estimate.runs - (experiment.subtract_mean ? 1 : 0);
   fit.shape_p_value = shape_p(estimate, count);
-  fit.nonlinear = nonlinear_share(experiment, estimate) > kBends;
+  fit.nonlinear = nonlinear_share(experiment, estimate) > kNonlinear;
   if (fit.nonlinear) {
     fit.distance_p_value = fit.shape_p_value = std::numeric_limits<double>::quiet_NaN();
   }
   double smallest = std::isnan(fit.distance_p_value) ? 1.0 : fit.distance_p_value;
   if (!std::isnan(fit.shape_p_value)) smallest = std::min(smallest, fit.shape_p_value);
   for (const EllipseCount& ellipse : fit.ellipses) smallest = std::min(smallest, ellipse.p_value);
-  fit.good = smallest >= kBadFit;
+  fit.good = smallest >= kBadNoiseFit;
   return fit;
 }
 
-std::vector<std::string> noise_doubts(const EndErrors& errors, const NoiseExperiment& experiment,
-                                      const NoiseEstimate& estimate, const NoiseFit& fit) {
-  constexpr double kImplausible = 0.1;  // m^1/2: a tenth of a metre after each metre
-  constexpr double kSureMisfit = 1e-4;
-  constexpr std::size_t kFewRuns = 10;
-  constexpr double kFarthest = 30.0;  // squared distance; chi-square(3) exceeds it once in 700 000
-  constexpr double kDegree = std::numbers::pi / 180.0;
-  std::vector<std::string> doubts;
-  if (!experiment.subtract_mean && estimate.mean_p_value < kBadFit) {
-    doubts.push_back(fmt::format(
-        "the mean error ({:.3g} m, {:.3g} m, {:.3g} rad) is too far from 0 for noise (p = {:.1g}); "
-        "remove the systematic errors first (umbmark), or leave the mean out (--subtract-mean)",
-        estimate.mean[0], estimate.mean[1], estimate.mean[2], estimate.mean_p_value));
+NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment) {
+  NoiseAnalysis result;
+  result.errors = std::move(errors);
+  result.experiment = std::move(experiment);
+  result.experiment.order = NoiseOrder::first;
+  result.first_order = estimate_wheel_noise(result.errors, result.experiment);
+  result.experiment.order = NoiseOrder::exact;
+  result.exact = estimate_wheel_noise(result.errors, result.experiment);
+  result.estimate = result.exact;
+  if (!check_noise(result.errors, result.experiment, result.exact).nonlinear) {
+    result.estimate = result.first_order;
+    result.experiment.order = NoiseOrder::first;
   }
-  if (std::max(estimate.left.k, estimate.right.k) > kImplausible) {
-    doubts.push_back(fmt::format(
-        "k of {:.2g} m^1/2 is more than any usual wheel has; x, y are in metres and the heading "
-        "in radians",
-        std::max(estimate.left.k, estimate.right.k)));
-  }
-  const bool misfit = fit.shape_p_value < kSureMisfit;
-  const bool degrees =
-      (misfit || fit.nonlinear) && shape_p_scaled(errors, experiment, kDegree) > kBadFit;
-  if (degrees) {
-    doubts.push_back("the headings fit if they are degrees, not as the radians expected");
-  } else if (misfit) {
-    doubts.push_back(fmt::format(
-        "noise of the two wheels alone does not spread the runs like this (p = {:.1g}); check "
-        "the path, the wheelbase, the units (m, rad) and the sensor's own noise (--sensor-sd)",
-        fit.shape_p_value));
-  }
-  if (fit.nonlinear && !degrees) {
-    doubts.push_back(fmt::format(
-        "noise this large bends the path: its end lags by {:.2g} m on average, and the papers' "
-        "first-order figures are off; the exact ones hold, with standard errors that are some 10 % "
-        "too small; drive a shorter path for sharper ones, \"2,-2\" for instance",
-        end_moments(experiment.path, experiment.wheelbase,
-                    {std::pow(estimate.left.k, 2), std::pow(estimate.right.k, 2)})
-            .mean.head<2>()
-            .norm()));
-  }
-  const std::vector<double> distances = squared_distances(errors, estimate, {0, 1, 2});
-  const auto farthest = std::max_element(distances.begin(), distances.end());
-  const double runs = static_cast<double>(distances.size());
-  if (distances.size() >= kFewRuns && *farthest > std::max(kFarthest, 0.4 * runs)) {
-    doubts.push_back(
-        fmt::format("run {} ends far outside of all others and steers the result; was it measured "
-                    "well, did a wheel slip?",
-                    farthest - distances.begin() + 1));
-  }
-  if (distances.size() < kFewRuns) {
-    doubts.push_back(fmt::format(
-        "{} runs are few: the stated standard errors are too small, and a wheel's noise can seem "
-        "to be 0; drive 30 runs or more",
-        distances.size()));
-  }
-  const bool sensor = experiment.sensor_sd.maxCoeff() > 0.0;
-  for (const double k : {estimate.left.k, estimate.right.k}) {
-    if (k > 0.0) continue;
-    doubts.push_back(sensor ? "the sensor's noise hides that of a wheel; drive a longer path, or "
-                              "measure the ends better"
-                            : "the noise of one wheel is lost in the scatter of the other's; drive "
-                              "more runs");
-    break;
-  }
-  return doubts;
+  result.fit = check_noise(result.errors, result.experiment, result.estimate);
+  result.doubts = noise_doubts(result.errors, result.experiment, result.estimate, result.fit);
+  return result;
 }
 
 }  // namespace trussmap

@@ -25,8 +25,8 @@ Pose way_back(const Drive& drive, double t, double late, const Robot& robot) {
   return late > 0.0 ? inverse(way) : way;
 }
 
-/// What one second of lateness does to a truth row: the way back over its lateness as it is
-/// believed to be, which is exact there; while nothing is believed, that of a moment about the row.
+/// What one second of lateness does to a truth row: the way back over the lateness of an earlier
+/// fit, which is exact there; without one, that of a moment about the row.
 ViewPattern per_second(const Drive& drive, double t, double late, const Robot& robot) {
   constexpr double kMoment = 0.15;     // s: longer than a row's jitter
   constexpr double kTellable = 0.005;  // s
@@ -88,19 +88,19 @@ std::map<int, TruthClock> clocks_of(const std::vector<Recording>& recordings,
 }  // namespace
 
 EffectParameters truth_alignment(const std::vector<Recording>& recordings, const Robot& robot,
-                                 const std::vector<int>& sessions, const TruthAlignment& believed) {
-  EffectParameters border;
+                                 const std::vector<int>& sessions, const TruthAlignment& prior) {
+  EffectParameters parameters;
   const std::map<int, TruthClock> clocks = clocks_of(recordings, sessions);
-  if (clocks.empty()) return border;
+  if (clocks.empty()) return parameters;
   ViewPattern unit;
   unit.ahead = 1.0;
-  border.push_back(everywhere("truth's point, ahead", unit, kLeverSd, recordings));
+  parameters.push_back(everywhere("truth's point, ahead", unit, kLeverSd, recordings));
   unit = {};
   unit.left = 1.0;
-  border.push_back(everywhere("truth's point, left", unit, kLeverSd, recordings));
+  parameters.push_back(everywhere("truth's point, left", unit, kLeverSd, recordings));
   unit = {};
   unit.heading = 1.0;
-  border.push_back(everywhere("truth's heading", unit, kHeadingSd, recordings));
+  parameters.push_back(everywhere("truth's heading", unit, kHeadingSd, recordings));
   for (const auto& [session, start] : clocks) {
     EffectPattern late;
     late.name = "truth late";
@@ -113,15 +113,15 @@ EffectParameters truth_alignment(const std::vector<Recording>& recordings, const
       if (session_of(sessions, k) != session) continue;
       for (const TruthRow& row : recordings[k].truth) {
         const ViewPattern back =
-            per_second(recordings[k].drive, row.t, lateness(believed, session, row.t), robot);
+            per_second(recordings[k].drive, row.t, lateness(prior, session, row.t), robot);
         late.truths[k].push_back(back);
         clock.truths[k].push_back(times(back, row.t - start.start));
       }
     }
-    border.push_back(std::move(late));
-    border.push_back(std::move(clock));
+    parameters.push_back(std::move(late));
+    parameters.push_back(std::move(clock));
   }
-  return border;
+  return parameters;
 }
 
 TruthAlignment alignment_of(const std::vector<Recording>& recordings,

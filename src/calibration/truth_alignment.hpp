@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// How the truth sits on the drive: where on the robot it tracks, where it believes ahead to be, and
-// how its clock runs. Nobody measures these, yet each of them looks like wheel errors.
+// How the truth is mounted and clocked, as parameters of the adjustment. Nobody measures these, yet
+// each of them looks like wheel errors.
 //
 //   ahead, left   the tracked point, from the axle's centre      m, robot axes     all recordings
 //   heading       truth's heading less the robot's               rad               all recordings
@@ -11,39 +11,26 @@
 //   clock         and by so much more per second                 s/s               each session
 //
 // A late row shows the robot where it was: its pose less the way driven since, by the wheels. That
-// is linear in the lateness while the motion is steady; about a lateness believed already it is
-// exact everywhere, so fits are repeated.
+// is linear in the lateness while the motion is steady, and exact about a lateness that is known
+// already, so fits are repeated.
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
+#include "trussmap/calibrate.hpp"
 
-#include <map>
+#include <vector>
 
 namespace trussmap {
 
-/// The clock of one session.
-struct TruthClock {
-  double late = 0.0;   ///< s, at `start`
-  double drift = 0.0;  ///< s/s
-  double start = 0.0;  ///< s, where the session's drive starts
-};
-
-struct TruthAlignment {
-  double ahead = 0.0;                ///< m
-  double left = 0.0;                 ///< m
-  double heading = 0.0;              ///< rad
-  std::map<int, TruthClock> clocks;  ///< by session; none where no truth was used
-};
-
-/// Coefficients of all that, in this order, late and clock by turns, sessions in rising order. Weak
+/// Coefficients of all that, in this order, late and clock in turn, sessions in rising order. Weak
 /// priors keep what a motion does not show near 0. None where no recording has truth. `sessions`:
-/// of each recording, where several are stretches of one drive; empty: 0, 1, 2 ... `believed`: what
+/// of each recording, where several are segments of one drive; empty: 0, 1, 2 ... `prior`: what
 /// an earlier fit has found.
 [[nodiscard]] EffectParameters truth_alignment(const std::vector<Recording>& recordings,
                                                const Robot& robot, const std::vector<int>& sessions,
-                                               const TruthAlignment& believed = {});
+                                               const TruthAlignment& prior = {});
 
-/// The coefficients of that border, read.
+/// The estimated coefficients of those parameters, read.
 [[nodiscard]] TruthAlignment alignment_of(const std::vector<Recording>& recordings,
                                           const std::vector<int>& sessions,
                                           const Eigen::VectorXd& coefficients);

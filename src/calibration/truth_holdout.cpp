@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/truth_holdout.hpp"
 
+#include "calibration/reckoning.hpp"
 #include "geometry/index.hpp"
 #include "odometry/effect_correction.hpp"
-#include "odometry/merge.hpp"
 #include "recording/legs.hpp"
-#include "trussmap/error.hpp"
 
 #include <cmath>
 #include <optional>
@@ -21,7 +20,7 @@ bool is_held_out(int leg, double share) {
   return std::floor((block + 1) * share) > std::floor(block * share);
 }
 
-/// The rows and truth of one stretch of time.
+/// The rows, truth and sightings of one span of time.
 Recording cut(const Recording& whole, double from, double to) {
   constexpr double kSameTime = 1e-9;  // s
   Recording part;
@@ -50,18 +49,6 @@ Recording cut(const Recording& whole, double from, double to) {
   return part;
 }
 
-/// Dead reckoning from a pose.
-Pose reckoned(const Drive& drive, Pose pose, double from, double to, double wheelbase) {
-  for (const DriveRow& row : rows_between(drive, from, to)) {
-    pose = compose(pose, arc_displacement(travel_of(drive, row), wheelbase));
-  }
-  return pose;
-}
-
-Pose pose_of(const TruthRow& row) {
-  return {row.x, row.y, row.heading};
-}
-
 /// The heading at truth row `at` by all rows of the second before it.
 double settled_heading(const Recording& recording, std::size_t at, double wheelbase) {
   constexpr double kSecond = 1.0;  // s
@@ -80,12 +67,6 @@ double settled_heading(const Recording& recording, std::size_t at, double wheelb
 }
 
 }  // namespace
-
-double ArrivalErrors::rms() const {
-  double sum = 0.0;
-  for (const double one : distances) sum += one * one;
-  return distances.empty() ? 0.0 : std::sqrt(sum / legs());
-}
 
 std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, double share,
                                  double leg) {
@@ -148,35 +129,6 @@ ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
     const Pose end =
         reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot.wheelbase);
     result.distances.push_back((end.position() - Vector2(to.x, to.y)).norm());
-  }
-  return result;
-}
-
-std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
-  std::vector<DriveError> result;
-  const std::vector<Recording> corrected = without_effects(recordings, model);
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const Drive& drive = corrected[k].drive;
-    std::vector<TruthRow> truth = recordings[k].truth;
-    std::erase_if(truth, [&](const TruthRow& row) {
-      return row.t < drive.start() || row.t > drive.t.back();
-    });
-    if (truth.size() < 2) {
-      throw InputError(recordings[k].name, 0,
-                       "has no two truth rows within its drive, expected them to judge it by");
-    }
-    const TruthRow& from = truth.front();
-    const TruthRow& to = truth.back();
-    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot.wheelbase);
-    DriveError one;
-    one.end = (end.position() - Vector2(to.x, to.y)).norm();
-    one.heading = wrap_angle(end.heading - to.heading);
-    // Metres as recorded, so that they are the same for every model.
-    for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
-      const WheelTravel travel = travel_of(recordings[k].drive, row);
-      one.driven += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
-    }
-    result.push_back(one);
   }
   return result;
 }

@@ -116,7 +116,7 @@ ExactFit descend(const GeometryErrors& start, const SquareClusters& clusters,
 }
 
 /// Errors as large as a tenth of a turn per leg have minima besides the true one: where the one
-/// next to the nominal geometry fits badly, others are looked for.
+/// next to the nominal geometry fits badly, the search starts again from others.
 ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
   constexpr double kGoodShare = 0.05;    // of the measured errors, left over
   constexpr double kLargestError = 0.7;  // rad, per leg or per turn

@@ -2,17 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/wheel_calibration.hpp"
 
-#include "estimation/recording_start.hpp"
-#include "estimation/recording_system.hpp"
+#include "calibration/heading_offset.hpp"
+#include "calibration/restricted_likelihood.hpp"
+#include "calibration/truth_alignment.hpp"
+#include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
-#include <Eigen/LU>
-#include <boost/math/tools/minima.hpp>
+#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -21,24 +23,27 @@ constexpr double kUseless = 0.1;  // a standard error of a ratio that is no cali
 
 constexpr std::array<const char*, 3> kNames{"wheel diameter ratio", "wheelbase", "wheel scale"};
 constexpr std::array<Channel, 3> kChannels{Channel::difference, Channel::turn, Channel::wheels};
+constexpr std::array<const char*, 3> kSymbols{
+    "E_d (right wheel / left wheel)", "E_b (wheelbase / nominal)", "E_s (true / measured travel)"};
 
 bool is_one_of_three(const Effect& effect) {
   return std::find(kNames.begin(), kNames.end(), effect.name) != kNames.end();
 }
 
-/// A border of those of the three that are looked for, and of how the truth sits on the drive.
-EffectParameters border_of(const std::array<bool, 3>& wanted,
-                           const std::vector<Recording>& recordings, const Robot& robot,
-                           const WheelCalibrationOptions& options, const TruthAlignment& believed) {
-  EffectParameters border;
+/// Parameters: those of the three that are wanted, and the alignment of the truth.
+EffectParameters parameters_of(const std::array<bool, 3>& wanted,
+                               const std::vector<Recording>& recordings, const Robot& robot,
+                               const WheelCalibrationOptions& options,
+                               const TruthAlignment& prior) {
+  EffectParameters parameters;
   for (std::size_t k = 0; k < 3; ++k) {
-    if (wanted[k]) border.push_back(plain_effect(kChannels[k], recordings, robot));
+    if (wanted[k]) parameters.push_back(plain_effect(kChannels[k], recordings, robot));
   }
-  if (!options.problem.truth) return border;
-  for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, believed)) {
-    border.push_back(std::move(one));
+  if (!options.problem.truth) return parameters;
+  for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, prior)) {
+    parameters.push_back(std::move(one));
   }
-  return border;
+  return parameters;
 }
 
 /// The model whose three effects have these coefficients; others as given.
@@ -65,18 +70,18 @@ std::array<double, 3> in_force(const Model& model) {
 struct Fitted {
   std::vector<Recording> corrected;
   RecordingProblem problem;
-  EffectParameters border;
+  EffectParameters parameters;
   RecordingAdjustment adjustment;
 };
 
 Fitted fit(const std::vector<Recording>& recordings, const Model& model,
            const std::array<bool, 3>& wanted, const WheelCalibrationOptions& options,
-           const TruthAlignment& believed) {
+           const TruthAlignment& prior) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
   result.problem = make_problem(result.corrected, model, options.problem);
-  result.border = border_of(wanted, result.corrected, model.robot, options, believed);
-  result.adjustment = adjust(result.problem, result.border);
+  result.parameters = parameters_of(wanted, result.corrected, model.robot, options, prior);
+  result.adjustment = adjust(result.problem, result.parameters);
   return result;
 }
 
@@ -92,68 +97,19 @@ void refine(std::array<double, 3>& g, const std::array<bool, 3>& wanted,
   }
 }
 
-/// -2 log of the restricted likelihood, but for constants.
-double restricted_loss(const std::vector<Recording>& corrected, Model model, double left,
-                       double right, const Fitted& about, const ProblemOptions& options) {
-  model.noise.left = left;
-  model.noise.right = right;
-  const RecordingProblem problem = make_problem(corrected, model, options);
-  const RecordingAdjustment best = adjust_from(about.adjustment.state, problem, about.border);
-  double loss = best.chi2;
-  for (const Measurement& one : problem.measurements) {
-    for (int k = 0; k < one.rows; ++k) loss -= 2.0 * std::log(std::abs(one.whitener(k, k)));
-  }
-  RecordingSystem system(problem, about.border);
-  system.linearise(best.state, best.coefficients);
-  system.factorise();
-  return loss + system.log_determinant();
-}
-
-/// Minimum over log k_L and log k_R, by turns along their sum and their difference, and the
-/// curvature there.
+/// k_L and k_R by the fit of the geometry, in the result and in its model.
 void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibration& result) {
-  constexpr double kReach = 2.5;  // in log k: a factor of 12 either way
-  constexpr int kBits = 9;
-  const Model& model = result.model;
-  Vector2 log_k(std::log(model.noise.left), std::log(model.noise.right));
-  const auto loss = [&](const Vector2& at) {
-    return restricted_loss(about.corrected, model, std::exp(at[0]), std::exp(at[1]), about,
-                           options);
-  };
-  double reach = kReach;
-  for (int round = 0; round < 3; ++round) {
-    for (const Vector2& way : {Vector2(1.0, 1.0), Vector2(1.0, -1.0)}) {
-      const double step =
-          boost::math::tools::brent_find_minima([&](double by) { return loss(log_k + by * way); },
-                                                -reach, reach, kBits)
-              .first;
-      log_k += step * way;
-    }
-    reach *= 0.3;
-  }
-  constexpr double h = 0.15;
-  const double middle = loss(log_k);
-  Matrix2 curvature = Matrix2::Zero();
-  for (int k = 0; k < 2; ++k) {
-    curvature(k, k) =
-        (loss(log_k + h * Vector2::Unit(k)) + loss(log_k - h * Vector2::Unit(k)) - 2.0 * middle) /
-        (h * h);
-  }
-  const Vector2 both(h, h);
-  const double diagonal = (loss(log_k + both) + loss(log_k - both) - 2.0 * middle) / (h * h);
-  curvature(0, 1) = curvature(1, 0) = 0.5 * (diagonal - curvature(0, 0) - curvature(1, 1));
-  // The loss is -2 log L: its curvature is twice the information.
-  const Matrix2 covariance = (0.5 * curvature).inverse();
-  if (curvature(0, 0) <= 0.0 || curvature.determinant() <= 0.0) {
+  const std::optional<WheelNoiseFit> found = most_likely_noise(
+      about.corrected, result.model, options, about.parameters, about.adjustment.state);
+  if (!found) {
     result.undetermined.emplace_back(
         "k_left and k_right: the other noise in the model hides that of the wheels");
     return;
   }
-  const Vector2 k = log_k.array().exp();
-  result.noise_left = Calibrated{k[0], k[0] * std::sqrt(covariance(0, 0))};
-  result.noise_right = Calibrated{k[1], k[1] * std::sqrt(covariance(1, 1))};
-  result.model.noise.left = k[0];
-  result.model.noise.right = k[1];
+  result.noise_left = Calibrated{found->k[0], found->sd[0]};
+  result.noise_right = Calibrated{found->k[1], found->sd[1]};
+  result.model.noise.left = found->k[0];
+  result.model.noise.right = found->k[1];
 }
 
 /// Whether anything in use measures a distance.
@@ -170,25 +126,29 @@ std::string why_not(std::size_t k, const std::vector<Recording>& recordings,
                     const ProblemOptions& options) {
   switch (k) {
     case 0:
-      return "E_d (right wheel / left wheel): the drive is too short to show one wheel larger than "
-             "the other; drive straight lines of several metres";
+      return "the drive is too short to show one wheel larger than the other; drive straight lines "
+             "of several metres";
     case 1:
-      return "E_b (wheelbase / nominal): the robot hardly turns; drive turns, both ways";
+      return "the robot hardly turns; drive turns, both ways";
     default:
       return measures_distance(recordings, options)
-                 ? "E_s (true / measured travel): the robot hardly gets anywhere, and turns on "
-                   "the spot cannot tell larger wheels from a smaller wheelbase; drive "
-                   "straight lines"
-                 : "E_s (true / measured travel): nothing in use measures a distance; add a "
-                   "survey or truth";
+                 ? "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
+                   "wheels "
+                   "from a smaller wheelbase; drive straight lines"
+                 : "nothing in use measures a distance; add a survey or truth";
   }
 }
 
-/// Which of the three the motion determines: each alone, then together.
+std::string undetermined_text(std::size_t k, const std::vector<Recording>& recordings,
+                              const ProblemOptions& options) {
+  return std::string(kSymbols[k]) + ": " + why_not(k, recordings, options);
+}
+
+/// Which of the three the motion determines: each alone, then jointly.
 std::array<bool, 3> determined(const std::vector<Recording>& recordings, const Model& model,
                                const WheelCalibrationOptions& options,
                                std::vector<std::string>& undetermined) {
-  // By the letter a smaller map would do better: its errors are smaller, too.
+  // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem);
   std::array<bool, 3> wanted{true, true, scale};
   const auto can = [&](const std::array<bool, 3>& these) {
@@ -201,7 +161,7 @@ std::array<bool, 3> determined(const std::vector<Recording>& recordings, const M
       return false;
     }
   };
-  if (!scale) undetermined.push_back(why_not(2, recordings, options.problem));
+  if (!scale) undetermined.push_back(undetermined_text(2, recordings, options.problem));
   if (can(wanted)) return wanted;
   // Nothing at all: let the reason through.
   static_cast<void>(fit(recordings, model, {false, false, false}, options, {}));
@@ -213,13 +173,65 @@ std::array<bool, 3> determined(const std::vector<Recording>& recordings, const M
     if (can(more)) {
       wanted = more;
     } else {
-      undetermined.push_back(why_not(k, recordings, options.problem));
+      undetermined.push_back(undetermined_text(k, recordings, options.problem));
     }
   }
   return wanted;
 }
 
+/// E_d, E_b and E_s.
+std::array<double, 3> ratios(const std::array<double, 3>& g) {
+  return {(1.0 + 0.5 * g[0]) / (1.0 - 0.5 * g[0]), 1.0 / (1.0 + g[1]), 1.0 + g[2]};
+}
+
+/// chi^2, and E_d, E_b and E_s with their standard errors.
+void read_ratios(WheelCalibration& result, const std::array<double, 3>& g,
+                 const std::array<bool, 3>& wanted, const RecordingAdjustment& adjustment) {
+  result.chi2 = adjustment.chi2;
+  result.dof = adjustment.dof;
+  Eigen::Index at = 0;
+  const auto sd = [&] {
+    const double variance = adjustment.coefficient_covariance(at, at);
+    ++at;
+    return std::sqrt(variance);
+  };
+  const auto [e_d, e_b, e_s] = ratios(g);
+  if (wanted[0]) {
+    const double slope = 1.0 / std::pow(1.0 - 0.5 * g[0], 2);
+    result.diameter_ratio = Calibrated{e_d, slope * sd()};
+  }
+  if (wanted[1]) result.wheelbase_ratio = Calibrated{e_b, e_b * sd()};
+  if (wanted[2]) result.scale = Calibrated{e_s, e_s * sd()};
+}
+
+/// Wheels that run backwards, or change sides: the truth is not what it is said to be.
+void require_positive(const std::array<double, 3>& g, const std::array<bool, 3>& wanted,
+                      const std::vector<Recording>& recordings, const Model& model,
+                      const ProblemOptions& options) {
+  const std::array<double, 3> all = ratios(g);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!wanted[k] || all[k] > 0.0) continue;
+    const std::string why = options.truth ? describe(heading_offset(recordings, model.robot)) : "";
+    throw SolveError(fmt::format(
+        "not calibrated: {} would be {:.3g}, which no robot has; {}", kSymbols[k], all[k],
+        why.empty() ? "are left and right exchanged, or the signs of x or y?" : why));
+  }
+}
+
 }  // namespace
+
+WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
+  WheelCalibrationOptions result;
+  result.problem.survey = options.survey;
+  result.problem.truth = options.truth;
+  result.noise = options.noise;
+  return result;
+}
+
+WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
+                                  const CalibrationOptions& options) {
+  return calibrate_wheels(recordings, model, calibration_options(options));
+}
 
 WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
                                   const WheelCalibrationOptions& options) {
@@ -245,25 +257,10 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
       const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
       if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
+    require_positive(g, wanted, recordings, model, options.problem);
     if (noise) find_noise(last, options.problem, result);
   }
-  result.chi2 = last.adjustment.chi2;
-  result.dof = last.adjustment.dof;
-  Eigen::Index at = 0;
-  const auto sd = [&] {
-    const double variance = last.adjustment.coefficient_covariance(at, at);
-    ++at;
-    return std::sqrt(variance);
-  };
-  if (wanted[0]) {
-    const double slope = 1.0 / std::pow(1.0 - 0.5 * g[0], 2);
-    result.diameter_ratio = Calibrated{(1.0 + 0.5 * g[0]) / (1.0 - 0.5 * g[0]), slope * sd()};
-  }
-  if (wanted[1]) {
-    const double ratio = 1.0 / (1.0 + g[1]);
-    result.wheelbase_ratio = Calibrated{ratio, ratio * sd()};
-  }
-  if (wanted[2]) result.scale = Calibrated{1.0 + g[2], (1.0 + g[2]) * sd()};
+  read_ratios(result, g, wanted, last.adjustment);
   return result;
 }
 

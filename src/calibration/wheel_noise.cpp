@@ -156,7 +156,7 @@ void require_two_wheels(const Matrix2& information) {
   if (information.determinant() > kAlike * product) return;
   throw SolveError(
       "this path shows the noise of both wheels in the same way, so that they cannot be told "
-      "apart; drive straight pieces as well, \"10,-10\" for instance");
+      "apart; drive straight segments as well, \"10,-10\" for instance");
 }
 
 Fit fit_weights(const Problem& problem, Vector2 weights) {

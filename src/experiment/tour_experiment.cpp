@@ -18,7 +18,7 @@
 namespace trussmap {
 namespace {
 
-/// The three figures of one map.
+/// The three metrics of one map.
 struct Errors {
   double stretch = 0.0;
   double orientation = 0.0;
@@ -169,14 +169,14 @@ class SeedRun {
   Vector2 reckoned_ = Vector2::Zero();
 };
 
-SeedMean figure_of(const std::vector<double>& values) {
+SeedMean seed_mean(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
-  SeedMean figure;
-  for (const double value : values) figure.mean += value / n;
+  SeedMean result;
+  for (const double value : values) result.mean += value / n;
   double squares = 0.0;
-  for (const double value : values) squares += std::pow(value - figure.mean, 2);
-  if (n > 1.0) figure.standard_error = std::sqrt(squares / (n - 1.0) / n);
-  return figure;
+  for (const double value : values) squares += std::pow(value - result.mean, 2);
+  if (n > 1.0) result.standard_error = std::sqrt(squares / (n - 1.0) / n);
+  return result;
 }
 
 TourMetrics metrics_of(const std::vector<Errors>& errors) {
@@ -188,9 +188,9 @@ TourMetrics metrics_of(const std::vector<Errors>& errors) {
     orientation.push_back(one.orientation);
     if (one.position) position.push_back(*one.position);
   }
-  TourMetrics figures{figure_of(stretch), figure_of(orientation), std::nullopt};
-  if (!position.empty()) figures.position_error = figure_of(position);
-  return figures;
+  TourMetrics metrics{seed_mean(stretch), seed_mean(orientation), std::nullopt};
+  if (!position.empty()) metrics.position_error = seed_mean(position);
+  return metrics;
 }
 
 std::vector<SeedErrors> run_seeds(const TourOptions& options) {
@@ -248,12 +248,12 @@ TourResult run_tours(const TourOptions& options) {
   };
   TourResult result;
   for (std::size_t tour = 0; tour < seeds.front().tours.size(); ++tour) {
-    MethodMetrics figures;
+    MethodMetrics metrics;
     for (const std::string& method : tour_methods()) {
-      figures[method] =
+      metrics[method] =
           over_seeds([&](const SeedErrors& seed) { return seed.tours[tour].at(method); });
     }
-    result.tours.push_back(std::move(figures));
+    result.tours.push_back(std::move(metrics));
   }
   result.first_sight_before =
       over_seeds([](const SeedErrors& seed) { return seed.first_sight_before; });

@@ -223,7 +223,7 @@ class Reader {
   const std::string& file_;
   Dialect dialect_;
   PoseGraph graph_;
-  std::unordered_map<std::int64_t, std::size_t> numbers_;  // looked up only, never walked
+  std::unordered_map<std::int64_t, std::size_t> numbers_;  // for look-up only
   std::vector<Mention> pose_ends_;                         // two per edge, in the edges' order
   std::vector<Mention> point_ends_;
   std::vector<Mention> displacement_ends_;

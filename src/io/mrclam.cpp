@@ -32,10 +32,14 @@ std::vector<Row> read_rows(const fs::path& file, std::size_t columns) {
   return read_number_rows(file, columns, kWhiteSpace);
 }
 
-std::vector<Row> require_rows(const fs::path& path, std::size_t columns) {
-  const fs::path file = plain_or_xz(path);
+fs::path require_file(const fs::path& path) {
+  fs::path file = plain_or_xz(path);
   if (file.empty()) throw InputError(path.string(), 0, "is missing, plain or as .xz");
-  return read_rows(file, columns);
+  return file;
+}
+
+std::vector<Row> require_rows(const fs::path& path, std::size_t columns) {
+  return read_rows(require_file(path), columns);
 }
 
 /// A subject or barcode; what is no small whole number belongs to nothing.
@@ -81,10 +85,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   for (const Row& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
     subjects[number_of(row[1])] = number_of(row[0]);
   }
-  const fs::path file = plain_or_xz(beside(prefix, "_Measurement.dat"));
-  if (file.empty()) {
-    throw InputError(beside(prefix, "_Measurement.dat").string(), 0, "is missing, plain or as .xz");
-  }
+  const fs::path file = require_file(beside(prefix, "_Measurement.dat"));
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
   double before = -std::numeric_limits<double>::infinity();
@@ -148,11 +149,11 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
 }
 
 /// These robots have no encoders in the data but commanded velocities, which they reach or not:
-/// noise in how far they drove goes with time, in how far they turned with the turn. All figures
-/// are for the five robots of sets 6, 1 and 4 alike. Drive: chi^2 is 0.9 (forward) and 1.0 (turn)
-/// of what is redundant, with one camera frame in 3 s. Sightings: their chi^2 is 0.7 (range) and
-/// 0.3 (bearing); they are believed less because at 4 frames per second errors last for
-/// seconds, and because the frames come 0.25 s late, which while turning is a bearing error.
+/// noise in how far they drove goes with time, in how far they turned with the turn. All values
+/// are the same for the five robots of sets 6, 1 and 4. Drive: chi^2 is 0.9 (forward) and 1.0
+/// (turn) of what is redundant, with one camera frame in 3 s. Sightings: their chi^2 is 0.7 (range)
+/// and 0.3 (bearing); they get a larger sd because at 4 frames per second errors last for seconds,
+/// and because the frames come 0.25 s late, which while turning is a bearing error.
 Model create_model() {
   Model model;
   model.robot.wheelbase = kCreateWheelbase;
@@ -168,7 +169,12 @@ Model create_model() {
 }  // namespace
 
 bool is_mrclam(const fs::path& prefix) {
-  return !plain_or_xz(beside(prefix, "_Odometry.dat")).empty();
+  // One without odometry is a robot of such a set as well: reading it says what is missing.
+  for (const char* ending : {"_Odometry.dat", "_Measurement.dat", "_Groundtruth.dat"}) {
+    if (!plain_or_xz(beside(prefix, ending)).empty()) return true;
+  }
+  return prefix.filename().string().starts_with("Robot") &&
+         !plain_or_xz(prefix.parent_path() / "Barcodes.dat").empty();
 }
 
 MrclamRecording read_mrclam(const fs::path& prefix) {

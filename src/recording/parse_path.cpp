@@ -44,7 +44,7 @@ std::optional<PathSegment> parse_segment(std::string_view text) {
 }
 
 [[noreturn]] void refuse(const std::string& segment, const std::string& path) {
-  throw std::invalid_argument("piece \"" + segment + "\" of the path \"" + path +
+  throw std::invalid_argument("segment \"" + segment + "\" of the path \"" + path +
                               "\" cannot be read, expected metres (10 or -10), a turn on the spot "
                               "in degrees (a90) or an arc (3@45)");
 }

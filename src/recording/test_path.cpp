@@ -23,4 +23,12 @@ double path_length(const TestPath& path) {
   return length;
 }
 
+double largest_end_error(const TestPath& path, double wheelbase) {
+  double longest = 0.0;
+  for (const PathSegment& segment : path) {
+    longest += std::abs(segment.distance) + 0.5 * wheelbase * std::abs(segment.turn);
+  }
+  return longest;
+}
+
 }  // namespace trussmap

@@ -4,9 +4,8 @@
 // The pages of calibrations: squares with a tape measure, one path driven often, drives with truth.
 #pragma once
 
-#include "calibration/truth_holdout.hpp"
-#include "calibration/wheel_calibration.hpp"
 #include "report/page.hpp"
+#include "trussmap/calibrate.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
@@ -14,14 +13,6 @@
 #include <vector>
 
 namespace trussmap {
-
-/// A round of squares, with what it called for.
-struct SquareRound {
-  SquareRuns runs;
-  SquareClusters clusters;
-  SquareSolution exact;
-  SquareSolution formulas;
-};
 
 struct SquareCalibration {
   std::vector<SquareRound> rounds;

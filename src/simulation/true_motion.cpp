@@ -3,6 +3,7 @@
 #include "simulation/true_motion.hpp"
 
 #include "geometry/index.hpp"
+#include "simulation/driving_checks.hpp"
 #include "simulation/further_columns.hpp"
 #include "simulation/leg_shape.hpp"
 #include "trussmap/random_stream.hpp"
@@ -11,11 +12,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <stdexcept>
-#include <string>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -118,7 +115,7 @@ class Path {
     pose_.y = position.y();
   }
 
-  /// Time at the end of a number of rows, in whole nanoseconds lest 3 x 0.1 s be
+  /// Time at the end of a number of rows, in whole nanoseconds so that 3 x 0.1 s is not
   /// 0.30000000000000004.
   [[nodiscard]] double time_after(std::size_t rows) const {
     return std::round(static_cast<double>(rows) * style_.row_duration * 1e9) / 1e9;
@@ -281,51 +278,6 @@ class Path {
   Surroundings surroundings_;
   TrueMotion motion_;
 };
-
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument(what);
-}
-
-bool is_range(double low, double high) {
-  return low > 0.0 && low <= high && std::isfinite(high);
-}
-
-bool is_share(double share) {
-  return share >= 0.0 && share <= 1.0;
-}
-
-void check_style(const DrivingStyle& style) {
-  require(is_range(style.row_duration, 3600.0), "a row must last above 0 s");
-  require(is_range(style.slowest, style.fastest), "speeds must be above 0 m/s, slowest first");
-  require(is_range(style.slowest_turn, style.fastest_turn),
-          "turn rates must be above 0 rad/s, slowest first");
-  require(style.bend >= 0.0 && style.bend <= 0.5, "a leg's bend must lie between 0 and 0.5 rad");
-  require(style.corner_reach >= 0.0 && style.corner_reach <= 1.0,
-          "a corner must lie off the leg by 0 to 1 of its length");
-  require(is_share(style.corner_share) && is_share(style.rest_share) &&
-              is_share(style.load_change_share) && is_share(style.lights_change_share),
-          "a share must lie between 0 and 1");
-  require(is_range(style.shortest_rest, style.longest_rest),
-          "rests must last above 0 s, shortest first");
-  check_covariates(style.covariates);
-  require(style.full_spins >= 0, "the number of stops with full spins must not be negative");
-  require(std::isfinite(style.standing) && style.standing >= 0.0,
-          "how exactly the robot stands on a landmark must be 0 m or more");
-  for (const double value : {style.first_rest, style.last_rest, style.overrun, style.ramp}) {
-    require(std::isfinite(value) && value >= 0.0,
-            "a rest, an overrun and a ramp must be 0 or more, in s, m and s");
-  }
-}
-
-void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing) {
-  require(walk.size() >= 2, "a walk needs two landmarks");
-  const double least = std::max(0.01, 20.0 * standing);
-  for (std::size_t k = 0; k < walk.size(); ++k) {
-    require(walk[k] >= 0 && walk[k] < mesh.landmarks(), "a walk keeps to the mesh's landmarks");
-    require(k == 0 || mesh.displacement(walk[k - 1], walk[k]).norm() >= least,
-            fmt::format("successive landmarks of a walk must be at least {:g} m apart", least));
-  }
-}
 
 }  // namespace
 

@@ -30,7 +30,9 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 /// A drive of a robot with E_d 1.004, E_b 0.97, E_s 1.02 and its nominal model, as files.
-std::string write_drive(const ScratchFolder& scratch, const std::string& name) {
+std::string write_drive(const ScratchFolder& scratch, const std::string& name,
+                        const std::vector<testing::Stretch>& way = testing::figure(),
+                        std::uint64_t seed = 7) {
   testing::DrawnRobot robot;
   robot.E_d = 1.004;
   robot.E_b = 0.97;
@@ -38,7 +40,7 @@ std::string write_drive(const ScratchFolder& scratch, const std::string& name) {
   robot.k_left = robot.k_right = 0.002;
   robot.truth_sd = 0.001;
   robot.truth_heading_sd = 0.005;
-  const Recording drawn = testing::draw(testing::figure(), robot, 7);
+  const Recording drawn = testing::draw(way, robot, seed);
   std::string drive = "t,left,right\n";
   std::string truth = "t,x,y,heading\n";
   for (std::size_t k = 0; k < drawn.drive.rows(); ++k) {
@@ -120,6 +122,47 @@ TEST(CalibrateCommand, SaysThatNothingWasHeldOut) {
   const json found = read_json(scratch.path() / "c.json");
   EXPECT_EQ(found["heldout"]["legs"], 0);
   EXPECT_TRUE(found["heldout"]["arrival_rms_m"].is_null());
+}
+
+TEST(CalibrateCommand, ShortRunsAreHeldOutOneByOne) {
+  const ScratchFolder scratch;
+  const std::string model = write_nominal(scratch);
+  std::string runs;
+  for (const std::string name : {"a", "b", "c", "d", "e", "f"}) {
+    runs +=
+        " " +
+        write_drive(
+            scratch, name,
+            {{1.0, 0.0, 0.0}, {5.0, 0.5, 0.0}, {2.0, 0.0, 0.8}, {3.0, 0.5, -0.6}, {1.0, 0.0, 0.0}},
+            7U + static_cast<std::uint64_t>(name.front()));
+  }
+  const Ran ran = run_trussmap("calibrate" + runs + " --model " + model + " --json " +
+                               (scratch.path() / "c.json").string());
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("each recording held out in turn"), std::string::npos) << ran.output;
+  const json held = read_json(scratch.path() / "c.json")["heldout"];
+  EXPECT_EQ(held["held_out"], "recordings");
+  EXPECT_GE(held["legs"], 12);
+  EXPECT_LT(held["arrival_rms_m"], held["arrival_rms_nominal_m"]);
+}
+
+TEST(CalibrateCommand, WheelsThatNoRobotHasAreRefused) {
+  const ScratchFolder scratch;
+  const std::string drive = write_drive(scratch, "drive");
+  const std::string model = write_nominal(scratch);
+  Recording turned = read_recording(drive);
+  for (TruthRow& row : turned.truth) row.heading += 3.14159265358979;
+  write_recording(drive, turned);
+  const auto before = scratch.contents();
+  const Ran ran = run_trussmap("calibrate " + drive + " --model " + model + " --out " +
+                               (scratch.path() / "m.toml").string() + " --json " +
+                               (scratch.path() / "c.json").string());
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(ran.output.rfind("trussmap: not calibrated: E_", 0), 0U) << ran.output;
+  EXPECT_NE(ran.output.find("the truth's heading looks turned by 3.1"), std::string::npos)
+      << ran.output;
+  EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+  EXPECT_EQ(scratch.contents(), before);
 }
 
 TEST(CalibrateCommand, BadInputIsOneLineAndWritesNothing) {

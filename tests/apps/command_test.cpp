@@ -2,15 +2,19 @@
 // SPDX-License-Identifier: MIT
 //
 // The command line as a user meets it: status, one line for what is wrong, nothing half-written.
-#include <algorithm>
-#include <fstream>
-#include <string>
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
+#include "trussmap/gate.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace trussmap {
 namespace {
@@ -21,11 +25,82 @@ using testing::read_json;
 using testing::run_trussmap;
 using testing::ScratchFolder;
 
+const std::vector<std::string> kCommands = {
+    "add",      "adjust", "build", "calibrate", "compare",  "convert", "diagnose",
+    "discover", "fit",    "noise", "reveal",    "simulate", "tour",    "umbmark"};
+
 TEST(Command, HelpIsThereForEveryCommand) {
-  for (const char* name : {"", "simulate", "reveal", "tour", "build", "convert"}) {
-    const Ran ran = run_trussmap(std::string(name) + " --help");
+  const std::string all = run_trussmap("--help").output;
+  for (const std::string& name : kCommands) {
+    const Ran ran = run_trussmap(name + " --help");
     EXPECT_EQ(ran.status, 0) << name;
+    EXPECT_NE(ran.output.find("Usage: trussmap " + name), std::string::npos) << ran.output;
     EXPECT_NE(ran.output.find("--help"), std::string::npos) << name;
+    EXPECT_NE(all.find("\n  " + name + " "), std::string::npos) << name;
+  }
+}
+
+TEST(Command, HelpSpellsTypesInOneWay) {
+  // CLI11's own spellings, and a path that is not called one.
+  const std::regex other(R"(\b(TEXT|FLOAT|INT|UINT|PATH\.\.\.|RECORDING\.\.\. RECORDING)\b)");
+  const std::regex no_file(R"(--(json|svg|html|model|write) (?!FILE))");
+  for (const std::string& name : kCommands) {
+    const std::string help = run_trussmap(name + " --help").output;
+    EXPECT_FALSE(std::regex_search(help, other)) << help;
+    EXPECT_FALSE(std::regex_search(help, no_file)) << help;
+  }
+}
+
+/// Help as one line, so that line breaks do not matter.
+std::string help_in_one_line(const std::string& command) {
+  static const std::regex kBlanks(R"(\s+)");
+  return std::regex_replace(run_trussmap(command + " --help").output, kBlanks, " ");
+}
+
+TEST(Command, HelpStatesTheDefaultOfEveryGate) {
+  const std::string build = help_in_one_line("build");
+  EXPECT_NE(build.find(fmt::format("by default {:g}, of the sighting", kMapGate)),
+            std::string::npos);
+  EXPECT_NE(build.find(fmt::format("with --method adjustment {:g},", kAdjustmentGate)),
+            std::string::npos);
+  for (const std::string command : {"compare", "diagnose", "discover", "fit"}) {
+    const std::string help = help_in_one_line(command);
+    EXPECT_NE(help.find(fmt::format("--gate X={:g} ", kModelGate)), std::string::npos) << help;
+  }
+  const std::string adjust = help_in_one_line("adjust");
+  EXPECT_NE(adjust.find(fmt::format("--gate X={:g} ", kPoseGraphGate)), std::string::npos);
+}
+
+TEST(Command, HelpSaysWhatARecordingIs) {
+  for (const std::string name : {"build", "calibrate", "compare", "diagnose", "discover", "fit"}) {
+    const std::string help = run_trussmap(name + " --help").output;
+    for (const char* line : {"drive.csv      t,left,right", "sightings.csv  t,landmark",
+                             "survey.csv     landmark,x,y", "truth.csv      t,x,y,heading"}) {
+      EXPECT_NE(help.find(line), std::string::npos) << name << ": " << line;
+    }
+  }
+}
+
+TEST(Command, AGraphWithPosesIsNoMapAndIsNamed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string graph = scratch.write("poses.g2o", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n").string();
+  const Ran ran = run_trussmap("convert " + graph + " " + at + "/x.geojson");
+  EXPECT_EQ(ran.status, 2) << ran.output;
+  EXPECT_EQ(ran.output.rfind("trussmap: " + graph + ": the graph has poses", 0), 0U) << ran.output;
+  EXPECT_EQ(scratch.contents().size(), 1U);
+}
+
+TEST(Command, AnMrclamRobotWithoutItsOdometryIsNamed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  scratch.write("set/Barcodes.dat", "# subject barcode\n6 72\n");
+  scratch.write("set/Robot1_Measurement.dat", "1.0 72 1.0 0.1\n");
+  for (const std::string robot : {"Robot1", "Robot2"}) {
+    const Ran ran = run_trussmap("convert " + at + "/set/" + robot + " " + at + "/out");
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(ran.output,
+              "trussmap: " + at + "/set/" + robot + "_Odometry.dat: is missing, plain or as .xz\n");
   }
 }
 

@@ -107,6 +107,26 @@ TEST(SimulateCommand, WhatIsHiddenIsSealedAndRevealed) {
   EXPECT_EQ(files.at("a/drive.csv"), files.at("c/drive.csv"));
 }
 
+TEST(SimulateCommand, HidingWithoutASeedDrawsOneAndSaysWhich) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string simulate = "simulate --mesh 3x3 --tours 1 --hide --out " + at;
+  const Ran a = run_trussmap(simulate + "a --json " + at + "a.json");
+  const Ran b = run_trussmap(simulate + "b --json " + at + "b.json");
+  ASSERT_EQ(a.status + b.status, 0) << a.output;
+  // Two draws of 32 bits are equal once in four billion runs of this test.
+  const json seed = read_json(scratch.path() / "a.json")["seed"];
+  EXPECT_NE(seed, read_json(scratch.path() / "b.json")["seed"]);
+  EXPECT_NE(a.output.find("--seed " + seed.dump() + ","), std::string::npos) << a.output;
+  const Ran again = run_trussmap(simulate + "c --seed " + seed.dump());
+  ASSERT_EQ(again.status, 0);
+  EXPECT_EQ(again.output.find("--seed"), std::string::npos) << again.output;
+  auto files = scratch.contents();
+  EXPECT_EQ(files.at("a/drive.csv"), files.at("c/drive.csv"));
+  EXPECT_EQ(files.at("a/truth.json"), files.at("c/truth.json"));
+  EXPECT_NE(files.at("a/drive.csv"), files.at("b/drive.csv"));
+}
+
 TEST(SimulateCommand, AnAnswerGoesWithItsRecordingAndAgainstTampering) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";

@@ -5,11 +5,19 @@
 // leaves.
 #include "terminal.hpp"
 
+#include "child_process.hpp"
+#include "progress.hpp"
+#include "scratch_folder.hpp"
+
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <pty.h>
+#include <stdexcept>
 #include <string>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -17,9 +25,6 @@
 #include <unistd.h>
 
 #include <gtest/gtest.h>
-
-#include "progress.hpp"
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {
@@ -33,7 +38,22 @@ using testing::ScratchFolder;
 const std::string kMaps = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/";
 const std::string kSquares = "umbmark " + kMaps + "square_runs.csv --side 4 --wheelbase 0.34";
 
-/// The trussmap command in a process of its own.
+/// Why this machine has no pseudo-terminal (/dev/pts not mounted, as in a bare chroot); empty if
+/// it has one.
+std::string no_terminal() {
+  int ends[2] = {-1, -1};
+  if (::openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) return std::strerror(errno);
+  for (const int end : ends) ::close(end);
+  return {};
+}
+
+#define TRUSSMAP_NEEDS_TERMINAL()                                       \
+  if (const std::string why = no_terminal(); !why.empty()) {            \
+    GTEST_SKIP() << "needs a pseudo-terminal (openpty: " << why << ")"; \
+  }
+
+/// The trussmap command in a process of its own. Throws std::runtime_error where the system starts
+/// none.
 class Running {
  public:
   explicit Running(const std::string& arguments, bool on_terminal = false,
@@ -41,7 +61,8 @@ class Running {
     const std::string line =
         "exec env -u NO_COLOR " + environment + " " + TRUSSMAP_COMMAND + " " + arguments;
     pid_ = on_terminal ? ::forkpty(&terminal_, nullptr, nullptr, nullptr) : ::fork();
-    if (pid_ != 0) return;
+    if (pid_ < 0) throw std::runtime_error(std::string("no process: ") + std::strerror(errno));
+    if (pid_ > 0) return;
     if (!on_terminal) static_cast<void>(std::freopen("/dev/null", "w", stdout));
     ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
     ::_exit(127);
@@ -67,9 +88,8 @@ class Running {
 
   /// The signal that it died of; 0 if it ended by itself.
   int end_by(int signal) {
-    ::kill(pid_, signal);
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
+    testing::send_signal(pid_, signal);
+    const int status = testing::wait_for(pid_);
     ended_ = true;
     return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   }
@@ -153,7 +173,16 @@ TEST(Terminal, DimsTheHeadOfATableAlone) {
   EXPECT_EQ(app::table_text(table, true), "\033[2mhead\033[0m\n----\nrow\n");
 }
 
+TEST(ChildProcess, SignalsNoProcessWhoseIdIsNotPositive) {
+  for (const pid_t nobody : {0, -1, -::getpid()}) {
+    // Signal 0 would do nothing even if it were sent.
+    EXPECT_THROW(testing::send_signal(nobody, 0), std::invalid_argument) << nobody;
+    EXPECT_THROW(static_cast<void>(testing::wait_for(nobody)), std::invalid_argument) << nobody;
+  }
+}
+
 TEST(TerminalCommand, IsColouredOnATerminalOnly) {
+  TRUSSMAP_NEEDS_TERMINAL();
   EXPECT_NE(on_terminal(kSquares).find("\033[33mworth correcting\033[0m"), std::string::npos);
   for (const char* plain : {"TERM=xterm NO_COLOR=1", "TERM=dumb", "-u TERM"}) {
     const std::string text = on_terminal(kSquares, plain);
@@ -164,6 +193,7 @@ TEST(TerminalCommand, IsColouredOnATerminalOnly) {
 }
 
 TEST(TerminalCommand, TellsHowFarItIs) {
+  TRUSSMAP_NEEDS_TERMINAL();
   const ScratchFolder scratch;
   const std::string command = "discover " + recording(scratch, "6x6");
   const std::string seen = on_terminal(command);

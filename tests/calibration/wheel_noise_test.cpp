@@ -29,7 +29,7 @@ NoiseExperiment out_and_back() {
   return experiment;
 }
 
-/// Runs of the robot that rolls: its noise bends its path.
+/// Runs of the robot that rolls: its noise curves its path.
 EndErrors rolled(const TapeRobot& robot, const TestPath& path, int runs, std::mt19937_64& random) {
   EndErrors errors;
   for (const Pose& end : drive_often(robot, path, runs, random)) {
@@ -272,7 +272,7 @@ TEST(NoiseChecks, EllipsesHold95PercentAndTestsAreFair) {
   EXPECT_LE(distance_rejected, 34);
 }
 
-TEST(NoiseChecks, APathThatNoiseBendsIsNamed) {
+TEST(NoiseChecks, NoiseThatIsNotLinearIsNamed) {
   std::mt19937_64 random(12);
   NoiseExperiment experiment;
   experiment.order = NoiseOrder::exact;
@@ -288,6 +288,26 @@ TEST(NoiseChecks, APathThatNoiseBendsIsNamed) {
     EXPECT_EQ(std::isnan(fit.shape_p_value), fit.nonlinear);
     EXPECT_EQ(noise_doubts(errors, experiment, found, fit).size(), fit.nonlinear ? 1U : 0U);
     EXPECT_GT(found.linearization_offset.norm(), 0.0);
+  }
+}
+
+TEST(NoiseAnalysis, UsesTheExactMomentsWhereTheNoiseIsLarge) {
+  std::mt19937_64 random(13);
+  NoiseExperiment experiment = out_and_back();
+  for (const double times : {1.0, 10.0}) {
+    const EndErrors errors =
+        rolled(noisy_robot(times * kLeft, times * kRight), experiment.path, kRuns, random);
+    const NoiseAnalysis found = analyse_wheel_noise(errors, experiment);
+    const bool exact = times > 1.0;
+    EXPECT_EQ(found.experiment.order, exact ? NoiseOrder::exact : NoiseOrder::first);
+    EXPECT_EQ(found.estimate.left.k, (exact ? found.exact : found.first_order).left.k);
+    // Of 60 runs; the bounds of the paper's robot, times its noise.
+    EXPECT_NEAR(found.estimate.left.k, times * kLeft, 4.0 * found.estimate.left.standard_error);
+    EXPECT_EQ(found.fit.nonlinear, exact);
+    // Which order is asked for makes no difference.
+    experiment.order = NoiseOrder::exact;
+    EXPECT_EQ(analyse_wheel_noise(errors, experiment).first_order.left.k, found.first_order.left.k);
+    experiment.order = NoiseOrder::first;
   }
 }
 

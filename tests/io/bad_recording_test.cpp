@@ -164,6 +164,18 @@ TEST(BadRecordingFolder, AbsentOrAFile) {
   EXPECT_EQ(message_of(file), file.string() + ": is a file, expected a recording's folder");
 }
 
+TEST(BadRecordingFolder, SightingsWithoutARowMayBeLeftOutBesideATruth) {
+  const ScratchFolder scratch;
+  scratch.write("r/drive.csv", kDrive);
+  scratch.write("r/truth.csv", "t,x,y,heading\n0.1,0,0,0\n");
+  scratch.write("r/sightings.csv", "t,landmark\n");
+  EXPECT_EQ(message_of(scratch.path() / "r"),
+            "sightings.csv:1: no sighting, expected one row at least; beside a truth.csv the file "
+            "may be left out");
+  std::filesystem::remove(scratch.path() / "r/sightings.csv");
+  EXPECT_EQ(read_recording(scratch.path() / "r").truth.size(), 1U);
+}
+
 TEST(BadRecordingFolder, EveryPrefixOfADriveIsReadOrRefusedNeverWorse) {
   const ScratchFolder scratch;
   scratch.write("r/sightings.csv", "t,landmark\n0,A\n");

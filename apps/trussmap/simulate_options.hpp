@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Options of trussmap simulate, and the world, robot and driving style that they describe.
+#pragma once
+
+#include "effect_options.hpp"
+#include "simulation/mesh_world.hpp"
+#include "simulation/true_motion.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/model.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace trussmap::app {
+
+/// Lengths in m, angles in rad, times in s.
+struct SimulateOptions {
+  std::string mesh = "6x6";
+  double spacing = 5.0;  // m
+  bool uneven = false;
+  std::string walk = "euler";
+  int tours = 3;
+  std::uint64_t seed = 1;
+  bool seed_drawn = false;        // for --hide without --seed
+  double wheelbase = 0.34;        // m
+  double wheel_noise = 0.003;     // m^1/2
+  double compass_noise = 0.02;    // rad
+  double sighting_noise = 0.005;  // m
+  double survey_noise = 0.001;    // m
+  bool noise_free = false;
+  bool no_compass = false;
+  bool no_survey = false;
+  bool range_sensor = false;
+  double reach = 8.0;  // m
+  bool rests = false;
+  int full_turns = 0;
+  std::vector<double> speeds = {0.25, 0.9};     // m/s
+  std::vector<double> turn_rates = {0.3, 1.1};  // rad/s
+  double ramp = 0.0;                            // s
+  double overrun = -1.0;                        // m; negative: 0, or what a delay needs
+  std::vector<std::string> covariates;
+  EffectOptions effects;
+  bool true_rates = false;
+  bool hide = false;
+  std::string out;
+  std::string json;
+};
+
+/// Throws std::invalid_argument on a mesh that is no mesh.
+[[nodiscard]] Mesh make_mesh(const SimulateOptions& options);
+
+[[nodiscard]] WheeledRobot make_robot(const SimulateOptions& options);
+
+/// `effects`: those that act; a delay needs a robot that sees landmarks in passing.
+[[nodiscard]] DrivingStyle make_style(const SimulateOptions& options,
+                                      const std::vector<Effect>& effects);
+
+/// The model that comes with the recording: its noise, and no effect. A noise-free recording keeps
+/// the noise in its model, since measurements are weighted by it.
+[[nodiscard]] Model nominal_model(const SimulateOptions& options);
+
+void add_simulate_options(CLI::App& command, SimulateOptions& options);
+
+}  // namespace trussmap::app

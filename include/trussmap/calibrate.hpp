@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Wheels, wheelbase and wheel noise from recordings with truth or a survey: least squares over all
+// that was measured.
+//
+//   E_d   right over left wheel diameter     effect `difference`, g = 2 (E_d - 1)/(E_d + 1)   -
+//   E_b   actual over nominal wheelbase      effect `turn`,       g = 1/E_b - 1               -
+//   E_s   true over measured travel          effect `wheels`,     g = E_s - 1                 -
+//   k     wheel noise: variance of a wheel's travel = k^2 |travel|                      m^(1/2)
+//
+// E_d, E_b and E_s are parameters of the adjustment, beside poses and landmarks; rows are corrected
+// and fitted again until the parameters no longer change. k_L and k_R maximise the restricted
+// likelihood (Patterson & Thompson 1971), which does not mistake the fit's degrees of freedom for
+// low noise:
+//
+//   -2 log L = sum log det C + log det (J' C^-1 J) + chi^2       C, J: covariance and Jacobian
+//
+// All other noise is as the model states it. A parameter whose standard error would exceed 0.1 is
+// reported as undetermined.
+//
+// How the truth is mounted and clocked is estimated with the wheels (TruthAlignment): a truth whose
+// rows are late, or whose clock drifts, looks like wheel errors otherwise.
+//
+// Fails where the truth contradicts the wheels: with headings turned by more than about 90 degrees,
+// or counted clockwise, the least chi^2 lies at a negative wheelbase or travel. No robot has that,
+// so it is refused, and the message says how the headings lie to the direction of travel.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct CalibrationOptions {
+  bool survey = true;    ///< use surveyed landmark positions
+  bool truth = true;     ///< use truth rows
+  bool noise = true;     ///< estimate k_L and k_R as well
+  double holdout = 0.3;  ///< share of the legs that validate_calibration holds out; 0: none
+  double leg = 1.0;      ///< m of driven path, length of such a leg
+};
+
+/// An estimate and its standard error.
+struct Calibrated {
+  double value = 1.0;
+  double sd = 0.0;
+};
+
+/// The clock of one session's truth.
+struct TruthClock {
+  double late = 0.0;   ///< s: rows are stamped late by this at `start`
+  double drift = 0.0;  ///< s/s: and by so much more per second
+  double start = 0.0;  ///< s, where the session's drive starts
+};
+
+/// How the truth is mounted on the robot, and how its clocks run.
+struct TruthAlignment {
+  double ahead = 0.0;                ///< m, tracked point from the axle's centre, robot axes
+  double left = 0.0;                 ///< m
+  double heading = 0.0;              ///< rad, the truth's heading less the robot's
+  std::map<int, TruthClock> clocks;  ///< by session; none where no truth was used
+};
+
+struct WheelCalibration {
+  std::optional<Calibrated> diameter_ratio;   ///< E_d; none: the motion does not determine it
+  std::optional<Calibrated> wheelbase_ratio;  ///< E_b
+  std::optional<Calibrated> scale;            ///< E_s
+  std::optional<Calibrated> noise_left;       ///< k_L, m^(1/2)
+  std::optional<Calibrated> noise_right;      ///< k_R, m^(1/2)
+  Model model;                                ///< the given one with all of that in it
+  TruthAlignment truth;
+  double chi2 = 0.0;
+  int dof = 0;
+  std::vector<std::string> undetermined;  ///< what was not determined, and why
+};
+
+/// Effects of `model` other than the three are taken out of the recordings first. Throws SolveError
+/// where nothing can be determined or E_d, E_b or E_s is not positive, std::invalid_argument on
+/// effects that cannot be applied.
+[[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings,
+                                                const Model& model,
+                                                const CalibrationOptions& options = {});
+
+// Validation: how well a calibration predicts legs that it has not seen.
+//
+// A leg ends at the first truth row that lies `leg` metres of driven path after its start. It is
+// predicted by dead reckoning from its true start; the start's heading is the mean of what the
+// truth rows of the last second say, brought there by the wheels.
+//
+//   blocks       legs are numbered through all sessions and taken in blocks of five; which blocks
+//                are held out depends on their number alone, spread evenly; one calibration by the
+//                other legs predicts them
+//   recordings   where that leaves fewer than five held-out legs, as with a few short runs: each
+//                recording is held out in turn and predicted by a calibration by all others. Its
+//                clock is taken to be late by the mean of theirs
+
+enum class HoldoutScheme { none, blocks, recordings };
+
+/// Distances between predicted and true ends.
+struct ArrivalErrors {
+  std::vector<double> distances;  ///< m, per held-out leg
+
+  [[nodiscard]] int legs() const { return static_cast<int>(distances.size()); }
+  /// m; 0 without legs.
+  [[nodiscard]] double rms() const;
+};
+
+/// Whether calibrated legs end nearer to the truth than nominal ones.
+enum class CalibrationGain {
+  unknown,    ///< no leg was held out
+  uncertain,  ///< fewer than five legs, or a mean gain within two standard errors of 0
+  better,
+  worse
+};
+
+struct CalibrationValidation {
+  HoldoutScheme scheme = HoldoutScheme::none;
+  ArrivalErrors nominal;     ///< by the given model
+  ArrivalErrors calibrated;  ///< by the calibrated model; the same legs in the same order
+
+  [[nodiscard]] int legs() const { return calibrated.legs(); }
+  /// By the mean of d_nominal^2 - d_calibrated^2 and its standard error over the legs.
+  [[nodiscard]] CalibrationGain gain() const;
+};
+
+/// No legs without truth in use, with a holdout of 0, and where what is left of the recordings is
+/// too little to calibrate by. Throws std::invalid_argument on effects that cannot be applied.
+[[nodiscard]] CalibrationValidation validate_calibration(const std::vector<Recording>& recordings,
+                                                         const Model& model,
+                                                         const CalibrationOptions& options = {});
+
+/// Dead reckoning of one whole drive, from the pose of the first truth row to the time of the last.
+struct DriveError {
+  double end = 0.0;      ///< m, between reckoned and true end
+  double heading = 0.0;  ///< rad: reckoned less true change of heading from start to end
+  double driven = 0.0;   ///< m, mean of the wheels' travels, each counted forwards: turns count too
+
+  [[nodiscard]] double heading_per_metre() const { return driven > 0.0 ? heading / driven : 0.0; }
+};
+
+/// One per recording. Throws InputError where one has fewer than two truth rows in its drive.
+[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+                                                   const Model& model);
+
+/// Root mean squares over the drives, of which there is at least one.
+[[nodiscard]] double rms_end(const std::vector<DriveError>& errors);                ///< m
+[[nodiscard]] double rms_heading_per_metre(const std::vector<DriveError>& errors);  ///< rad/m
+
+}  // namespace trussmap

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Gates against wrong measurements: how far off a measurement may be before it is left out. All
+// defaults stand here.
+//
+//   estimator                  what is gated, and against what                     default
+//   map built leg by leg       a sighting, against the map as it stands; in        8 sd
+//                              standard deviations of the sighting, the
+//                              reckoning since the last leg and the map jointly
+//   map by adjustment          a sighting, against the best fit of all others;     4 sd
+//                              in its own standard deviations
+//   compare, fit, diagnose,    the same                                            0: no gate
+//   discover
+//   robust pose graph          a loop closure; e' Omega e, which is squared,       16.27
+//                              against the best fit of all others
+//
+// The rule behind them: a map is wanted in spite of wrong sightings, so that building one gates by
+// default, and a map that is not yet complete needs the wider gate. A model is judged by the
+// measurements that contradict it, so that judging one leaves none out unless it is asked to: a
+// gate would hide what it looks for. 16.27 is the 0.999 quantile of chi^2 with 3 degrees of
+// freedom.
+#pragma once
+
+namespace trussmap {
+
+inline constexpr double kMapGate = 8.0;          ///< standard deviations
+inline constexpr double kAdjustmentGate = 4.0;   ///< standard deviations of the sighting
+inline constexpr double kModelGate = 0.0;        ///< standard deviations; 0: no gate
+inline constexpr double kPoseGraphGate = 16.27;  ///< squared: chi^2
+
+}  // namespace trussmap

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/reckoning.hpp"
+#include "odometry/effect_correction.hpp"
+#include "trussmap/calibrate.hpp"
+#include "trussmap/error.hpp"
+
+#include <cmath>
+
+namespace trussmap {
+
+double rms_end(const std::vector<DriveError>& errors) {
+  double sum = 0.0;
+  for (const DriveError& one : errors) sum += one.end * one.end;
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+double rms_heading_per_metre(const std::vector<DriveError>& errors) {
+  double sum = 0.0;
+  for (const DriveError& one : errors) sum += one.heading_per_metre() * one.heading_per_metre();
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
+  std::vector<DriveError> result;
+  const std::vector<Recording> corrected = without_effects(recordings, model);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Drive& drive = corrected[k].drive;
+    std::vector<TruthRow> truth = recordings[k].truth;
+    std::erase_if(truth, [&](const TruthRow& row) {
+      return row.t < drive.start() || row.t > drive.t.back();
+    });
+    if (truth.size() < 2) {
+      throw InputError(recordings[k].name, 0,
+                       "fewer than two truth rows within the drive, expected two at least");
+    }
+    const TruthRow& from = truth.front();
+    const TruthRow& to = truth.back();
+    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot.wheelbase);
+    DriveError one;
+    one.end = (end.position() - Vector2(to.x, to.y)).norm();
+    one.heading = wrap_angle(end.heading - to.heading);
+    // Metres as recorded, so that they are the same for every model.
+    for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
+      const WheelTravel travel = travel_of(recordings[k].drive, row);
+      one.driven += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+    }
+    result.push_back(one);
+  }
+  return result;
+}
+
+}  // namespace trussmap

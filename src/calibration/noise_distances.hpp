@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// How far runs end from where the noise model has them, and from when on that is too far.
+#pragma once
+
+#include "trussmap/wheel_noise.hpp"
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+namespace trussmap {
+
+inline constexpr double kBadNoiseFit = 0.01;  ///< p-value
+
+/// Squared Mahalanobis distances in some of the coordinates.
+[[nodiscard]] inline std::vector<double> squared_distances(const EndErrors& errors,
+                                                           const NoiseEstimate& estimate,
+                                                           const std::vector<int>& coordinates) {
+  const Eigen::MatrixXd covariance = estimate.modelled(coordinates, coordinates);
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
+  std::vector<double> result;
+  for (const Eigen::Vector3d& e : errors) {
+    const Eigen::VectorXd off = (e - estimate.centre)(coordinates);
+    result.push_back(off.dot(factor.solve(off)));
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Dead reckoning by the wheels alone, from a pose at one time of a drive to another time.
+#pragma once
+
+#include "odometry/merge.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+namespace trussmap {
+
+/// `from` <= `to`, s; times outside of the drive are cut to it.
+[[nodiscard]] inline Pose reckoned(const Drive& drive, Pose pose, double from, double to,
+                                   double wheelbase) {
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    pose = compose(pose, arc_displacement(travel_of(drive, row), wheelbase));
+  }
+  return pose;
+}
+
+[[nodiscard]] inline Pose pose_of(const TruthRow& row) {
+  return {row.x, row.y, row.heading};
+}
+
+}  // namespace trussmap

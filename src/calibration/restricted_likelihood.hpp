@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Wheel noise of greatest restricted likelihood (trussmap/calibrate.hpp), all else as the model has
+// it. At each (k_L, k_R) the adjustment starts from the last one, so that it takes few steps.
+#pragma once
+
+#include "estimation/effect_parameters.hpp"
+#include "estimation/recording_problem.hpp"
+#include "trussmap/planar.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace trussmap {
+
+struct WheelNoiseFit {
+  Vector2 k = Vector2::Zero();   ///< k_L, k_R, m^(1/2)
+  Vector2 sd = Vector2::Zero();  ///< standard errors, by the curvature of the likelihood
+};
+
+/// `corrected`: recordings with the model's effects taken out. The search starts from the model's
+/// noise and reaches a factor of 12 either way in its first round. None where the likelihood has
+/// no maximum there: other noise hides that of the wheels.
+[[nodiscard]] std::optional<WheelNoiseFit> most_likely_noise(
+    const std::vector<Recording>& corrected, const Model& model, const ProblemOptions& options,
+    const EffectParameters& parameters, const RecordingState& start);
+
+}  // namespace trussmap

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "io/csv.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string drive_text(const Drive& drive, const std::string& comment) {
+  std::string text;
+  for (std::size_t at = 0; at < comment.size();) {
+    const std::size_t end = std::min(comment.find('\n', at), comment.size());
+    text += "# " + comment.substr(at, end - at) + '\n';
+    at = end + 1;
+  }
+  text += "t,left,right";
+  if (drive.has_compass()) text += ",heading";
+  for (const Covariate& covariate : drive.covariates) text += ',' + covariate.name;
+  text += '\n';
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    text += csv_number(drive.t[row]) + ',' + csv_number(drive.left[row]) + ',' +
+            csv_number(drive.right[row]);
+    if (drive.has_compass()) text += ',' + csv_number(drive.heading[row]);
+    for (const Covariate& covariate : drive.covariates) {
+      text += ',' + csv_number(covariate.values[row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string sightings_text(const std::vector<Sighting>& sightings) {
+  const bool ranges = std::any_of(sightings.begin(), sightings.end(),
+                                  [](const Sighting& one) { return !one.standing(); });
+  std::string text = ranges ? "t,landmark,range,bearing\n" : "t,landmark\n";
+  for (const Sighting& sighting : sightings) {
+    text += csv_number(sighting.t) + ',' + csv_field(sighting.landmark);
+    if (ranges) text += ',' + csv_number(sighting.range) + ',' + csv_number(sighting.bearing);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string survey_text(const std::vector<SurveyPoint>& survey) {
+  const bool sds = std::any_of(survey.begin(), survey.end(),
+                               [](const SurveyPoint& point) { return !std::isnan(point.sd); });
+  std::string text = sds ? "landmark,x,y,sd\n" : "landmark,x,y\n";
+  for (const SurveyPoint& point : survey) {
+    text += csv_field(point.landmark) + ',' + csv_number(point.x) + ',' + csv_number(point.y);
+    if (sds) text += ',' + csv_number(point.sd);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string truth_text(const std::vector<TruthRow>& truth) {
+  std::string text = "t,x,y,heading\n";
+  for (const TruthRow& row : truth) {
+    text += csv_number(row.t) + ',' + csv_number(row.x) + ',' + csv_number(row.y) + ',' +
+            csv_number(row.heading) + '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_recording(const fs::path& folder, const Recording& recording, const std::string& comment,
+                     const std::vector<std::pair<std::string, std::string>>& beside) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw InputError(folder.string(), 0, "cannot be made: " + failed.message());
+  std::vector<std::pair<fs::path, std::string>> files;
+  files.emplace_back(folder / "drive.csv", drive_text(recording.drive, comment));
+  if (!recording.sightings.empty() || recording.truth.empty()) {
+    files.emplace_back(folder / "sightings.csv", sightings_text(recording.sightings));
+  }
+  if (!recording.survey.empty()) {
+    files.emplace_back(folder / "survey.csv", survey_text(recording.survey));
+  }
+  if (!recording.truth.empty()) {
+    files.emplace_back(folder / "truth.csv", truth_text(recording.truth));
+  }
+  for (const auto& [name, content] : beside) files.emplace_back(folder / name, content);
+  write_files(files);
+  // An earlier recording's stream in the same folder would be taken for this one's.
+  for (const char* name : {"sightings.csv", "survey.csv", "truth.csv"}) {
+    const bool written = std::any_of(files.begin(), files.end(),
+                                     [&](const auto& file) { return file.first == folder / name; });
+    if (!written) fs::remove(folder / name, failed);
+  }
+}
+
+}  // namespace trussmap

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "simulation/driving_checks.hpp"
+
+#include "simulation/further_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+bool is_range(double low, double high) {
+  return low > 0.0 && low <= high && std::isfinite(high);
+}
+
+bool is_share(double share) {
+  return share >= 0.0 && share <= 1.0;
+}
+
+}  // namespace
+
+void check_style(const DrivingStyle& style) {
+  require(is_range(style.row_duration, 3600.0), "a row must last above 0 s");
+  require(is_range(style.slowest, style.fastest), "speeds must be above 0 m/s, slowest first");
+  require(is_range(style.slowest_turn, style.fastest_turn),
+          "turn rates must be above 0 rad/s, slowest first");
+  require(style.bend >= 0.0 && style.bend <= 0.5, "a leg's bend must lie between 0 and 0.5 rad");
+  require(style.corner_reach >= 0.0 && style.corner_reach <= 1.0,
+          "a corner must lie off the leg by 0 to 1 of its length");
+  require(is_share(style.corner_share) && is_share(style.rest_share) &&
+              is_share(style.load_change_share) && is_share(style.lights_change_share),
+          "a share must lie between 0 and 1");
+  require(is_range(style.shortest_rest, style.longest_rest),
+          "rests must last above 0 s, shortest first");
+  check_covariates(style.covariates);
+  require(style.full_spins >= 0, "the number of stops with full spins must not be negative");
+  require(std::isfinite(style.standing) && style.standing >= 0.0,
+          "how exactly the robot stands on a landmark must be 0 m or more");
+  for (const double value : {style.first_rest, style.last_rest, style.overrun, style.ramp}) {
+    require(std::isfinite(value) && value >= 0.0,
+            "a rest, an overrun and a ramp must be 0 or more, in s, m and s");
+  }
+}
+
+void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing) {
+  require(walk.size() >= 2, "a walk needs two landmarks");
+  const double least = std::max(0.01, 20.0 * standing);
+  for (std::size_t k = 0; k < walk.size(); ++k) {
+    require(walk[k] >= 0 && walk[k] < mesh.landmarks(), "a walk keeps to the mesh's landmarks");
+    require(k == 0 || mesh.displacement(walk[k - 1], walk[k]).norm() >= least,
+            fmt::format("successive landmarks of a walk must be at least {:g} m apart", least));
+  }
+}
+
+}  // namespace trussmap
