@@ -4,8 +4,7 @@
 // The relational graph of landmarks and routes: the map as knowledge, before any mechanics.
 //
 // Landmarks are numbered 0, 1, ... in the order they are added and have unique names; routes are
-// numbered likewise, join two different landmarks, and there is at most one between a pair. The
-// graph itself is a Boost.Graph adjacency list, open for its algorithms through boost_graph().
+// numbered likewise, join two different landmarks, and there is at most one between a pair.
 #pragma once
 
 #include "trussmap/planar.hpp"
@@ -14,8 +13,6 @@
 #include <string>
 #include <unordered_map>
 #include <vector>
-
-#include <boost/graph/adjacency_list.hpp>
 
 namespace trussmap {
 
@@ -65,16 +62,14 @@ struct Landmark {
   std::optional<Matrix2> covariance;   ///< of the position, m^2, where known
 };
 
+/// A call that throws leaves the graph as it was.
 class LandmarkGraph {
  public:
-  struct RouteNumber {
-    int route = -1;
-  };
-  using BoostGraph =
-      boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, Landmark, RouteNumber>;
-
   /// Throws std::invalid_argument if the name is empty or taken.
   int add_landmark(const std::string& name, const Vector2& position);
+
+  /// A landmark where its first traversal puts it, with the route that leads there.
+  int add_landmark(const std::string& name, int from, const Traversal& traversal);
 
   /// A route without traversals yet. Throws std::invalid_argument if the two are the same
   /// landmark, unknown, or joined already.
@@ -90,7 +85,7 @@ class LandmarkGraph {
   void set_position(int landmark, const Vector2& position);
   void set_covariance(int landmark, const Matrix2& covariance);
 
-  [[nodiscard]] int landmarks() const;
+  [[nodiscard]] int landmarks() const { return static_cast<int>(landmarks_.size()); }
   [[nodiscard]] int routes() const { return static_cast<int>(routes_.size()); }
   [[nodiscard]] const Landmark& landmark(int number) const;
   [[nodiscard]] const Route& route(int number) const;
@@ -98,12 +93,12 @@ class LandmarkGraph {
 
   [[nodiscard]] std::optional<int> find(const std::string& name) const;
   [[nodiscard]] std::optional<int> route_between(int a, int b) const;
-  [[nodiscard]] std::vector<int> routes_at(int landmark) const;
-
-  [[nodiscard]] const BoostGraph& boost_graph() const { return graph_; }
+  /// The routes that end at a landmark, in the order they were added.
+  [[nodiscard]] const std::vector<int>& routes_at(int landmark) const;
 
  private:
-  BoostGraph graph_;
+  std::vector<Landmark> landmarks_;
+  std::vector<std::vector<int>> routes_at_;  ///< per landmark
   std::vector<Route> routes_;
   std::unordered_map<std::string, int> numbers_;
 };

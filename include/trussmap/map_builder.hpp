@@ -30,7 +30,8 @@
 
 namespace trussmap {
 
-enum class Method { elastic, elastic_printed, gauss_markov };
+/// `adjustment`, least squares of whole recordings, is build_map's: a map builder refuses it.
+enum class Method { elastic, elastic_printed, gauss_markov, adjustment };
 
 /// How many landmarks a refinement may move.
 struct Eta {
@@ -45,7 +46,7 @@ struct Eta {
 
 struct MapBuilderOptions {
   Method method = Method::elastic;
-  Eta eta;
+  Eta eta = {};
   double gain_limit = 0.5;  ///< of `elastic`: part of the desired change reached at most, (0, 1]
   bool refine = true;       ///< false: first sight only (a known route only updates its averages)
   bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
@@ -123,7 +124,7 @@ class MapBuilder {
   std::unique_ptr<State> state_;
 };
 
-/// "elastic", "elastic_printed", "gauss_markov".
+/// "elastic", "elastic_printed", "gauss_markov", "adjustment".
 [[nodiscard]] std::string name_of(Method method);
 
 }  // namespace trussmap

@@ -55,7 +55,7 @@ void refuse_undetermined(const EffectParameters& border, const std::vector<int>&
 
 void check_determined(RecordingSystem& system, const RecordingProblem& problem,
                       const EffectParameters& border) {
-  const std::vector<int> loose = find_loose_nodes(system, problem);
+  const std::vector<int> loose = find_loose_nodes(system);
   if (!loose.empty()) refuse_loose(problem, loose);
   try {
     system.factorise();
@@ -112,13 +112,13 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   const auto coefficients = static_cast<Eigen::Index>(unknown_coefficients(border).size());
   RecordingAdjustment result;
   RecordingDescent fit{start, initial(options, coefficients), 0.0, 0, false};
-  const RecordingDescentOptions descent{options.max_iterations, options.tolerance};
+  const DescentOptions descent{options.max_iterations, options.tolerance, kNegligibleDecrease};
   int rows = system.rows();
   try {
     if (options.gate) {
       system.linearise(fit.state, fit.coefficients);
       system.set_weights(soft_weights(problem, system.squared_errors(), *options.gate));
-      fit = descend(system, fit.state, fit.coefficients, {30, 1e-4});
+      fit = descend(system, fit.state, fit.coefficients, {30, 1e-4, kNegligibleDecrease});
       RobustFit robust =
           reduce_nonconvexity(system, problem, fit.state, fit.coefficients, *options.gate);
       for (std::size_t k = 0; k < robust.weights.size(); ++k) {

@@ -72,7 +72,8 @@ RobustFit reduce_nonconvexity(RecordingSystem& system, const RecordingProblem& p
   double mu = gate / (2.0 * largest - gate);
   while (mu < kNearlyTruncated) {
     weigh(mu);
-    RecordingDescent next = descend(system, fit.state, fit.coefficients, {kSteps, 1e-6});
+    RecordingDescent next =
+        descend(system, fit.state, fit.coefficients, {kSteps, 1e-6, kNegligibleDecrease});
     fit.state = std::move(next.state);
     fit.coefficients = std::move(next.coefficients);
     mu *= kBendFaster;

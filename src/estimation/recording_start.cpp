@@ -255,13 +255,13 @@ void adjust_stretch(const RecordingProblem& session, const StartOptions& options
   const EffectParameters no_effects;
   RecordingSystem system(part.problem, no_effects);
   const Eigen::VectorXd none;
-  constexpr RecordingDescentOptions kRough{30, 1e-4};
+  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
   RecordingDescent fit;
   if (std::isfinite(options.gate)) {
     for (int round = 0; round < 4; ++round) {
       system.linearise(state, none);
       system.set_weights(soft_weights(part.problem, system.squared_errors(), options.gate));
-      fit = descend(system, state, none, {5, 1e-4});
+      fit = descend(system, state, none, {5, 1e-4, kNegligibleDecrease});
       state = fit.state;
     }
   } else {

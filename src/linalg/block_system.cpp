@@ -73,7 +73,6 @@ BlockSystem::BlockSystem(const std::vector<int>& sizes, const std::vector<NodePa
   }
   lay_out(pattern, pairs, free_nodes, place);
   clear();
-  if (kernel_ == Kernel::cholmod && unknowns_ > 0) cholmod_.analyse(matrix_);
 }
 
 void BlockSystem::lay_out(const BlockPattern& pattern, const std::vector<NodePair>& pairs,
@@ -134,6 +133,8 @@ void BlockSystem::factorise() {
   if (kernel_ == Kernel::frontal) {
     frontal_.factorise(matrix_);
   } else {
+    if (!analysed_) cholmod_.analyse(matrix_);
+    analysed_ = true;
     cholmod_.factorise(matrix_);
   }
 }

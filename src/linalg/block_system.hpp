@@ -38,6 +38,7 @@ class BlockSystem {
   BlockSystem(const std::vector<int>& sizes, const std::vector<NodePair>& pairs,
               const std::vector<int>& order, Kernel kernel = Kernel::frontal);
 
+  [[nodiscard]] int nodes() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] int unknowns() const { return unknowns_; }
   [[nodiscard]] int size(int node) const { return nodes_[idx(node)].size; }
   /// Where the node's unknowns begin; meaningless for a held node.
@@ -94,6 +95,7 @@ class BlockSystem {
   Kernel kernel_;
   FrontalCholesky frontal_;
   SparseCholesky cholmod_{Ordering::natural};
+  bool analysed_ = false;  ///< by CHOLMOD
 };
 
 template <int N>

@@ -9,23 +9,30 @@
 
 namespace trussmap {
 
-std::vector<int> connected_parts(int nodes, const std::vector<NodePair>& pairs) {
-  std::vector<int> part(idx(nodes));
-  std::iota(part.begin(), part.end(), 0);
-  const auto root = [&part](int node) {
-    while (part[idx(node)] != node) {
-      int& up = part[idx(node)];
-      up = part[idx(up)];
-      node = up;
-    }
-    return node;
-  };
-  for (const auto& [i, j] : pairs) {
-    const int a = root(i);
-    const int b = root(j);
-    part[idx(std::max(a, b))] = std::min(a, b);
+DisjointSets::DisjointSets(int nodes) : up_(idx(nodes)) {
+  std::iota(up_.begin(), up_.end(), 0);
+}
+
+int DisjointSets::lowest(int node) {
+  while (up_[idx(node)] != node) {
+    int& up = up_[idx(node)];
+    up = up_[idx(up)];
+    node = up;
   }
-  for (int node = 0; node < nodes; ++node) part[idx(node)] = root(node);
+  return node;
+}
+
+void DisjointSets::join(int a, int b) {
+  a = lowest(a);
+  b = lowest(b);
+  up_[idx(std::max(a, b))] = std::min(a, b);
+}
+
+std::vector<int> connected_parts(int nodes, const std::vector<NodePair>& pairs) {
+  DisjointSets sets(nodes);
+  for (const auto& [i, j] : pairs) sets.join(i, j);
+  std::vector<int> part(idx(nodes));
+  for (int node = 0; node < nodes; ++node) part[idx(node)] = sets.lowest(node);
   return part;
 }
 

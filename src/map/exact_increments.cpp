@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "map/exact_increments.hpp"
 
-#include "linalg/block_system.hpp"
+#include "truss/truss_system.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -17,6 +19,10 @@ namespace {
 // few, because of what a new factor costs.
 constexpr int kLeastSpare = 32;
 constexpr int kJointsPerSpare = 64;
+
+[[noreturn]] void refuse() {
+  throw SolveError("the covariances of the map's traversals span too many magnitudes");
+}
 
 /// One column per column of `w`: +w from unknown j on, -w from unknown i on; negative: held.
 SparseMatrix between(int i, int j, const Eigen::Matrix<double, 2, Eigen::Dynamic>& w,
@@ -41,17 +47,37 @@ void ExactIncrements::check(int i, int j) const {
   }
 }
 
+void ExactIncrements::reserve() {
+  if (bars_.size() == bars_.capacity()) bars_.reserve(2 * bars_.size() + 2);
+}
+
+/// The factor goes with the bars, or is dropped.
+template <typename Change>
+void ExactIncrements::follow(const Change& change) noexcept {
+  if (!factored_) return;
+  try {
+    change();
+  } catch (...) {
+    factored_ = false;
+  }
+}
+
 void ExactIncrements::add_joint(int i, const Matrix2& stiffness) {
   if (i < 0 || i >= joints_) throw std::invalid_argument("the new joint is tied to no joint");
+  reserve();
   bars_.push_back({i, joints_, stiffness});
   ++joints_;
-  if (factored_) add_to_factor(bars_.back());
+  changed_ = -1;
+  follow([this] { add_to_factor(bars_.back()); });
 }
 
 void ExactIncrements::add_bar(int i, int j, const Matrix2& stiffness) {
   check(i, j);
+  reserve();
   bars_.push_back({i, j, stiffness});
-  if (factored_) change_factor(bars_.back());
+  changed_ = static_cast<int>(bars_.size()) - 1;
+  stiffness_then_.reset();
+  follow([this] { change_factor(bars_.back()); });
 }
 
 const Matrix2& ExactIncrements::stiffness(int bar) const {
@@ -60,8 +86,21 @@ const Matrix2& ExactIncrements::stiffness(int bar) const {
 
 void ExactIncrements::set_stiffness(int bar, const Matrix2& stiffness) {
   Bar& changed = bars_.at(idx(bar));
-  if (factored_) change_factor({changed.i, changed.j, stiffness - changed.stiffness});
+  changed_ = bar;
+  stiffness_then_ = changed.stiffness;
   changed.stiffness = stiffness;
+  follow([&] { change_factor({changed.i, changed.j, stiffness - *stiffness_then_}); });
+}
+
+void ExactIncrements::take_back() noexcept {
+  if (changed_ < 0) return;
+  if (stiffness_then_) {
+    bars_[idx(changed_)].stiffness = *stiffness_then_;
+  } else {
+    bars_.pop_back();
+  }
+  changed_ = -1;
+  factored_ = false;
 }
 
 std::vector<Vector2> ExactIncrements::pull(int i, int j, const Vector2& force) {
@@ -75,6 +114,7 @@ std::vector<Vector2> ExactIncrements::pull(int i, int j, const Vector2& force) {
   for (int joint = 1; joint < joints_; ++joint) {
     displacements[idx(joint)] = u.segment<2>(unknown(joint));
   }
+  if (!std::isfinite(u.squaredNorm())) refuse();
   return displacements;
 }
 
@@ -115,23 +155,32 @@ void ExactIncrements::add_to_factor(const Bar& tie) {
 
 void ExactIncrements::factorise() {
   places_ = joints_ + std::max(kLeastSpare, joints_ / kJointsPerSpare);
-  std::vector<NodePair> pairs;
+  std::vector<NodePair> ends;
+  std::vector<NodePair> couplings;  // of the joints from 1 on
   for (const Bar& bar : bars_) {
-    if (bar.i > 0 && bar.j > 0) pairs.push_back({bar.i - 1, bar.j - 1});
+    ends.push_back({bar.i, bar.j});
+    if (bar.i > 0 && bar.j > 0) couplings.push_back({bar.i - 1, bar.j - 1});
   }
-  const std::vector<int> order = elimination_order(joints_ - 1, pairs);
-  std::vector<int> number(idx(places_), -1);  // joint 0 is held
-  for (std::size_t k = 0; k < order.size(); ++k) number[idx(order[k]) + 1] = static_cast<int>(k);
-  std::vector<Bar> bars = bars_;
+  std::vector<int> order{0};  // which is held
+  for (const int joint : elimination_order(joints_ - 1, couplings)) order.push_back(joint + 1);
+  for (int spare = joints_; spare < places_; ++spare) order.push_back(spare);
+  std::vector<bool> held(idx(places_), false);
+  held[0] = true;
+  TrussSystem system(held, std::move(ends), order, Kernel::cholmod);
+  for (std::size_t bar = 0; bar < bars_.size(); ++bar) {
+    system.add_bar(static_cast<int>(bar), bars_[bar].stiffness);
+  }
   for (int spare = joints_; spare < places_; ++spare) {
-    number[idx(spare)] = spare - 1;
-    bars.push_back({0, spare, Matrix2::Identity()});
+    system.add_ground(spare, Matrix2::Identity());
   }
-  const SparseMatrix K = assemble(bars, number, places_ - 1);
-  cholesky_.analyse(K);
-  cholesky_.factorise(K);
+  cholesky_.analyse(system.matrix());
+  try {
+    cholesky_.factorise(system.matrix());
+  } catch (const NotPositiveDefinite&) {
+    refuse();
+  }
   unknown_.assign(idx(places_), -1);
-  for (int joint = 1; joint < places_; ++joint) unknown_[idx(joint)] = 2 * number[idx(joint)];
+  for (int joint = 1; joint < places_; ++joint) unknown_[idx(joint)] = system.offset(joint);
   factored_ = true;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "map/first_sight.hpp"
 
+#include "geometry/index.hpp"
+
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
@@ -29,12 +31,20 @@ std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses
   return result;
 }
 
+void OpenChain::reserve(int count) {
+  const std::size_t size = idx(count);
+  if (chain_.capacity() < size) chain_.reserve(std::max(size, 2 * chain_.capacity()));
+  if (root_.size() < size) root_.resize(std::max(size, 2 * root_.size()), -1);
+}
+
 void OpenChain::restart(int landmark) {
-  chain_ = {landmark};
+  reserve(landmark + 1);
+  chain_.assign(1, landmark);
 }
 
 void OpenChain::append(int a, int b) {
-  if (chain_.empty() || chain_.back() != a) chain_ = {a};
+  reserve(std::max({a, b, static_cast<int>(chain_.size())}) + 1);
+  if (chain_.empty() || chain_.back() != a) chain_.assign(1, a);
   chain_.push_back(b);
 }
 
@@ -48,29 +58,28 @@ OpenChain::Closing OpenChain::closing(int a, int b) const {
   return {std::vector<int>(begin, chain.end()), *begin == b};
 }
 
+int OpenChain::above(int landmark) const {
+  return idx(landmark) < root_.size() ? root_[idx(landmark)] : -1;
+}
+
 int OpenChain::top_of(int landmark) const {
-  for (auto up = root_.find(landmark); up != root_.end(); up = root_.find(landmark)) {
-    landmark = up->second;
-  }
+  while (above(landmark) >= 0) landmark = above(landmark);
   return landmark;
 }
 
-void OpenChain::settle(const Closing& closing, int b) {
+void OpenChain::settle(const Closing& closing, int b) noexcept {
   const int k = closing.landmarks.front();
-  for (std::size_t n = 1; n < closing.landmarks.size(); ++n) root_[closing.landmarks[n]] = k;
+  for (std::size_t n = 1; n < closing.landmarks.size(); ++n) root_[idx(closing.landmarks[n])] = k;
   // Shortcuts, or the way up would grow with the map.
   const int top = top_of(b);
-  for (auto up = root_.find(b); up != root_.end();) {
-    const int next = std::exchange(up->second, top);
-    up = next == top ? root_.end() : root_.find(next);
-  }
+  for (int landmark = b; above(landmark) >= 0;) landmark = std::exchange(root_[idx(landmark)], top);
   if (!closing.closed) {
-    chain_ = {b};
+    chain_.assign(1, b);
   } else if (const auto place = std::find(chain_.rbegin(), chain_.rend(), k);
              place != chain_.rend()) {
     chain_.erase(place.base(), chain_.end());
   } else {
-    chain_ = {k};
+    chain_.assign(1, k);
   }
 }
 

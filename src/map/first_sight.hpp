@@ -19,7 +19,6 @@
 
 #include "trussmap/planar.hpp"
 
-#include <unordered_map>
 #include <vector>
 
 namespace trussmap {
@@ -30,9 +29,13 @@ namespace trussmap {
 [[nodiscard]] std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses,
                                                        const Vector2& imposed);
 
-/// The chain of routes not yet corrected, and where settled loops hang.
+/// The chain of routes not yet corrected, and where settled loops hang. A call that throws leaves
+/// it as it was.
 class OpenChain {
  public:
+  /// Makes room for landmarks 0 ... count - 1: no other call with these will fail.
+  void reserve(int count);
+
   struct Closing {
     std::vector<int> landmarks;  ///< k, then the chain's landmarks up to the last before b
     bool closed = false;         ///< closed polygonal: k is b
@@ -47,15 +50,16 @@ class OpenChain {
   /// A new route a -> b to a landmark met before: the polygonal that closes. Does not change the
   /// chain; settle() does, once the displacements are known.
   [[nodiscard]] Closing closing(int a, int b) const;
-  void settle(const Closing& closing, int b);
+  void settle(const Closing& closing, int b) noexcept;
 
   [[nodiscard]] const std::vector<int>& landmarks() const { return chain_; }
 
  private:
+  [[nodiscard]] int above(int landmark) const;
   [[nodiscard]] int top_of(int landmark) const;
 
   std::vector<int> chain_;
-  std::unordered_map<int, int> root_;  ///< settled landmark -> what its loop hangs on, or above it
+  std::vector<int> root_;  ///< settled landmark -> what its loop hangs on, or above it; else -1
 };
 
 }  // namespace trussmap

@@ -5,16 +5,49 @@
 #include "geometry/index.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace trussmap {
+
+namespace {
+
+/// So that the next push_back cannot fail.
+template <typename Value>
+void make_room(std::vector<Value>& values) {
+  if (values.size() == values.capacity()) values.reserve(2 * values.size() + 2);
+}
+
+}  // namespace
 
 int LandmarkGraph::add_landmark(const std::string& name, const Vector2& position) {
   if (name.empty()) throw std::invalid_argument("a landmark needs a name");
   const int number = landmarks();
+  make_room(landmarks_);
+  make_room(routes_at_);
+  Landmark landmark{name, position, std::nullopt};
   if (!numbers_.emplace(name, number).second) {
     throw std::invalid_argument("landmark " + name + " is in the map already");
   }
-  boost::add_vertex(Landmark{name, position, std::nullopt}, graph_);
+  landmarks_.push_back(std::move(landmark));
+  routes_at_.emplace_back();
+  return number;
+}
+
+int LandmarkGraph::add_landmark(const std::string& name, int from, const Traversal& traversal) {
+  if (from < 0 || from >= landmarks()) {
+    throw std::invalid_argument("a route starts at a landmark of the map");
+  }
+  Route route;
+  route.source = from;
+  route.target = landmarks();
+  average_in(route, traversal);
+  std::vector<int> only_route{routes()};
+  make_room(routes_);
+  make_room(routes_at_[idx(from)]);
+  const int number = add_landmark(name, landmark(from).position + traversal.displacement);
+  routes_at_[idx(from)].push_back(routes());
+  routes_at_[idx(number)] = std::move(only_route);
+  routes_.push_back(route);
   return number;
 }
 
@@ -31,8 +64,12 @@ int LandmarkGraph::add_route(int source, int target) {
   route.source = source;
   route.target = target;
   const int number = routes();
-  boost::add_edge(idx(source), idx(target), RouteNumber{number}, graph_);
+  make_room(routes_);
+  make_room(routes_at_[idx(source)]);
+  make_room(routes_at_[idx(target)]);
   routes_.push_back(route);
+  routes_at_[idx(source)].push_back(number);
+  routes_at_[idx(target)].push_back(number);
   return number;
 }
 
@@ -53,19 +90,15 @@ void LandmarkGraph::set_route(int number, const Route& route) {
 }
 
 void LandmarkGraph::set_position(int landmark, const Vector2& position) {
-  graph_[idx(landmark)].position = position;
+  landmarks_[idx(landmark)].position = position;
 }
 
 void LandmarkGraph::set_covariance(int landmark, const Matrix2& covariance) {
-  graph_[idx(landmark)].covariance = covariance;
-}
-
-int LandmarkGraph::landmarks() const {
-  return static_cast<int>(boost::num_vertices(graph_));
+  landmarks_[idx(landmark)].covariance = covariance;
 }
 
 const Landmark& LandmarkGraph::landmark(int number) const {
-  return graph_[idx(number)];
+  return landmarks_[idx(number)];
 }
 const Route& LandmarkGraph::route(int number) const {
   return routes_[idx(number)];
@@ -81,16 +114,15 @@ std::optional<int> LandmarkGraph::find(const std::string& name) const {
 }
 
 std::optional<int> LandmarkGraph::route_between(int a, int b) const {
-  const auto [edge, exists] = boost::edge(idx(a), idx(b), graph_);
-  if (!exists) return std::nullopt;
-  return graph_[edge].route;
+  const bool fewer = routes_at(a).size() <= routes_at(b).size();
+  for (const int number : routes_at(fewer ? a : b)) {
+    if (other_end(route(number), fewer ? a : b) == (fewer ? b : a)) return number;
+  }
+  return std::nullopt;
 }
 
-std::vector<int> LandmarkGraph::routes_at(int landmark) const {
-  std::vector<int> result;
-  const auto [first, last] = boost::out_edges(idx(landmark), graph_);
-  for (auto edge = first; edge != last; ++edge) result.push_back(graph_[*edge].route);
-  return result;
+const std::vector<int>& LandmarkGraph::routes_at(int landmark) const {
+  return routes_at_[idx(landmark)];
 }
 
 int other_end(const Route& route, int landmark) {

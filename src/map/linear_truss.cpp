@@ -3,39 +3,29 @@
 #include "map/linear_truss.hpp"
 
 #include "geometry/index.hpp"
-#include "truss/truss.hpp"
+#include "truss/measured_truss.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/stiffness_law.hpp"
 
 namespace trussmap {
-namespace {
-
-Vector2 in_map(const LandmarkGraph& map, const Route& route) {
-  return map.landmark(route.target).position - map.landmark(route.source).position;
-}
-
-}  // namespace
-
 LinearAdjustment adjust_linear(const LandmarkGraph& map) {
   LinearAdjustment result;
   result.map = map;
   if (map.landmarks() == 0) return result;
-  std::vector<Bar> bars;
-  std::vector<Load> loads;
+  MeasuredTruss truss;
+  std::vector<Matrix2> stiffnesses;
+  for (int k = 0; k < map.landmarks(); ++k) truss.add_joint(map.landmark(k).position);
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
-    const Matrix2 B =
-        bar_stiffness(StiffnessLaw::gauss_markov, route.covariance, 0.0, route.traversals);
-    const Vector2 force = B * (route.displacement - in_map(map, route));
-    bars.push_back({route.source, route.target, B});
-    loads.push_back({route.target, force});
-    loads.push_back({route.source, -force});
+    stiffnesses.push_back(
+        bar_stiffness(StiffnessLaw::gauss_markov, route.covariance, 0.0, route.traversals));
+    truss.add(route.source, route.target, route.displacement, stiffnesses.back());
   }
   try {
-    const Deflection moved = solve_truss(map.landmarks(), bars, {{0, Vector2::Zero()}}, loads);
-    for (int k = 0; k < map.landmarks(); ++k) {
-      result.map.set_position(k, map.landmark(k).position + moved.displacements[idx(k)]);
-    }
+    const MeasuredTruss::Fit fit = truss.fit();
+    for (int k = 0; k < map.landmarks(); ++k) result.map.set_position(k, fit.positions[idx(k)]);
+    result.chi2 = fit.chi2;
+    result.dof = fit.dof;
   } catch (const UnsupportedJoint& error) {
     throw SolveError("landmark " + map.landmark(error.joint()).name +
                      " is tied to nothing: no chain of routes leads to it from landmark " +
@@ -43,11 +33,10 @@ LinearAdjustment adjust_linear(const LandmarkGraph& map) {
   }
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
-    const Vector2 misfit = in_map(result.map, route) - route.displacement;
-    result.bar_forces.emplace_back(bars[idx(number)].stiffness * misfit);
-    result.chi2 += misfit.dot(result.bar_forces.back());
+    const Vector2 between =
+        result.map.landmark(route.target).position - result.map.landmark(route.source).position;
+    result.bar_forces.emplace_back(stiffnesses[idx(number)] * (between - route.displacement));
   }
-  result.dof = 2 * (map.routes() - map.landmarks() + 1);
   return result;
 }
 

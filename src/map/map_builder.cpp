@@ -3,13 +3,14 @@
 #include "trussmap/map_builder.hpp"
 
 #include "geometry/index.hpp"
+#include "linalg/connected_parts.hpp"
 #include "map/exact_increments.hpp"
 #include "map/first_sight.hpp"
 #include "map/nearest_landmarks.hpp"
 #include "map/refinement.hpp"
-#include "truss/truss.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,7 @@ namespace {
 
 constexpr double kMoved = 1e-12;          // m
 constexpr double kRounding = 1e-9;        // asymmetry of a covariance, as a share of its size
+constexpr double kFlattest = 1e-14;       // determinant of a covariance over its squared trace
 constexpr double kNegligibleShare = 0.1;  // of the smallest standard deviation, for eta estimated
 
 /// Displacements of some landmarks, not yet made.
@@ -48,14 +50,25 @@ struct Piece {
 };
 
 void check(const Traversal& leg) {
-  const bool finite = leg.displacement.allFinite() && leg.covariance.allFinite();
   const Matrix2& C = leg.covariance;
-  const double asymmetry = std::abs(C(0, 1) - C(1, 0));
-  if (!finite || leg.displacement.squaredNorm() <= 0.0 || C(0, 0) <= 0.0 ||
-      C.determinant() <= 0.0 || asymmetry > kRounding * C.trace() || !C.inverse().allFinite()) {
+  const double length2 = leg.displacement.squaredNorm();
+  const double size = C.trace();
+  const bool symmetric = std::abs(C(0, 1) - C(1, 0)) <= kRounding * size;
+  const bool definite = C(0, 0) > 0.0 && C.determinant() > kFlattest * size * size;
+  const bool invertible = C.inverse().allFinite() && std::isfinite(C.determinant());
+  if (!(length2 > 0.0) || !std::isfinite(length2) || !symmetric || !definite || !invertible) {
     throw std::invalid_argument(
         "a leg needs a finite displacement other than zero and a symmetric, positive definite "
         "covariance whose inverse is finite");
+  }
+}
+
+/// Before anything is moved.
+void require_finite(const Moves& moves) {
+  double sum = moves.shift.squaredNorm();
+  for (const Vector2& u : moves.displacements) sum += u.squaredNorm();
+  if (!std::isfinite(sum)) {
+    throw SolveError("the covariances of the map's traversals span too many magnitudes");
   }
 }
 
@@ -74,24 +87,36 @@ class MapBuilder::State {
   }
 
   void check_options() const {
+    if (options_.method == Method::adjustment) {
+      throw std::invalid_argument("an adjustment is no method of a map builder, but of build_map");
+    }
     if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < 2) {
       throw std::invalid_argument("eta must be 2 landmarks at least");
     }
-    if (!(options_.gain_limit > 0.0 && options_.gain_limit <= 1.0)) {
+    check_gain_limit(options_.gain_limit);
+  }
+
+  static void check_gain_limit(double limit) {
+    if (!(limit > 0.0 && limit <= 1.0)) {
       throw std::invalid_argument("the gain limit must be in (0, 1]");
     }
   }
 
   void start(const std::string& landmark, const Vector2& position) {
-    if (graph_.landmarks() == 0) {
-      here_ = graph_.add_landmark(landmark, position);
-      if (indexed()) nearest_.insert(here_, position);
-    } else if (const auto known = graph_.find(landmark)) {
-      here_ = *known;
-    } else {
+    const std::optional<int> known = graph_.find(landmark);
+    if (!known && graph_.landmarks() > 0) {
       throw SolveError("landmark " + landmark +
                        " is tied to nothing: a session must start on a landmark of the map");
     }
+    chain_.reserve(graph_.landmarks() + 1);
+    if (!known) {
+      if (!std::isfinite(position.squaredNorm())) {
+        throw std::invalid_argument("the first landmark needs a finite position");
+      }
+      graph_.add_landmark(landmark, position);
+      if (indexed()) nearest_.insert(0, position);
+    }
+    here_ = known.value_or(0);
     chain_.restart(here_);
   }
 
@@ -111,12 +136,22 @@ class MapBuilder::State {
   }
 
   double settle(double gain_limit) {
+    check_gain_limit(gain_limit);
+    std::vector<Vector2> before;
+    for (int k = 0; k < graph_.landmarks(); ++k) before.push_back(stored(k));
+    const Vector2 offset_before = offset_;
     double largest = 0.0;
-    for (int number = 0; number < graph_.routes(); ++number) {
-      Arrival arrival;
-      arrival.route = number;
-      make(refinement_moves(graph_.route(number), gain_limit, arrival), arrival);
-      largest = std::max(largest, arrival.largest_move);
+    try {
+      for (int number = 0; number < graph_.routes(); ++number) {
+        Arrival arrival;
+        arrival.route = number;
+        make(refinement_moves(graph_.route(number), gain_limit, arrival), arrival);
+        largest = std::max(largest, arrival.largest_move);
+      }
+    } catch (...) {
+      for (int k = 0; k < graph_.landmarks(); ++k) put(k, before[idx(k)]);
+      offset_ = offset_before;
+      throw;
     }
     return largest;
   }
@@ -152,37 +187,46 @@ class MapBuilder::State {
     return bar_stiffness(StiffnessLaw::printed, route.covariance, orientation, route.traversals);
   }
 
+  // What may fail comes first in all that follows, what changes the map last.
+
   Arrival discover(const std::string& name, const Traversal& leg) {
-    const Vector2 position = stored(here_) + leg.displacement;
+    chain_.reserve(graph_.landmarks() + 1);
+    increments_.reserve();
     Arrival arrival;
     arrival.kind = Arrival::Kind::new_landmark;
-    arrival.landmark = graph_.add_landmark(name, position);
-    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    arrival.landmark = graph_.add_landmark(name, here_, leg);
+    arrival.route = graph_.routes() - 1;
     if (options_.method == Method::gauss_markov) {
       increments_.add_joint(here_, leg.covariance.inverse());  // bar number = route number
     } else {
       chain_.append(here_, arrival.landmark);
     }
-    if (indexed()) nearest_.insert(arrival.landmark, position);
+    if (indexed()) nearest_.insert(arrival.landmark, stored(arrival.landmark));
     return arrival;
   }
 
   Arrival increment(Arrival arrival, const Traversal& leg) {
-    const bool known_route = graph_.route_between(here_, arrival.landmark).has_value();
+    const std::optional<int> known_route = graph_.route_between(here_, arrival.landmark);
     arrival.kind = known_route ? Arrival::Kind::refinement : Arrival::Kind::first_sight;
-    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
-    const Route& route = graph_.route(arrival.route);
+    Route route = known_route ? graph_.route(*known_route) : Route();
+    average_in(route, known_route && route.source != here_ ? reversed(leg) : leg);
     const Matrix2 one = options_.pooled ? route.covariance.inverse() : leg.covariance.inverse();
     if (!known_route) {
       increments_.add_bar(here_, arrival.landmark, one);
     } else {
       increments_.set_stiffness(
-          arrival.route, options_.pooled ? Matrix2(route.traversals * one)
-                                         : Matrix2(increments_.stiffness(arrival.route) + one));
+          *known_route, options_.pooled ? Matrix2(route.traversals * one)
+                                        : Matrix2(increments_.stiffness(*known_route) + one));
     }
     Moves moves;
-    moves.displacements = increments_.pull(here_, arrival.landmark, one * arrival.misfit);
-    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
+    try {
+      for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
+      moves.displacements = increments_.pull(here_, arrival.landmark, one * arrival.misfit);
+      arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    } catch (...) {
+      increments_.take_back();
+      throw;
+    }
     make(moves, arrival);
     return arrival;
   }
@@ -200,6 +244,7 @@ class MapBuilder::State {
     moves.landmarks.assign(closing.landmarks.begin() + 1, closing.landmarks.end());
     moves.displacements = chain_displacements(stiffnesses, -arrival.misfit);
     moves.displacements.pop_back();  // the end is b, which stays
+    require_finite(moves);
 
     arrival.kind = moves.landmarks.empty() ? Arrival::Kind::new_route : Arrival::Kind::first_sight;
     arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
@@ -216,8 +261,7 @@ class MapBuilder::State {
     average_in(route, route.source == here_ ? leg : reversed(leg));
     if (!options_.refine) return arrival;
     try {
-      const Moves moves = refinement_moves(route, options_.gain_limit, arrival);
-      make(moves, arrival);
+      make(refinement_moves(route, options_.gain_limit, arrival), arrival);
     } catch (...) {
       route = before;
       throw;
@@ -253,6 +297,7 @@ class MapBuilder::State {
     }
     // A floating piece that holds the first landmark moves it: count the map as shifted instead.
     moves.shift = -displacement_of(moves, 0);
+    require_finite(moves);
     return moves;
   }
 
@@ -267,12 +312,12 @@ class MapBuilder::State {
     if (options_.eta.kind == Eta::Kind::estimated) return growing_structure(i, j, loads);
     if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < all) {
       const Vector2 midpoint = 0.5 * (stored(i) + stored(j));
-      std::vector<int> members = nearest_.nearest(midpoint, options_.eta.count);
+      std::vector<int> members = nearest_.nearest(graph_, midpoint, options_.eta.count);
       for (const int end : {i, j}) {  // on a long route both ends may be far from its middle
         const auto place = std::lower_bound(members.begin(), members.end(), end);
         if (place == members.end() || *place != end) members.insert(place, end);
       }
-      return deflect(connected_to(i, members), i, j, loads, false);
+      return deflect(connected_to(i, std::move(members)), i, j, loads, false);
     }
     std::vector<int> members(idx(all));
     for (int k = 0; k < all; ++k) members[idx(k)] = k;
@@ -335,27 +380,20 @@ class MapBuilder::State {
   }
 
   /// Of the members, those that routes among them tie to landmark i.
-  [[nodiscard]] Piece connected_to(int i, const std::vector<int>& members) const {
-    std::vector<int> reached{i};
-    std::vector<bool> seen(members.size(), false);
-    const auto place_of = [&members](int landmark) {
-      const auto place = std::lower_bound(members.begin(), members.end(), landmark);
-      return place != members.end() && *place == landmark ? place - members.begin()
-                                                          : std::ptrdiff_t{-1};
-    };
-    seen[idx(place_of(i))] = true;
-    for (std::size_t next = 0; next < reached.size(); ++next) {
-      for (const int number : graph_.routes_at(reached[next])) {
-        const int other = other_end(graph_.route(number), reached[next]);
-        const std::ptrdiff_t place = place_of(other);
-        if (place >= 0 && !seen[idx(place)]) {
-          seen[idx(place)] = true;
-          reached.push_back(other);
-        }
-      }
+  [[nodiscard]] Piece connected_to(int i, std::vector<int> members) const {
+    Piece piece = piece_of(std::move(members));
+    std::vector<NodePair> pairs;
+    for (const int number : piece.routes) {
+      const Route& route = graph_.route(number);
+      pairs.push_back({piece.joint(route.source), piece.joint(route.target)});
     }
-    std::sort(reached.begin(), reached.end());
-    return piece_of(std::move(reached));
+    const std::vector<int> part = connected_parts(static_cast<int>(piece.landmarks.size()), pairs);
+    const int mine = part[idx(piece.joint(i))];
+    std::vector<int> tied;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if (part[k] == mine) tied.push_back(piece.landmarks[k]);
+    }
+    return tied.size() == piece.landmarks.size() ? piece : piece_of(std::move(tied));
   }
 
   /// The loads on a piece of the map: `held` at the first landmark, or floating.
@@ -370,23 +408,29 @@ class MapBuilder::State {
     const std::vector<Load> forces{{piece.joint(i), loads.force_i},
                                    {piece.joint(j), loads.force_j}};
     const int joints = static_cast<int>(piece.landmarks.size());
-    Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
-                                 : solve_floating_truss(joints, bars, forces);
-    return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
+    try {
+      Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
+                                   : solve_floating_truss(joints, bars, forces);
+      return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
+    } catch (const UnsupportedJoint& error) {
+      throw SolveError("landmark " + graph_.landmark(piece.landmarks[idx(error.joint())]).name +
+                       " " + error.why());
+    }
   }
 
-  void make(const Moves& moves, Arrival& arrival) {
+  void make(const Moves& moves, Arrival& arrival) noexcept {
     for (std::size_t n = 0; n < moves.landmarks.size(); ++n) {
-      const int landmark = moves.landmarks[n];
-      const Vector2 from = stored(landmark);
-      const Vector2 to = from + moves.displacements[n];
-      graph_.set_position(landmark, to);
-      if (indexed()) nearest_.move(landmark, from, to);
+      put(moves.landmarks[n], stored(moves.landmarks[n]) + moves.displacements[n]);
       const double move = (moves.displacements[n] + moves.shift).norm();
       if (move > kMoved) ++arrival.landmarks_moved;
       arrival.largest_move = std::max(arrival.largest_move, move);
     }
     offset_ += moves.shift;
+  }
+
+  void put(int landmark, const Vector2& position) noexcept {
+    if (indexed()) nearest_.move(landmark, stored(landmark), position);
+    graph_.set_position(landmark, position);
   }
 
   MapBuilderOptions options_;
@@ -462,6 +506,8 @@ std::string name_of(Method method) {
       return "elastic_printed";
     case Method::gauss_markov:
       return "gauss_markov";
+    case Method::adjustment:
+      return "adjustment";
   }
   return "unknown";
 }

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Which landmarks are nearest to a point: a spatial index that follows the landmarks about.
+// Which landmarks are nearest to a point: a spatial index that follows a map's landmarks about.
+//
+// The index only saves time: where it cannot follow a change (for want of memory) it is dropped,
+// and built anew when it is next asked. So insert and move never fail.
 #pragma once
 
-#include "trussmap/planar.hpp"
+#include "trussmap/landmark_map.hpp"
 
 #include <memory>
 #include <vector>
@@ -16,15 +19,17 @@ class NearestLandmarks {
   NearestLandmarks();
   ~NearestLandmarks();
 
-  void insert(int landmark, const Vector2& position);
-  void move(int landmark, const Vector2& from, const Vector2& to);
+  void insert(int landmark, const Vector2& position) noexcept;
+  void move(int landmark, const Vector2& from, const Vector2& to) noexcept;
 
-  /// The `count` nearest, in ascending order of their numbers.
-  [[nodiscard]] std::vector<int> nearest(const Vector2& to, int count) const;
+  /// The `count` nearest landmarks of the map, which is the one that was followed, in ascending
+  /// order of their numbers.
+  [[nodiscard]] std::vector<int> nearest(const LandmarkGraph& map, const Vector2& to,
+                                         int count) const;
 
  private:
-  struct Tree;
-  std::unique_ptr<Tree> tree_;
+  struct Index;
+  std::unique_ptr<Index> index_;
 };
 
 }  // namespace trussmap

@@ -4,16 +4,12 @@
 // Downhill from one start, and a look at the bottom: is it a point or a valley?
 #pragma once
 
+#include "linalg/levenberg_marquardt.hpp"
 #include "pose_graph/pose_graph_system.hpp"
 
 #include <vector>
 
 namespace trussmap {
-
-struct DescentOptions {
-  int max_iterations = 200;
-  double tolerance = 1e-13;  ///< relative decrease of chi^2 that a next step may still promise
-};
 
 struct Descent {
   std::vector<Pose> estimates;
@@ -23,7 +19,7 @@ struct Descent {
   bool converged = false;
 };
 
-/// Gauss-Newton with Levenberg-Marquardt damping when a step does not lower chi^2.
+/// Levenberg-Marquardt. The system is left linearised at the result.
 [[nodiscard]] Descent descend(PoseGraphSystem& system, std::vector<Pose> start,
                               const DescentOptions& options);
 
@@ -32,7 +28,7 @@ struct Descent {
                                               const std::vector<Pose>& estimates);
 
 /// Vertices that can move without changing any measurement, most mobile first; none if all is
-/// determined. Looks for a direction that strains no bar: a chain may be slender, not loose.
+/// determined.
 [[nodiscard]] std::vector<int> find_loose_vertices(PoseGraphSystem& system,
                                                    const std::vector<Pose>& estimates);
 

@@ -3,10 +3,10 @@
 #include "pose_graph/pose_graph_gauge.hpp"
 
 #include "geometry/index.hpp"
+#include "linalg/connected_parts.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
@@ -18,30 +18,6 @@ namespace {
 constexpr std::size_t kNamed = 3;       // vertices named per part, and
 constexpr std::size_t kPartsNamed = 4;  // parts, before "and so on"
 
-/// Disjoint sets of vertices, each represented by its first.
-class Parts {
- public:
-  explicit Parts(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0); }
-
-  int root(int vertex) {
-    while (up_[idx(vertex)] != vertex) {
-      int& up = up_[idx(vertex)];
-      up = up_[idx(up)];
-      vertex = up;
-    }
-    return vertex;
-  }
-
-  void join(int a, int b) {
-    a = root(a);
-    b = root(b);
-    up_[idx(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> up_;
-};
-
 struct Part {
   std::vector<int> vertices;
   int fixed_poses = 0;
@@ -51,7 +27,7 @@ struct Part {
 };
 
 std::vector<Part> find_parts(const PoseGraph& graph) {
-  Parts sets(graph.vertices.size());
+  DisjointSets sets(static_cast<int>(graph.vertices.size()));
   const auto join = [&sets](const auto& edge, int a, int b) {
     if (!edge.information.isZero(0.0)) sets.join(a, b);
   };
@@ -63,7 +39,7 @@ std::vector<Part> find_parts(const PoseGraph& graph) {
   std::vector<int> number(graph.vertices.size(), -1);
   for (std::size_t v = 0; v < graph.vertices.size(); ++v) {
     const int vertex = static_cast<int>(v);
-    int& part = number[idx(sets.root(vertex))];
+    int& part = number[idx(sets.lowest(vertex))];
     if (part < 0) {
       part = static_cast<int>(parts.size());
       parts.emplace_back();
@@ -75,7 +51,7 @@ std::vector<Part> find_parts(const PoseGraph& graph) {
     if (graph.vertices[v].fixed) ++(pose ? mine.fixed_poses : mine.fixed_points);
   }
   for (const DisplacementEdge& edge : graph.displacement_edges) {
-    parts[idx(number[idx(sets.root(edge.from))])].has_displacements = true;
+    parts[idx(number[idx(sets.lowest(edge.from))])].has_displacements = true;
   }
   return parts;
 }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "linalg/connected_parts.hpp"
 #include "pose_graph/pose_graph_chain.hpp"
 #include "pose_graph/pose_graph_descent.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/pending/disjoint_sets.hpp>
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -97,22 +97,21 @@ class Graduation {
 
 /// Those of `wrong` (the least wrong first) that the graph can do without and stay in one piece.
 std::vector<int> dispensable(const PoseGraph& graph, const std::vector<std::size_t>& wrong) {
-  boost::disjoint_sets_with_storage<> parts(graph.vertices.size());
+  DisjointSets parts(static_cast<int>(graph.vertices.size()));
   std::vector<bool> out(graph.pose_edges.size(), false);
   for (const std::size_t k : wrong) out[k] = true;
-  const auto join = [&parts](int a, int b) { parts.union_set(idx(a), idx(b)); };
   for (std::size_t k = 0; k < out.size(); ++k) {
-    if (!out[k]) join(graph.pose_edges[k].from, graph.pose_edges[k].to);
+    if (!out[k]) parts.join(graph.pose_edges[k].from, graph.pose_edges[k].to);
   }
-  for (const PointEdge& edge : graph.point_edges) join(edge.pose, edge.point);
-  for (const DisplacementEdge& edge : graph.displacement_edges) join(edge.from, edge.to);
+  for (const PointEdge& edge : graph.point_edges) parts.join(edge.pose, edge.point);
+  for (const DisplacementEdge& edge : graph.displacement_edges) parts.join(edge.from, edge.to);
   std::vector<int> result;
   for (const std::size_t k : wrong) {
     const PoseEdge& edge = graph.pose_edges[k];
-    if (parts.find_set(idx(edge.from)) == parts.find_set(idx(edge.to))) {
+    if (parts.lowest(edge.from) == parts.lowest(edge.to)) {
       result.push_back(static_cast<int>(k));
     } else {
-      join(edge.from, edge.to);
+      parts.join(edge.from, edge.to);
     }
   }
   std::sort(result.begin(), result.end());

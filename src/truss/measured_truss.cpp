@@ -4,11 +4,9 @@
 
 #include "linalg/connected_parts.hpp"
 #include "linalg/dissection.hpp"
-#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 #include <Eigen/LU>
 
@@ -63,29 +61,25 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
   const std::vector<int> parts = connected_parts(joints(), pairs_);
   const auto loose = std::find_if(parts.begin(), parts.end(), [](int part) { return part != 0; });
   if (loose != parts.end()) {
-    throw SolveError("joint " + std::to_string(loose - parts.begin()) +
-                     " is tied to nothing: no chain of measurements leads to it from joint 0");
+    throw UnsupportedJoint(static_cast<int>(loose - parts.begin()),
+                           "is tied to nothing: no chain of measurements leads to it from joint 0");
   }
-  std::vector<int> sizes(about_.size(), 2);
-  sizes[0] = 0;
-  BlockSystem& K = system_.emplace(sizes, pairs_, dissection_order(about_, pairs_), kernel);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(K.unknowns());
+  std::vector<bool> held(about_.size(), false);
+  held[0] = true;
+  TrussSystem& K = system_.emplace(held, pairs_, dissection_order(about_, pairs_), kernel);
+  std::vector<Vector2> forces(about_.size(), Vector2::Zero());
   for (int bar = 0; bar < bars(); ++bar) {
     const auto [i, j] = pairs_[idx(bar)];
     const Sums& sums = bars_[idx(bar)];
-    K.add_diagonal(i, sums.stiffness);
-    K.add_diagonal(j, sums.stiffness);
-    K.add_coupling(bar, Matrix2(-sums.stiffness));
+    K.add_bar(bar, sums.stiffness);
     const Vector2 present = about_[idx(j)] - about_[idx(i)];
     const Vector2 force = sums.stiffness * (sums.first - present) + sums.pull;
-    if (K.size(i) > 0) u.segment<2>(K.offset(i)) -= force;
-    if (K.size(j) > 0) u.segment<2>(K.offset(j)) += force;
+    forces[idx(i)] -= force;
+    forces[idx(j)] += force;
   }
   K.factorise();
-  K.solve_in_place(u);
-  for (int joint = 0; joint < joints(); ++joint) {
-    if (K.size(joint) > 0) result.positions[idx(joint)] += u.segment<2>(K.offset(joint));
-  }
+  const std::vector<Vector2> u = K.solve(forces);
+  for (int joint = 0; joint < joints(); ++joint) result.positions[idx(joint)] += u[idx(joint)];
   for (int bar = 0; bar < bars(); ++bar) {
     const auto [i, j] = pairs_[idx(bar)];
     const Sums& sums = bars_[idx(bar)];
@@ -98,13 +92,7 @@ MeasuredTruss::Fit MeasuredTruss::fit(Kernel kernel) {
 
 std::vector<Matrix2> MeasuredTruss::covariances() const {
   if (!system_) throw std::logic_error("covariances are those of a fit, which has to come first");
-  const Eigen::MatrixXd blocks = system_->inverse_blocks();
-  std::vector<Matrix2> result(about_.size(), Matrix2::Zero());
-  for (int joint = 0; joint < joints(); ++joint) {
-    if (system_->size(joint) == 0) continue;
-    result[idx(joint)] = blocks.block<2, 2>(0, system_->offset(joint));
-  }
-  return result;
+  return system_->flexibilities();
 }
 
 }  // namespace trussmap

@@ -16,8 +16,7 @@
 // The system is ordered by nested dissection of the joints' rough positions (dissection.hpp).
 #pragma once
 
-#include "linalg/block_system.hpp"
-#include "trussmap/planar.hpp"
+#include "truss/truss_system.hpp"
 
 #include <optional>
 #include <vector>
@@ -39,7 +38,7 @@ class MeasuredTruss {
   /// positive definite.
   void add(int i, int j, const Vector2& displacement, const Matrix2& information);
 
-  /// Throws SolveError where a joint is tied to nothing.
+  /// Throws UnsupportedJoint where a joint is tied to nothing.
   [[nodiscard]] Fit fit(Kernel kernel = Kernel::frontal);
 
   /// Covariances of all joints, m^2, zero for the first: those of the last fit. Throws
@@ -65,7 +64,7 @@ class MeasuredTruss {
   std::vector<NodePair> pairs_;  ///< per bar: its joints, the lower first
   std::vector<Sums> bars_;       ///< displacements from the lower joint to the higher
   long measurements_ = 0;
-  std::optional<BlockSystem> system_;  ///< of the last fit
+  std::optional<TrussSystem> system_;  ///< of the last fit
 };
 
 }  // namespace trussmap

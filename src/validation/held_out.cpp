@@ -106,7 +106,7 @@ std::set<int> loose_poses(const std::vector<Recording>& recordings, const ModelF
   const EffectParameters no_effects;
   RecordingSystem system(problem, no_effects);
   system.linearise(state, Eigen::VectorXd());
-  const std::vector<int> loose = find_loose_nodes(system, problem);
+  const std::vector<int> loose = find_loose_nodes(system);
   const std::set<int> nodes(loose.begin(), loose.end());
   std::set<int> poses;
   for (const Measurement& one : problem.measurements) {

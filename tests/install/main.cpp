@@ -3,7 +3,7 @@
 //
 // A square of four routes that does not close: its last corner is pulled 0.4 m over to where the
 // first one is, and the bars, all equal, share that out.
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 #include "trussmap/stiffness_law.hpp"
 
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "geometry/index.hpp"
 #include "map/heading_reset.hpp"
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@
 #include "json_matrix.hpp"
 #include "map/first_sight.hpp"
 #include "shared_data.hpp"
-#include "truss/truss.hpp"
 #include "trussmap/map_builder.hpp"
 #include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 #include "pose_graph/landmark_conversion.hpp"
 
 #include "geometry/index.hpp"
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/stiffness_law.hpp"
 

@@ -3,7 +3,7 @@
 #include "pose_graph/pose_graph_descent.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
 #include "pose_graph/synthetic_graph.hpp"
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 #include "trussmap/pose_graph.hpp"
 
 #include <algorithm>

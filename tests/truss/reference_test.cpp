@@ -5,7 +5,7 @@
 #include "geometry/index.hpp"
 #include "json_matrix.hpp"
 #include "shared_data.hpp"
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 #include "trussmap/stiffness_law.hpp"
 
 #include <cmath>

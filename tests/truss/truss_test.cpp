@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The stiffness method's laws, on random trusses (seeds stated).
-#include "truss/truss.hpp"
+#include "trussmap/truss.hpp"
 
 #include "geometry/index.hpp"
 #include "trussmap/stiffness_law.hpp"
@@ -179,93 +179,6 @@ TEST(Truss, RefusesWhatIsNoTruss) {
   EXPECT_THROW((void)bar_stiffness(StiffnessLaw::gauss_markov, -B, 0.0, 1.0),
                std::invalid_argument);
   EXPECT_THROW((void)bar_stiffness(StiffnessLaw::printed, B, 0.0, 0.0), std::invalid_argument);
-}
-
-/// Small (simplicial) and large (supernodal) factors, and one that was updated (LDL').
-TEST(SparseCholesky, KnowsTheDeterminant) {
-  for (const int joints : {5, 40, 400}) {
-    const RandomTruss truss = random_truss(joints, 12);
-    std::vector<int> unknown(idx(joints));
-    for (int n = 0; n < joints; ++n) unknown[idx(n)] = n - 1;
-    const SparseMatrix K = assemble(truss.bars, unknown, joints - 1);
-    SparseCholesky cholesky;
-    cholesky.analyse(K);
-    cholesky.factorise(K);
-    const Eigen::MatrixXd dense = Eigen::MatrixXd(K).selfadjointView<Eigen::Lower>();
-    const double expected = 2.0 * dense.llt().matrixLLT().diagonal().array().log().sum();
-    EXPECT_NEAR(cholesky.log_determinant(), expected, 1e-10 * std::abs(expected));
-    SparseMatrix w(2 * (joints - 1), 1);
-    w.insert(3, 0) = 2.0;
-    w.makeCompressed();
-    cholesky.update(w);
-    const double updated =
-        2.0 * Eigen::MatrixXd(dense + Eigen::MatrixXd(w) * Eigen::MatrixXd(w).transpose())
-                  .llt()
-                  .matrixLLT()
-                  .diagonal()
-                  .array()
-                  .log()
-                  .sum();
-    EXPECT_NEAR(cholesky.log_determinant(), updated, 1e-10 * std::abs(updated));
-  }
-}
-
-TEST(SparseCholesky, AnUpdatedFactorEqualsANewOne) {
-  const RandomTruss truss = random_truss(40, 11);
-  std::vector<int> unknown(40);
-  for (int n = 0; n < 40; ++n) unknown[idx(n)] = n - 1;
-  std::vector<Bar> bars = truss.bars;
-  SparseMatrix K = assemble(bars, unknown, 39);
-  SparseCholesky live;
-  live.analyse(K);
-  live.factorise(K);
-  const Matrix2 W = (Matrix2() << 2.0, 0.0, 0.5, 1.0).finished();
-  SparseMatrix update(78, 2);
-  for (int c = 0; c < 2; ++c) {
-    for (int r = 0; r < 2; ++r) {
-      update.insert(2 * 4 + r, c) = -W(r, c);
-      update.insert(2 * 30 + r, c) = W(r, c);
-    }
-  }
-  update.makeCompressed();
-  live.update(update);
-  bars.push_back({5, 31, W * W.transpose()});
-  K = assemble(bars, unknown, 39);
-  SparseCholesky fresh;
-  fresh.analyse(K);
-  fresh.factorise(K);
-  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(78, -1.0, 2.0);
-  EXPECT_LE((live.solve(b) - fresh.solve(b)).norm(), 1e-10 * fresh.solve(b).norm());
-}
-
-TEST(SparseCholesky, AFactorThatGrewByRowsEqualsANewOne) {
-  // The last joints wait as identity and come in one by one, each with all its bars to those there.
-  const RandomTruss truss = random_truss(40, 12);
-  std::vector<int> unknown(40);
-  for (int n = 0; n < 40; ++n) unknown[idx(n)] = n - 1;
-  const SparseMatrix K = assemble(truss.bars, unknown, 39);
-  const Eigen::MatrixXd whole = Eigen::MatrixXd(K).selfadjointView<Eigen::Lower>();
-  constexpr int kThere = 60;  // unknowns that are there from the start
-  Eigen::MatrixXd part = Eigen::MatrixXd::Identity(78, 78);
-  part.topLeftCorner(kThere, kThere) = whole.topLeftCorner(kThere, kThere);
-  const Eigen::MatrixXd lower = part.triangularView<Eigen::Lower>();
-  SparseCholesky live(Ordering::fixed);
-  live.analyse(SparseMatrix(lower.sparseView()));
-  live.factorise(SparseMatrix(lower.sparseView()));
-  for (int row = kThere; row < 78; ++row) {
-    Eigen::MatrixXd column = Eigen::MatrixXd::Zero(78, 1);
-    column.topRows(row + 1) = whole.block(0, row, row + 1, 1);
-    live.add_row(row, SparseMatrix(column.sparseView()));
-  }
-  SparseCholesky fresh;
-  fresh.analyse(K);
-  fresh.factorise(K);
-  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(78, -1.0, 2.0);
-  const Eigen::VectorXd expected = fresh.solve(b);
-  EXPECT_LE((live.solve(b) - expected).norm(), 1e-10 * expected.norm());
-  Eigen::VectorXd x = b;
-  live.solve_updated(x);
-  EXPECT_LE((x - expected).norm(), 1e-10 * expected.norm());
 }
 
 }  // namespace

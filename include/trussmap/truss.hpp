@@ -18,7 +18,7 @@
 // Cost: one sparse Cholesky factorisation (two unknowns per free joint).
 #pragma once
 
-#include "linalg/sparse_cholesky.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
 
 #include <string>
@@ -52,14 +52,17 @@ struct Deflection {
 
 /// A joint that nothing holds: its part of the truss has no support, or its bars leave it free to
 /// slide. The message speaks of "joint N"; callers who know better names use joint().
-class UnsupportedJoint : public std::runtime_error {
+class UnsupportedJoint : public SolveError {
  public:
   UnsupportedJoint(int joint, const std::string& why)
-      : std::runtime_error("joint " + std::to_string(joint) + " " + why), joint_(joint) {}
+      : SolveError("joint " + std::to_string(joint) + " " + why), joint_(joint), why_(why) {}
   [[nodiscard]] int joint() const { return joint_; }
+  /// "can still slide: …", without the joint.
+  [[nodiscard]] const std::string& why() const { return why_; }
 
  private:
   int joint_;
+  std::string why_;
 };
 
 /// Displacements under loads and imposed displacements. Joints are 0 ... joints-1; a joint may
@@ -76,10 +79,5 @@ class UnsupportedJoint : public std::runtime_error {
 
 /// The 4x4 stiffness matrix of one bar, degrees of freedom (u_ix, u_iy, u_jx, u_jy).
 [[nodiscard]] Eigen::Matrix4d bar_matrix(const Matrix2& stiffness);
-
-/// Lower triangle of K over the free joints: `unknown[j]` numbers the free joints from 0, -1 where
-/// a joint is held. The pattern holds every bar's block even where its value is zero.
-[[nodiscard]] SparseMatrix assemble(const std::vector<Bar>& bars, const std::vector<int>& unknown,
-                                    int free_joints);
 
 }  // namespace trussmap
