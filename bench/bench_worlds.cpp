@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "bench_worlds.hpp"
 
-#include "simulation/tours.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/random_stream.hpp"
 

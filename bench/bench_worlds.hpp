@@ -4,11 +4,9 @@
 // Worlds, robots and effects for the criticism's figures: all drawn from a seed.
 #pragma once
 
-#include "simulation/mesh_world.hpp"
-#include "simulation/true_motion.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <string>

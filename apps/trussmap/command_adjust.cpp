@@ -3,7 +3,6 @@
 //
 // trussmap adjust: the best fit of a plain pose graph.
 #include "commands.hpp"
-#include "geometry/index.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -107,8 +106,11 @@ Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
     RobustAdjustment robust = adjust_robustly(graph, {how, options.gate});
     run.result = std::move(robust.adjustment);
     for (const int k : robust.left_out) {
-      const PoseEdge& edge = graph.pose_edges[idx(k)];
-      run.left_out.push_back({graph.vertices[idx(edge.from)].id, graph.vertices[idx(edge.to)].id});
+      const PoseEdge& edge = graph.pose_edges.at(static_cast<std::size_t>(k));
+      const auto id_of = [&graph](int vertex) {
+        return graph.vertices.at(static_cast<std::size_t>(vertex)).id;
+      };
+      run.left_out.push_back({id_of(edge.from), id_of(edge.to)});
     }
   } else {
     run.result = adjust(graph, how);

@@ -5,12 +5,11 @@
 #include "commands.hpp"
 #include "sealed_answer.hpp"
 #include "simulate_options.hpp"
-#include "simulation/hidden_effects.hpp"
-#include "simulation/tours.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>
@@ -48,10 +47,8 @@ Simulated simulate(const SimulateOptions& options) {
         make_tours(result.mesh, parse_walk_kind(options.walk), options.tours, random);
     const WheeledRobot robot = make_robot(options);
     if (options.hide) {
-      const TrueMotion motion =
-          lay_path(result.mesh, tours.walk, make_style(options, {}), options.seed);
-      result.effects =
-          draw_hidden_effects(motion, result.mesh, robot, !options.no_survey, options.seed);
+      result.effects = draw_hidden_effects(result.mesh, tours.walk, make_style(options, {}), robot,
+                                           !options.no_survey, options.seed);
     }
     result.drive = simulate_drive(
         result.mesh, tours.walk, make_style(options, result.effects), robot, options.seed,

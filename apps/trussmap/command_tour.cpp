@@ -3,11 +3,11 @@
 //
 // trussmap tour: the elastic paper's experiment.
 #include "commands.hpp"
-#include "experiment/tour_experiment.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "report/tour_page.hpp"
+#include "trussmap/tour_experiment.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>

@@ -5,10 +5,8 @@
 #pragma once
 
 #include "effect_options.hpp"
-#include "simulation/mesh_world.hpp"
-#include "simulation/true_motion.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "experiment/tour_experiment.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
+#include "simulation/route_robot.hpp"
 #include "trussmap/random_stream.hpp"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 // The page of the elastic paper's experiment: errors per tour and per method.
 #pragma once
 
-#include "experiment/tour_experiment.hpp"
 #include "report/page.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include <string>
 

@@ -4,7 +4,7 @@
 // What a path can be laid by. Each throws std::invalid_argument and says what was expected.
 #pragma once
 
-#include "simulation/true_motion.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <vector>
 

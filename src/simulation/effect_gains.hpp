@@ -18,9 +18,9 @@
 #pragma once
 
 #include "simulation/motion_variables.hpp"
-#include "simulation/true_motion.hpp"
 #include "trussmap/channel.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <map>
 #include <vector>

@@ -4,7 +4,7 @@
 // Covariate columns of the user's own naming.
 #pragma once
 
-#include "simulation/true_motion.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <string>

@@ -5,6 +5,7 @@
 #include "geometry/index.hpp"
 #include "simulation/effect_gains.hpp"
 #include "simulation/motion_variables.hpp"
+#include "simulation/true_motion.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/random_stream.hpp"
 
@@ -168,6 +169,12 @@ std::vector<Effect> draw_hidden_effects(const TrueMotion& motion, const Mesh& me
                                         const WheeledRobot& robot, bool surveyed,
                                         std::uint64_t seed) {
   return Draw(motion, mesh, robot, surveyed, seed).effects();
+}
+
+std::vector<Effect> draw_hidden_effects(const Mesh& mesh, const std::vector<int>& walk,
+                                        const DrivingStyle& style, const WheeledRobot& robot,
+                                        bool surveyed, std::uint64_t seed) {
+  return draw_hidden_effects(lay_path(mesh, walk, style, seed), mesh, robot, surveyed, seed);
 }
 
 }  // namespace trussmap

@@ -7,23 +7,19 @@
 //                 60 legs; for a covariate the range of g, since a column like a temperature has an
 //                 arbitrary zero
 //   left out      what the recording cannot show at all: effects of sensors that the robot lacks,
-//   of
-//                 events that do not happen; without a survey, those that a map may hide in its
+//                 of events that do not happen; without a survey, those that a map may hide in its
 //                 scale or its rotation; a second effect of the first one's channel
 #pragma once
 
-#include "simulation/true_motion.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <vector>
 
 namespace trussmap {
 
-/// The effects to simulate this motion with: name, channel, shape, and coefficients of four digits.
-/// `motion` is the path without them. The same seed gives the same effects. Throws
-/// std::invalid_argument where the recording could show none.
+/// draw_hidden_effects for a path that is laid already, without effects.
 [[nodiscard]] std::vector<Effect> draw_hidden_effects(const TrueMotion& motion, const Mesh& mesh,
                                                       const WheeledRobot& robot, bool surveyed,
                                                       std::uint64_t seed);

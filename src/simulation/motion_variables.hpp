@@ -16,8 +16,8 @@
 // makes its wheel look as if it had turned round: there, recorded events differ from true ones.
 #pragma once
 
-#include "simulation/true_motion.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <vector>
 
@@ -32,11 +32,6 @@ struct MotionVariables {
 struct RowRates {
   double speed = 0.0;      ///< m/s
   double turn_rate = 0.0;  ///< rad/s
-};
-
-enum class Rates {
-  true_motion,  ///< effects depend on how fast the robot really is
-  as_recorded,  ///< effects depend on how fast its wheels say that it is, noise left out
 };
 
 /// The rates of the true motion.

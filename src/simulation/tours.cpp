@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/tours.hpp"
 
+#include "geometry/index.hpp"
+#include "simulation/mesh_world.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>

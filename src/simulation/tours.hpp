@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Tours: walks that cover every route of a mesh at least once.
+// The walks of a tour (trussmap/simulation.hpp), each over every route of a mesh at least once.
 //
 //   Euler         every route once but for the perimeter routes that join its odd landmarks, which
 //                 are driven twice; closed at v0; drawn anew each time
@@ -14,18 +14,12 @@
 // the reference curves use. A walk is the sequence of landmarks met, first and last included.
 #pragma once
 
-#include "simulation/mesh_world.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <random>
-#include <string_view>
 #include <vector>
 
 namespace trussmap {
-
-enum class WalkKind { euler, face_by_face, depth_first, random };
-
-/// "euler", "face", "depth-first" or "random"; std::invalid_argument on another name.
-[[nodiscard]] WalkKind parse_walk_kind(std::string_view name);
 
 /// Routes of the mesh that an Euler walk drives twice: the perimeter's landmarks of odd degree are
 /// paired in order (1st with 2nd, 3rd with 4th, ...), and the perimeter between each pair is
@@ -49,14 +43,5 @@ enum class WalkKind { euler, face_by_face, depth_first, random };
 
 /// From `start` until every route has been driven.
 [[nodiscard]] std::vector<int> random_walk(const Mesh& mesh, int start, std::mt19937_64& random);
-
-/// `count` tours one after the other, each a walk of its own from where the last one ended; a walk
-/// that starts at v0 is reached by the shortest way. The last landmark of a tour is the first of
-/// the next, so tour k of the result goes from ends[k - 1] (0 for the first) to ends[k].
-struct Tours {
-  std::vector<int> walk;          ///< landmarks
-  std::vector<std::size_t> ends;  ///< index into `walk` of each tour's last landmark
-};
-[[nodiscard]] Tours make_tours(const Mesh& mesh, WalkKind kind, int count, std::mt19937_64& random);
 
 }  // namespace trussmap

@@ -4,10 +4,10 @@
 // Maps from simulated recordings: what further sessions add, and what ties them to the map.
 #include "build_map/recording_map.hpp"
 
-#include "simulation/tours.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <algorithm>

@@ -5,10 +5,9 @@
 // does not state, or a bump. Legs differ in length, speed and rests.
 #pragma once
 
-#include "simulation/tours.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -8,9 +8,9 @@
 // of travel by 0.015 rad, stretch by 5 % (means of absolute values; Gaussian). The first heading
 // is known. The reference is a mean over 20 seeds, and wanders by the scatter of such means.
 #include "geometry/index.hpp"
-#include "simulation/tours.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <array>
 #include <cmath>

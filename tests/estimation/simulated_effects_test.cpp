@@ -5,9 +5,8 @@
 // the other. Without noise they must meet at chi^2 = 0 and at the coefficients that were given.
 #include "estimation/recording_adjustment.hpp"
 #include "recording/row_variables.hpp"
-#include "simulation/tours.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cmath>
 #include <random>

@@ -5,9 +5,8 @@
 #pragma once
 
 #include "estimation/recording_adjustment.hpp"
-#include "simulation/tours.hpp"
-#include "simulation/wheeled_robot.hpp"
 #include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <map>

@@ -4,7 +4,7 @@
 // The tour experiment against curves computed elsewhere (tests/reference/elastic_curves.json:
 // 6x6 mesh, 5 % and 0.03 rad, 24 seeds, 20 tours). Two means that agree differ by less than 4 of
 // their combined standard errors.
-#include "experiment/tour_experiment.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include "geometry/index.hpp"
 #include "shared_data.hpp"

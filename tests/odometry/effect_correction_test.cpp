@@ -6,11 +6,11 @@
 
 #include "build_map/recording_map.hpp"
 #include "shared_data.hpp"
-#include "simulation/tours.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <cmath>

@@ -20,10 +20,8 @@
 // methods, and do not depend on how many seeds or threads there are.
 #pragma once
 
-#include "simulation/mesh_world.hpp"
-#include "simulation/route_robot.hpp"
-#include "simulation/tours.hpp"
 #include "trussmap/map_builder.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Recordings of a simulated robot: a mesh of landmarks, a walk on it, the true motion, and what a
+// robot with two driven wheels, a compass and landmark recognition records on its way.
+//
+//   y ^   L0_2 ---- L1_2 ---- L2_2        columns along x, rows along y; L{column}_{row}
+//     |    |         |         |          landmark number = column * rows + row, so that numbers
+//     |   L0_1 ---- L1_1 ---- L2_1        and names have the same order
+//     |    |         |         |          routes join neighbours of a column or a row
+//     |   L0_0 ---- L1_0 ---- L2_0        v0 is landmark 0, the corner L0_0
+//     +------------------------------> x
+//
+// Motion. At every landmark: rest perhaps, spin to the next leg's first direction, drive. A leg is
+// a gentle bow or S, or has a corner with a spin half-way; the true stop lies a little off the
+// landmark. In each row speed and turn rate are constant, so that a row is an arc.
+//
+//   v, w       speed [m/s] and turn rate [rad/s] of the axle's centre, constant within a row
+//   B          distance of the wheels                                            m
+//   v -+ wB/2  speed of the left and right wheel over the floor                  m/s
+//   k          wheel noise: a row's travel d is recorded with variance k^2 |d|   m^(1/2)
+//
+// The compass is read at the end of each row and wrapped to (-pi, pi]. At every stop the robot
+// sights the landmark it stands on, and with a range sensor some of the others in reach. Each kind
+// of noise has a random stream of its own: leaving one sensor out, or its noise, changes nothing in
+// the others. Physical effects change what the sensors say of the true motion; a coefficient is
+// exact: without noise, the same effect in a model explains the recording fully. No formula here is
+// one of an estimator's.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+struct MeshSize {
+  int columns = 0;  ///< landmarks along x
+  int rows = 0;     ///< landmarks along y
+};
+
+struct MeshRoute {
+  int from = -1;  ///< landmark
+  int to = -1;    ///< landmark, to the right of `from` or above it
+};
+
+/// A mesh of a single column or row is a line of landmarks; two landmarks are the least.
+struct Mesh {
+  MeshSize size;
+  std::vector<Vector2> positions;  ///< true landmark positions, m
+  std::vector<MeshRoute> routes;   ///< every pair of neighbours once
+
+  [[nodiscard]] int landmarks() const { return size.columns * size.rows; }
+  [[nodiscard]] int landmark(int column, int row) const { return column * size.rows + row; }
+  [[nodiscard]] int column(int landmark) const { return landmark / size.rows; }
+  [[nodiscard]] int row(int landmark) const { return landmark % size.rows; }
+  /// From one landmark to another, m.
+  [[nodiscard]] Vector2 displacement(int from, int to) const {
+    return positions[static_cast<std::size_t>(to)] - positions[static_cast<std::size_t>(from)];
+  }
+};
+
+/// "6x6": columns, then rows. Throws std::invalid_argument on anything else, and on fewer than two
+/// or more than a million landmarks.
+[[nodiscard]] MeshSize parse_mesh_size(std::string_view text);
+
+/// Equal spacing [m] both ways, v0 at the origin.
+[[nodiscard]] Mesh even_mesh(MeshSize size, double spacing);
+
+/// Columns at the given x, rows at the given y [m], both increasing.
+[[nodiscard]] Mesh mesh_of_lines(const std::vector<double>& x, const std::vector<double>& y);
+
+/// `count` coordinates from 0 on, with gaps drawn uniformly from [shortest, longest] m.
+[[nodiscard]] std::vector<double> random_lines(int count, double shortest, double longest,
+                                               std::mt19937_64& random);
+
+/// The mesh with every landmark moved by up to `reach` m along x and along y, uniformly. The reach
+/// must leave neighbours apart: below half the shortest route.
+[[nodiscard]] Mesh jittered(Mesh mesh, double reach, std::mt19937_64& random);
+
+/// "L{column}_{row}".
+[[nodiscard]] std::string landmark_name(const Mesh& mesh, int landmark);
+
+/// Length of the shortest route, m.
+[[nodiscard]] double shortest_route(const Mesh& mesh);
+
+/// How a tour covers every route at least once. Golfarelli, Maio & Rizzi (1998), section 4, leave
+/// it open.
+enum class WalkKind {
+  euler,         ///< every route once, some of the perimeter's twice; closed at v0; drawn anew
+  face_by_face,  ///< faces row after row, there and back, each walked round
+  depth_first,   ///< an undriven route, at random, else by the shortest way to one
+  random         ///< uniform among the routes that meet here
+};
+
+/// "euler", "face", "depth-first" or "random"; std::invalid_argument on another name.
+[[nodiscard]] WalkKind parse_walk_kind(std::string_view name);
+
+/// The last landmark of a tour is the first of the next, so that tour k goes from ends[k - 1] (0
+/// for the first) to ends[k].
+struct Tours {
+  std::vector<int> walk;          ///< landmarks met, first and last included
+  std::vector<std::size_t> ends;  ///< index into `walk` of each tour's last landmark
+};
+
+/// `count` tours one after the other, each a walk of its own from where the last one ended; a walk
+/// that starts at v0 is reached by the shortest way.
+[[nodiscard]] Tours make_tours(const Mesh& mesh, WalkKind kind, int count, std::mt19937_64& random);
+
+/// How the robot drives. Ranges are drawn from uniformly, anew for each leg or spin.
+struct DrivingStyle {
+  double row_duration = 0.1;       ///< s
+  double slowest = 0.25;           ///< m/s
+  double fastest = 0.9;            ///< m/s
+  double slowest_turn = 0.3;       ///< rad/s, on the spot
+  double fastest_turn = 1.1;       ///< rad/s
+  double bend = 0.15;              ///< rad, standard deviation of each of a leg's three bends
+  double corner_share = 0.1;       ///< fraction of legs with a corner half-way
+  double corner_reach = 0.15;      ///< how far the corner lies off the straight leg, of its length
+  double rest_share = 0.0;         ///< fraction of stops with a rest
+  double shortest_rest = 2.0;      ///< s
+  double longest_rest = 20.0;      ///< s
+  int full_spins = 0;              ///< stops, spread evenly, with two full turns left, two right
+  double standing = 0.005;         ///< m per coordinate, standard deviation of stop - landmark
+  double load_change_share = 0.7;  ///< chance of another payload for the next leg
+  double lights_change_share = 0.5;
+  double first_rest = 0.0;  ///< s, before the first sighting
+  double last_rest = 0.0;   ///< s, after the last
+  double overrun = 0.0;     ///< m driven straight on after each landmark, before the spin
+  double ramp = 0.0;        ///< s in which a drive reaches its speed, and leaves it
+  std::vector<std::string> covariates;  ///< further columns: anew at one stop in two, from 0 to 1
+};
+
+/// What else was the case during a row: the covariate columns.
+struct Surroundings {
+  double payload_kg = 0.0;
+  double lights = 0.0;  ///< 1 switched on, 0 off
+  double temperature_C = 20.0;
+};
+
+enum class Activity { rest, spin, drive };
+
+/// One odometry interval of true motion.
+struct TrueRow {
+  double t = 0.0;          ///< s, end of the interval
+  double duration = 0.0;   ///< s
+  double speed = 0.0;      ///< m/s, constant within the row
+  double turn_rate = 0.0;  ///< rad/s, constant within the row
+  Activity activity = Activity::rest;
+  Pose pose;  ///< at t; heading not wrapped
+  Surroundings surroundings;
+  double slip_speed = 0.0;  ///< m/s to its left, constant within the row
+  double jump = 0.0;        ///< m ahead beside its speed, all through the row
+};
+
+/// The robot at a landmark.
+struct TrueStop {
+  double t = 0.0;        ///< s, the end of a row, or the start of the first
+  int landmark = -1;     ///< of the mesh
+  std::size_t rows = 0;  ///< rows driven until then
+  Pose pose;             ///< true pose of the axle; its position is off the landmark's
+};
+
+struct TrueMotion {
+  Pose start;  ///< before the first row, at time 0
+  std::vector<TrueRow> rows;
+  std::vector<TrueStop> stops;     ///< one per landmark of the walk
+  std::vector<Covariate> further;  ///< what else was the case, one value per row
+  std::vector<int> segments;       ///< rows of each rest, spin and drive, in order
+};
+
+/// Standard deviations; the stop's distance from its landmark is part of the path
+/// (DrivingStyle::standing).
+struct SensorNoise {
+  double left = 0.003;    ///< k of the left wheel, m^(1/2)
+  double right = 0.003;   ///< m^(1/2)
+  double compass = 0.02;  ///< rad per reading
+  double range = 0.05;    ///< m
+  double bearing = 0.02;  ///< rad
+  double survey = 0.001;  ///< m per coordinate
+};
+
+struct WheeledRobot {
+  double wheelbase = 0.34;  ///< m
+  bool compass = true;
+  bool range_sensor = false;
+  double reach = 8.0;        ///< m, range sensor
+  double recognition = 0.5;  ///< chance that a landmark in reach is recognised
+  SensorNoise noise;
+};
+
+/// What effects of speed and turn rate depend on: estimators know these by the wheels alone.
+enum class Rates {
+  true_motion,  ///< how fast the robot really is
+  as_recorded,  ///< how fast its wheels say that it is, noise left out: a fit is exact then
+};
+
+/// Physical effects on a simulated drive; each with coefficients.
+struct SimulatedEffects {
+  std::vector<Effect> effects;
+  Rates rates = Rates::as_recorded;
+};
+
+struct SimulatedDrive {
+  Recording recording;
+  TrueMotion motion;
+};
+
+/// Lays the path along the walk (landmarks of the mesh, successive ones different), records it and
+/// adds the survey. The robot starts on the first landmark with heading 0 at time 0. Under a delay
+/// it rests before the first and after the last sighting, so that they stay within the drive. The
+/// same seed gives the same recording. Throws std::invalid_argument on a walk of fewer than two
+/// landmarks or of some too near each other (below 20 `standing`, or 1 cm), a style, robot or noise
+/// that makes no sense, and effects that leave no travel, a range of 0 or less or a sighting
+/// outside the drive.
+[[nodiscard]] SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
+                                            const DrivingStyle& style, const WheeledRobot& robot,
+                                            std::uint64_t seed,
+                                            const SimulatedEffects& effects = {});
+
+/// One or two effects of the catalogue, drawn for a riddle: of a size that a recording of this walk
+/// can show (3 to 6 times what the catalogue calls detectable), and of things that it has: with its
+/// sensors, its covariates and its events, and apart from each other. Coefficients have four
+/// digits. The same seed gives the same effects. `surveyed`: the survey is written. Throws
+/// std::invalid_argument where the recording could show none.
+[[nodiscard]] std::vector<Effect> draw_hidden_effects(const Mesh& mesh,
+                                                      const std::vector<int>& walk,
+                                                      const DrivingStyle& style,
+                                                      const WheeledRobot& robot, bool surveyed,
+                                                      std::uint64_t seed);
+
+}  // namespace trussmap
