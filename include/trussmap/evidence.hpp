@@ -96,11 +96,11 @@ struct DiscoveryEvidence {
   ModelEvidence given;
   std::vector<ModelEvidence> between;  ///< of the steps between the first and the last
   ModelEvidence found;
-  std::vector<EffectEvidence> effects;              ///< that were added and stayed
-  std::vector<std::vector<LookAlike>> look_alikes;  ///< of each of them
+  std::vector<EffectEvidence> effects;                ///< that were added and stayed
+  std::vector<std::vector<LookAlike>> look_alikes;    ///< of each of them
   std::vector<std::optional<NextDrive>> next_drives;  ///< to tell each of them from its rivals
-  std::vector<TrendEvidence> trends;                ///< of the model found
-  std::vector<FindingSize> sizes;                   ///< one per finding of its last diagnosis
+  std::vector<TrendEvidence> trends;                  ///< of the model found
+  std::vector<FindingSize> sizes;                     ///< one per finding of its last diagnosis
 };
 
 /// `fit` is the one compared.

@@ -124,8 +124,7 @@ class Diagnostician {
 
   /// Not seen, but would be where the model explained the rest.
   [[nodiscard]] static bool hidden_by_misfit(const Tested& one) {
-    const double prior_sd =
-        facts_of(one.candidate.effect.channel).prior_sd * kLargestUncertainty;
+    const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd * kLargestUncertainty;
     for (std::size_t k = 0; k < one.score.share.size(); ++k) {
       if (one.score.largest[k] > 0.0 && one.score.share[k] > kLeastShare &&
           one.score.largest[k] < prior_sd * std::sqrt(one.score.information[k])) {

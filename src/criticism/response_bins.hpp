@@ -13,8 +13,8 @@
 namespace trussmap {
 
 struct Bins {
-  std::vector<ResponseBin> bins;    ///< without estimates
-  std::vector<Shape> shapes;    ///< of each: 1 in the bin, else 0
+  std::vector<ResponseBin> bins;  ///< without estimates
+  std::vector<Shape> shapes;      ///< of each: 1 in the bin, else 0
 };
 
 /// Of a formula: equally many rows in each, one per value where there are few; of the heading,

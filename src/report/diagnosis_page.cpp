@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-
 #include "plot/fit_charts.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
@@ -42,7 +41,7 @@ std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence&
                             distance_text(with, off));
 }
 
-std::string verdict_of(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   const std::string off =
       diagnosis.held_out.legs.empty() ? "" : distance_text(diagnosis.held_out.arrival_rms);
   switch (diagnosis.verdict) {
@@ -56,10 +55,8 @@ std::string verdict_of(const Diagnosis& diagnosis, const DiagnosisEvidence& evid
     case Diagnosis::Verdict::unexplained_misfit:
       break;
   }
-  std::string text = fmt::format(
-      "Something is wrong that no effect explains: errors are {:.1f} times what the model's noise "
-      "allows.",
-      std::sqrt(diagnosis.chi2 / std::max(1, diagnosis.dof)));
+  const std::string text = "Something is wrong that no effect explains: " +
+                           objection_in_words(evidence.given.comparison) + ".";
   const std::vector<std::string> others = others_notes(diagnosis);
   return others.empty() ? text : text + " " + others.front();
 }
@@ -171,7 +168,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   PageContent page;
   page.command = "diagnose";
   page.subject = subject;
-  page.verdict = verdict_of(diagnosis, evidence);
+  page.verdict = page_verdict(diagnosis, evidence);
   page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing ? Tone::bad
               : others_notes(diagnosis).empty()                        ? Tone::good
                                                                        : Tone::neutral;

@@ -85,10 +85,7 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
                                 ? ""
                                 : " Legs end " + distance_text(now.held_out.arrival_rms) + " off";
     if (!discovery.consistent) {
-      return fmt::format(
-                 "Nothing found, and something is unexplained: errors are {:.1f} times what "
-                 "the model's noise allows.",
-                 std::sqrt(now.misfit())) +
+      return "Nothing found, and something is unexplained: " + objection_in_words(now) + "." +
              (off.empty() ? "" : off + ".");
     }
     return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",

@@ -11,9 +11,8 @@
 namespace trussmap {
 
 enum class EffectPart { wheels, turning, floor, compass, sighting };
-inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning,
-                                         EffectPart::floor, EffectPart::compass,
-                                         EffectPart::sighting};
+inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning, EffectPart::floor,
+                                         EffectPart::compass, EffectPart::sighting};
 
 [[nodiscard]] const char* name_of(EffectPart part);
 [[nodiscard]] EffectPart part_of(const Effect& effect);

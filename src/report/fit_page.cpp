@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-
 #include "report/fit_sections.hpp"
 #include "report/page_words.hpp"
 #include "trussmap/wording.hpp"
@@ -20,8 +19,8 @@ std::string millimetres(const Comparison& one) {
   return fmt::format("{:.0f} mm", 1000.0 * one.held_out.arrival_rms);
 }
 
-std::string verdict(const Comparison& before, const Comparison& after,
-                    const std::vector<EffectEvidence>& effects) {
+std::string page_verdict(const Comparison& before, const Comparison& after,
+                         const std::vector<EffectEvidence>& effects) {
   std::string text;
   if (effects.size() == 1) {
     const EffectEstimate& only = effects.front().estimate;
@@ -47,7 +46,7 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   page.command = "fit";
   page.subject = subject;
   page.tone = after.consistent() ? Tone::good : Tone::bad;
-  page.verdict = verdict(before, after, effects);
+  page.verdict = page_verdict(before, after, effects);
   page.facts = {
       {fmt::format("{:.2f}", before.misfit()), "chi\u00b2 per degree of freedom without effects"},
       {fmt::format("{:.2f}", after.misfit()), "the same with them (1 is right)", page.tone}};

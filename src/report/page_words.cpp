@@ -65,7 +65,7 @@ std::string gain_sentence(const Comparison& before, const Comparison& after,
   return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
                      distance_text(with, off),
                      after.consistent() ? ", as good as this robot's noise allows"
-                                         : ", and something is still unexplained");
+                                        : ", and something is still unexplained");
 }
 
 std::string trend_variable(const Trend& trend) {

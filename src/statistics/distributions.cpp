@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "statistics/distributions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -35,6 +37,10 @@ double log_chi2_p_value(double chi2, int dof) {
   return -0.5 * chi2 + (0.5 * dof - 1.0) * std::log(0.5 * chi2) - std::lgamma(0.5 * dof);
 }
 
+double chi2_cdf(double chi2, double dof) {
+  return boost::math::cdf(boost::math::chi_squared(dof), chi2);
+}
+
 double chi2_quantile(double p, double dof) {
   return boost::math::quantile(boost::math::chi_squared(dof), p);
 }
@@ -53,6 +59,13 @@ double student_p_value(double t, double dof) {
 
 double student_quantile(double p, double dof) {
   return boost::math::quantile(boost::math::students_t(dof), p);
+}
+
+double binomial_p_value(int count, int trials, double probability) {
+  const boost::math::binomial distribution(trials, probability);
+  const double low = boost::math::cdf(distribution, count);
+  const double high = count == 0 ? 1.0 : upper_tail(distribution, count - 1);
+  return std::min(1.0, 2.0 * std::min(low, high));
 }
 
 double fisher_p_value(double F, double dof_above, double dof_below) {

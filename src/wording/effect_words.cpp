@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/wording.hpp"
-
 #include "effects/place.hpp"
+#include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
 #include <algorithm>

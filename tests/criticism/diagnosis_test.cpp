@@ -224,8 +224,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
       if (channel == Channel::bearing) sighting.bearing -= kSize;
       if (channel == Channel::range) sighting.range -= kSize;
     }
-    const HeldOut realised =
-        predict_held_out({changed}, fit_model({changed}, one.model));
+    const HeldOut realised = predict_held_out({changed}, fit_model({changed}, one.model));
     ASSERT_EQ(told.legs.size(), realised.legs.size());
     const HeldOut before = legs.metrics();
     double off = 0.0;

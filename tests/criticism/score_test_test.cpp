@@ -6,8 +6,8 @@
 #include "criticism/score_test.hpp"
 
 #include "criticism/data_lacks.hpp"
-#include "criticism/trends.hpp"
 #include "criticism/noisy_recordings.hpp"
+#include "criticism/trends.hpp"
 #include "estimation/simulated_recordings.hpp"
 
 #include <algorithm>

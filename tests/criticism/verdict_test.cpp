@@ -62,7 +62,8 @@ TEST(Verdict, OnSimulatedRecordingsNoneContradictsAnother) {
   int seen = 0;
   int unseen = 0;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    testing::SimulatedRecording one = testing::simulate_recording({true, true, seed % 2 == 0}, seed);
+    testing::SimulatedRecording one =
+        testing::simulate_recording({true, true, seed % 2 == 0}, seed);
     const double wrong = 0.02 / static_cast<double>(seed * seed);
     for (double& left : one.recording.drive.left) left *= 1.0 + wrong;
     const std::vector<Recording> recordings{one.recording};

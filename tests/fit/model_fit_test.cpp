@@ -3,9 +3,8 @@
 //
 // Models fitted to recordings that were made backwards (inverted_recordings.hpp), and to the
 // practice recordings of another program.
-#include "fit/fit_state.hpp"
-
 #include "criticism/disturbances.hpp"
+#include "fit/fit_state.hpp"
 #include "shared_data.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -42,7 +41,8 @@ TEST_P(NoiseFree, TheEffectIsFoundExactly) {
   const DisturbedCase& one = GetParam();
   const InvertedRecording simulated = invert(one.disturbance, one.options, 11);
   const FitState without = fit_recordings({simulated.recording}, inverted_model());
-  const FitState fit = fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
+  const FitState fit =
+      fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
   EXPECT_TRUE(fit.settled);
   ASSERT_TRUE(fit.effects[0].not_fitted.empty())
       << in_words(fit.effects[0], fit.effects[0].not_fitted[0]);
@@ -212,10 +212,10 @@ TEST(ModelFit, TheOrderOfEffectsDoesNotMatter) {
   const InvertedRecording simulated = invert({}, options, 31);
   const FitState one =
       fit_recordings({simulated.recording},
-                inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
+                     inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
   const FitState other =
       fit_recordings({simulated.recording},
-                inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
+                     inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
   EXPECT_NEAR(one.effects[0].effect.coefficients[0], other.effects[1].effect.coefficients[0],
               1e-5 * one.effects[0].sd[0]);
   EXPECT_NEAR(one.adjustment.chi2, other.adjustment.chi2, 1e-6);

@@ -72,6 +72,14 @@ TEST(Distributions, QuantilesInvertTheTails) {
   }
 }
 
+TEST(Distributions, ABinomialTailIsTheSumOfItsTerms) {
+  // Two or fewer of 10 at 0.5: (1 + 10 + 45)/1024, and as many on the other side.
+  EXPECT_NEAR(binomial_p_value(2, 10, 0.5), 2.0 * 56.0 / 1024.0, 1e-12);
+  EXPECT_NEAR(binomial_p_value(8, 10, 0.5), 2.0 * 56.0 / 1024.0, 1e-12);
+  EXPECT_DOUBLE_EQ(binomial_p_value(5, 10, 0.5), 1.0);
+  EXPECT_NEAR(binomial_p_value(0, 3, 0.95), 2.0 * std::pow(0.05, 3), 1e-15);
+}
+
 TEST(Distributions, StudentOfOneDegreeIsCauchyAndFisherItsSquare) {
   for (const double t : {0.2, 1.0, 7.0}) {
     EXPECT_NEAR(student_p_value(t, 1.0), 0.5 - std::atan(t) / std::numbers::pi, 1e-12);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "effects/place.hpp"
-
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
 
