@@ -15,8 +15,11 @@
 //   cost           time of a diagnosis and of 200 of its candidates against one fit of the same
 //                  recording, 180 to 10 000 legs
 #include "bench_worlds.hpp"
-#include "criticism/discovery.hpp"
+#include "criticism/candidates.hpp"
 #include "criticism/known_events.hpp"
+#include "fit/fit_state.hpp"
+#include "trussmap/discover.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -116,7 +119,7 @@ struct Tally {
   int shown = 0;
   int first = 0;
   int named = 0;
-  int promise = 0;  ///< first steps whose score and error came as promised
+  int predicted = 0;  ///< first steps whose score and error came as predicted
   int fell = 0;
   int wrong = 0;
   int ladders = 0;
@@ -137,7 +140,7 @@ void identify(const Options& options) {
         if (seed > options.first + 10U * static_cast<std::uint64_t>(options.recordings)) break;
         if (!shows(world, subject)) continue;
         const ModelFit clean = fit_model({record_in(world, {})}, world.model);
-        const ScoreTest tests(clean);
+        const ScoreTest tests(*clean.state);
         Effect truth = subject.effect;
         truth.coefficients = sized(subject, world, tests, times, seed);
         if (truth.coefficients.empty()) continue;
@@ -150,18 +153,16 @@ void identify(const Options& options) {
         const Diagnosis result =
             options.ladder ? std::move(ladder.first) : diagnose(recordings, world.model);
         const bool named = result.verdict == Diagnosis::Verdict::missing;
-        const bool right =
-            named && cosine(truth, result.findings.front().candidate.effect, tests) >= 0.95;
+        const bool right = named && cosine(truth, result.findings.front().effect, tests) >= 0.95;
         tally.named += named ? 1 : 0;
         tally.first += right ? 1 : 0;
         if (!right && options.verbose) {
-          fmt::print(
-              "  x{:.0f} {} (world {}): {} {}\n", times, truth.name, world.seed,
-              named ? result.missing : "not named",
-              named ? fmt::format("cosine {:.3f} score {:.1f}",
-                                  cosine(truth, result.findings.front().candidate.effect, tests),
-                                  result.findings.front().score)
-                    : "");
+          fmt::print("  x{:.0f} {} (world {}): {} {}\n", times, truth.name, world.seed,
+                     named ? result.missing : "not named",
+                     named ? fmt::format("cosine {:.3f} score {:.1f}",
+                                         cosine(truth, result.findings.front().effect, tests),
+                                         result.findings.front().score)
+                           : "");
         }
         if (!options.ladder) continue;
         Model with = world.model;
@@ -179,17 +180,17 @@ void identify(const Options& options) {
           const bool error_kept =
               std::abs(after.predicted.arrival_rms - after.held_out.arrival_rms) <=
               0.2 * after.held_out.arrival_rms;
-          tally.promise += score_kept && error_kept ? 1 : 0;
+          tally.predicted += score_kept && error_kept ? 1 : 0;
         }
         const double reached = ladder.steps.back().held_out.arrival_rms;
         tally.fell += reached <= 1.10 * floor ? 1 : 0;
-        tally.wrong += ladder.fit.model.effects.size() > 1 ? 1 : 0;
-        if (options.verbose && (reached > 1.10 * floor || ladder.fit.model.effects.size() > 1)) {
+        tally.wrong += ladder.found.model.effects.size() > 1 ? 1 : 0;
+        if (options.verbose && (reached > 1.10 * floor || ladder.found.model.effects.size() > 1)) {
           std::string found;
-          for (const Effect& one : ladder.fit.model.effects) found += " [" + one.name + "]";
+          for (const Effect& one : ladder.found.model.effects) found += " [" + one.name + "]";
           fmt::print("  x{:.0f} {} (world {}): ladder {:.1f} mm, true model {:.1f} mm:{} ({})\n",
                      times, truth.name, world.seed, 1e3 * reached, 1e3 * floor, found,
-                     ladder.stopped);
+                     stop_in_words(ladder));
         }
       }
     }
@@ -201,18 +202,18 @@ void identify(const Options& options) {
       all.wrong += one.wrong;
       all.ladders += one.ladders;
       all.ratios += one.ratios;
-      all.promise += one.promise;
+      all.predicted += one.predicted;
       fmt::print("  x{:.0f} {:<34} first {:3d}/{:3d} named {:3d} fell {:3d} more {:2d}\n", times,
                  name, one.first, one.shown, one.named, one.fell, one.wrong);
     }
     fmt::print(
         "identify at {:.0f} times, {}: class first in {} of {} ({:.1f} %), not named {:.1f} "
         "%; error within 1.10 of the true model's in {:.1f} %, a further effect in {:.1f} %; true "
-        "model's error {:.3f} of the effect-free one's; first steps as promised {:.1f} %\n",
+        "model's error {:.3f} of the effect-free one's; first steps as predicted {:.1f} %\n",
         times, options.loops ? "loop closures alone" : "all worlds", all.first, all.shown,
         percent(all.first, all.shown), percent(all.shown - all.named, all.shown),
         percent(all.fell, all.ladders), percent(all.wrong, all.ladders),
-        all.ladders > 0 ? all.ratios / all.ladders : 0.0, percent(all.promise, all.ladders));
+        all.ladders > 0 ? all.ratios / all.ladders : 0.0, percent(all.predicted, all.ladders));
   }
 }
 
@@ -226,7 +227,7 @@ void two(const Options& options) {
     std::shuffle(list.begin(), list.end(), random);
     std::erase_if(list, [&](const Subject& one) { return !shows(world, one); });
     const ModelFit clean = fit_model({record_in(world, {})}, world.model);
-    const ScoreTest tests(clean);
+    const ScoreTest tests(*clean.state);
     std::vector<Effect> truths;
     for (const Subject& subject : list) {
       Effect truth = subject.effect;
@@ -244,7 +245,7 @@ void two(const Options& options) {
     const Discovery found = discover({record_in(world, truths)}, world.model);
     int hit = 0;
     for (const Effect& truth : truths) {
-      hit += std::any_of(found.fit.model.effects.begin(), found.fit.model.effects.end(),
+      hit += std::any_of(found.found.model.effects.begin(), found.found.model.effects.end(),
                          [&](const Effect& one) { return cosine(truth, one, tests) >= 0.95; })
                  ? 1
                  : 0;
@@ -252,9 +253,9 @@ void two(const Options& options) {
     both += hit == 2 ? 1 : 0;
     if (hit < 2 && options.verbose) {
       std::string names;
-      for (const Effect& one : found.fit.model.effects) names += " [" + one.name + "]";
+      for (const Effect& one : found.found.model.effects) names += " [" + one.name + "]";
       fmt::print("  world {}: {} + {} ->{} ({})\n", world.seed, truths[0].name, truths[1].name,
-                 names, found.stopped);
+                 names, stop_in_words(found));
     }
   }
   fmt::print("two effects at 3 times: both found in {} of {} ({:.1f} %)\n", both, shown,
@@ -273,7 +274,7 @@ void odd(const Options& options) {
       if (seed > options.first + 10U * static_cast<std::uint64_t>(options.recordings)) break;
       if (!shows(world, subject)) continue;
       const ModelFit clean = fit_model({record_in(world, {})}, world.model);
-      const ScoreTest tests(clean);
+      const ScoreTest tests(*clean.state);
       Effect truth = subject.effect;
       truth.coefficients = sized(subject, world, tests, 3.0, seed);
       if (truth.coefficients.empty()) continue;
@@ -291,7 +292,7 @@ void odd(const Options& options) {
       bool ok = false;
       if (result.verdict == Diagnosis::Verdict::missing) {
         const Finding& first = result.findings.front();
-        ok = says(first.candidate.effect) ||
+        ok = says(first.effect) ||
              std::any_of(first.look_alikes.begin(), first.look_alikes.end(),
                          [&](const LookAlike& one) { return says(one.effect); });
       }
@@ -333,13 +334,13 @@ void events(const Options& options) {
     const testing::Bump one = testing::bumped({}, 5.0, seed);
     const Diagnosis of_bump = diagnose(one.world.recordings, one.world.model);
     const EventTest& leg = of_bump.events.front();
-    bump.first += leg.kind == "leg" && leg.name == one.name ? 1 : 0;
+    bump.first += leg.kind == EventKind::leg && leg.name == one.name ? 1 : 0;
     count_named(of_bump, options, seed, bump);
     std::string landmark;
     const testing::NoisyDrive world = testing::with_moved_landmark(5.0, seed, landmark);
     const Diagnosis of_move = diagnose(world.recordings, world.model);
     const EventTest& place = of_move.events.front();
-    moved.first += place.kind == "landmark" && place.name == landmark ? 1 : 0;
+    moved.first += place.kind == EventKind::landmark && place.name == landmark ? 1 : 0;
     count_named(of_move, options, seed, moved);
   }
   report_asked("a leg's row wrong by 5 sds", bump, whole);
@@ -382,8 +383,8 @@ void cost() {
     std::optional<ModelFit> fit;
     const double fitting = seconds([&] { fit = fit_model(recordings, here.model); });
     std::optional<ScoreTest> tests;
-    const double preparing = seconds([&] { tests.emplace(*fit); });
-    const std::vector<Candidate> candidates = candidates_for(*fit, tests->context());
+    const double preparing = seconds([&] { tests.emplace(*fit->state); });
+    const std::vector<Candidate> candidates = candidates_for(*fit->state, tests->context());
     std::vector<Effect> effects;
     for (std::size_t k = 0; k < 200 && k < candidates.size(); ++k) {
       effects.push_back(candidates[k * candidates.size() / 200].effect);

@@ -3,13 +3,16 @@
 //
 // trussmap compare: how far a model is from measurements, and where.
 #include "commands.hpp"
-#include "criticism/comparison.hpp"
+#include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "report/comparison_page.hpp"
 #include "terminal.hpp"
+#include "trussmap/compare.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
@@ -23,13 +26,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct CompareOptions {
+struct CompareCommand {
   ModelRecordingsOptions input;
   std::size_t worst = 5;
   PageOptions page;
 };
 
-ordered_json json(const Comparison& result) {
+ordered_json legs_json(const Comparison& result) {
   ordered_json worst = ordered_json::array();
   for (const LegMisfit& leg : result.worst) {
     worst.push_back({{"from", leg.from},
@@ -40,6 +43,10 @@ ordered_json json(const Comparison& result) {
                      {"stretch_error", leg.stretch_error},
                      {"orientation_error_rad", leg.orientation_error}});
   }
+  return worst;
+}
+
+ordered_json routes_json(const Comparison& result) {
   ordered_json routes = ordered_json::array();
   for (const RouteMisfit& route : result.routes) {
     routes.push_back({{"from", route.from},
@@ -50,11 +57,19 @@ ordered_json json(const Comparison& result) {
                       {"stretch_error", route.stretch_error},
                       {"orientation_error_rad", route.orientation_error}});
   }
+  return routes;
+}
+
+ordered_json landmarks_json(const Comparison& result) {
   ordered_json landmarks = ordered_json::array();
   for (const LandmarkMisfit& one : result.worst_landmarks) {
     landmarks.push_back(
         {{"landmark", one.landmark}, {"sightings", one.sightings}, {"chi2", one.chi2}});
   }
+  return landmarks;
+}
+
+ordered_json trends_json(const Comparison& result) {
   ordered_json trends = ordered_json::array();
   for (const Trend& trend : result.trends) {
     trends.push_back({{"residual", trend.kind},
@@ -68,6 +83,10 @@ ordered_json json(const Comparison& result) {
                       {"p_adjusted", trend.p_adjusted},
                       {"size_rms", trend.size}});
   }
+  return trends;
+}
+
+ordered_json sources_json(const Comparison& result) {
   ordered_json sources = ordered_json::array();
   for (const SourceCalibration& one : result.sources) {
     sources.push_back({{"source", one.source},
@@ -75,6 +94,10 @@ ordered_json json(const Comparison& result) {
                        {"sd", one.sd},
                        {"redundancy", one.redundancy}});
   }
+  return sources;
+}
+
+ordered_json outliers_json(const Comparison& result) {
   ordered_json outliers = ordered_json::array();
   for (const Outlier& one : result.outliers) {
     outliers.push_back({{"what", one.what},
@@ -82,20 +105,25 @@ ordered_json json(const Comparison& result) {
                         {"dof", one.dof},
                         {"p_adjusted", one.p_adjusted}});
   }
-  return {{"verdict", result.consistent ? "consistent" : "misfit"},
+  return outliers;
+}
+
+ordered_json json(const Comparison& result) {
+  return {{"verdict", verdict_of(result)},
           {"chi2", result.chi2},
           {"dof", result.dof},
+          {"coefficients_estimated", result.coefficients},
           {"p_value", result.p_value},
           {"legs", result.legs},
           {"landmarks", result.landmarks},
           {"heldout", held_out_json(result.held_out)},
-          {"worst", worst},
-          {"routes", routes},
-          {"worst_landmarks", landmarks},
-          {"trends", trends},
-          {"noise", sources},
-          {"outliers", outliers},
-          {"advice", result.advice},
+          {"worst", legs_json(result)},
+          {"routes", routes_json(result)},
+          {"worst_landmarks", landmarks_json(result)},
+          {"trends", trends_json(result)},
+          {"noise", sources_json(result)},
+          {"outliers", outliers_json(result)},
+          {"advice", in_words(result.lacks)},
           {"warnings", result.warnings}};
 }
 
@@ -114,13 +142,12 @@ std::string signed_mrad(double value) {
 }
 
 void print_trends(const Comparison& result) {
-  constexpr double kShown = 0.05;
   constexpr std::size_t kMost = 6;
   TextTable table{
       {Align::left, Align::left, Align::right, Align::right, Align::right}, {}, true, 2};
   table.rows.push_back({"residual of", "goes with", "explains chi2", "size (rms)", "p, adjusted"});
   for (const Trend& trend : result.trends) {
-    if (trend.p_adjusted > kShown || table.rows.size() > kMost) continue;
+    if (trend.p_adjusted > kSignificance || table.rows.size() > kMost) continue;
     table.rows.push_back({trend.kind, trend.against == "all" ? "everything alike" : trend.against,
                           fmt::format("{:.1f}", trend.score), size_text(trend),
                           probability_text(trend.p_adjusted)});
@@ -187,45 +214,39 @@ void print_outliers(const Comparison& result, std::size_t count) {
   if (table.rows.size() > 1) fmt::print("\nOutliers\n{}", table_text(table));
 }
 
-void print(const Comparison& result, const CompareOptions& options) {
-  if (result.consistent) {
-    fmt::print("{}\n", verdict_text(Mood::good,
-                                    "consistent: the model explains these measurements to "
-                                    "within its noise"));
-  } else {
-    fmt::print("{}\n", verdict_text(Mood::bad, fmt::format("misfit: errors are {:.1f} times what "
-                                                           "the model's noise allows",
-                                                           std::sqrt(result.misfit()))));
-  }
-  fmt::print("  chi2 {:.1f}, dof {}, p {}; {} legs, {} landmarks\n  {}\n", result.chi2, result.dof,
+void print(const Comparison& result, const CompareCommand& options) {
+  fmt::print("{}\n",
+             verdict_text(result.consistent() ? Mood::good : Mood::bad, verdict_in_words(result)));
+  fmt::print("  {}, p {}; {} legs, {} landmarks\n  {}\n",
+             fit_in_words(result.chi2, result.dof, result.coefficients),
              probability_text(result.p_value), result.legs, result.landmarks,
-             held_out_line(result.held_out));
+             in_words(result.held_out));
   print_trends(result);
-  if (!result.consistent) print_worst(result, options.worst);
+  if (!result.consistent()) print_worst(result, options.worst);
   print_outliers(result, options.worst);
   print_sources(result);
-  if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
-  for (const std::string& line : result.advice) fmt::print("  {}\n", line);
+  if (!result.lacks.empty()) fmt::print("\nWhat these data lack\n");
+  for (const std::string& line : in_words(result.lacks)) fmt::print("  {}\n", line);
   for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
 }
 
-void run_compare(const CompareOptions& options) {
+void run_compare(const CompareCommand& options) {
   Progress progress({{"reading", 1}, {"fitting the map", 4}, {"comparing", 40}});
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
-  const ComparisonOptions how = comparison_options(options.input);
+  CompareOptions how = compare_options(options.input);
+  how.fit.fit_effects = false;
   progress.next();
-  const ModelFit fit = fit_to_compare(input.recordings, input.model, how);
+  const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
-  const ScoreTest tests(fit);
-  const Comparison result = compare(input.recordings, input.model, how, fit, tests);
+  const Comparison result = compare(input.recordings, fit, how);
   Files files;
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
   if (options.page.wanted()) {
     add_page(files,
-             comparison_page(fitted_model(fit, result), trend_pictures(result, fit, tests),
+             comparison_page(evidence_of(fit, result),
                              subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
@@ -237,7 +258,7 @@ void run_compare(const CompareOptions& options) {
 }  // namespace
 
 void setup_compare(CLI::App& app) {
-  auto options = std::make_shared<CompareOptions>();
+  auto options = std::make_shared<CompareCommand>();
   CLI::App* command = app.add_subcommand(
       "compare", "Compare a model with recordings: is it consistent, and where does it fail?");
   add_model_recordings(*command, options->input);

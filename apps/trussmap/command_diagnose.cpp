@@ -3,17 +3,19 @@
 //
 // trussmap diagnose: which physical effect is missing from a model.
 #include "commands.hpp"
-#include "criticism/diagnosis.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "report/diagnosis_page.hpp"
 #include "terminal.hpp"
+#include "trussmap/diagnose.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
-#include "wording/effect_words.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -23,21 +25,14 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct DiagnoseOptions {
+struct DiagnoseCommand {
   ModelRecordingsOptions input;
-  double level = 0.05;
   std::size_t list = 8;
   PageOptions page;
 };
 
-ordered_json json(const HeldOutMetrics& figures) {
-  return {{"arrival_rms_m", figures.arrival_rms},
-          {"stretch_error", figures.stretch_error},
-          {"orientation_error_rad", figures.orientation_error}};
-}
-
 ordered_json json(const Finding& finding) {
-  const Effect& effect = finding.candidate.effect;
+  const Effect& effect = finding.effect;
   ordered_json one = effect_json(effect);
   one["score"] = finding.score;
   one["dof"] = finding.dof;
@@ -47,63 +42,56 @@ ordered_json json(const Finding& finding) {
   one["coefficients"] = numbers_or_null(effect.coefficients);
   one["sd"] = numbers_or_null(finding.sd);
   one["smallest_detectable"] = numbers_or_null(finding.minimal_detectable);
-  one["heldout"] = json(finding.held_out);
+  one["heldout"] = metrics_json(finding.held_out);
   one["log_evidence"] = finding.evidence;
   one["tried"] = finding.tried;
-  ordered_json rivals = ordered_json::array();
-  for (const LookAlike& rival : finding.look_alikes) {
-    rivals.push_back(effect_json(rival.effect));
-    rivals.back()["cosine"] = rival.cosine;
-  }
-  one["indistinguishable_from"] = rivals;
+  one["indistinguishable_from"] = look_alikes_json(finding.look_alikes);
   return one;
 }
 
+ordered_json json(const Unobservable& unseen) {
+  const Advice advice = advice_on(unseen);
+  ordered_json one = effect_json(unseen.effect);
+  one["why"] = advice.why;
+  one["remedy"] = advice.drive;
+  return one;
+}
+
+ordered_json json(const NoiseTest& test) {
+  return {{"law", test.law},           {"score", test.score},
+          {"dof", test.dof},           {"p_adjusted", test.p_adjusted},
+          {"size", test.size},         {"unit", test.unit},
+          {"in_words", in_words(test)}};
+}
+
+ordered_json json(const EventTest& event) {
+  return {{"kind", name_of(event.kind)},    {"name", event.name},
+          {"score", event.score},           {"dof", event.dof},
+          {"p_adjusted", event.p_adjusted}, {"in_words", in_words(event)}};
+}
+
+template <typename Item>
+ordered_json list_json(const std::vector<Item>& items) {
+  ordered_json list = ordered_json::array();
+  for (const Item& one : items) list.push_back(json(one));
+  return list;
+}
+
 ordered_json json(const Diagnosis& result) {
-  const char* verdict = result.verdict == Diagnosis::Verdict::missing ? "missing"
-                        : result.verdict == Diagnosis::Verdict::nothing_missing
-                            ? "nothing missing"
-                            : "unexplained misfit";
-  ordered_json candidates = ordered_json::array();
-  for (const Finding& finding : result.findings) candidates.push_back(json(finding));
-  ordered_json unobservable = ordered_json::array();
-  for (const Unobservable& one : result.unobservable) {
-    unobservable.push_back(effect_json(one.effect));
-    unobservable.back()["why"] = one.why;
-    unobservable.back()["remedy"] = one.remedy;
-  }
-  ordered_json noise = ordered_json::array();
-  for (const NoiseTest& one : result.noise) {
-    noise.push_back({{"law", one.law},
-                     {"score", one.score},
-                     {"dof", one.dof},
-                     {"p_adjusted", one.p_adjusted},
-                     {"size", one.size},
-                     {"unit", one.unit},
-                     {"in_words", one.in_words}});
-  }
-  ordered_json outliers = ordered_json::array();
-  for (const EventTest& one : result.events) {
-    outliers.push_back({{"kind", one.kind},
-                        {"name", one.name},
-                        {"score", one.score},
-                        {"dof", one.dof},
-                        {"p_adjusted", one.p_adjusted},
-                        {"in_words", one.in_words}});
-  }
-  return {{"verdict", verdict},
+  return {{"verdict", verdict_of(result)},
           {"missing", result.missing},
           {"p_value", result.p_value},
           {"chi2", result.chi2},
           {"dof", result.dof},
+          {"coefficients_estimated", result.coefficients},
           {"heldout", held_out_json(result.held_out)},
           {"tried", result.tried},
-          {"candidates", candidates},
-          {"noise", noise},
-          {"outliers", outliers},
-          {"advice", result.advice},
-          {"next_drive", result.next_drive},
-          {"unobservable", unobservable},
+          {"candidates", list_json(result.findings)},
+          {"noise", list_json(result.noise)},
+          {"outliers", list_json(result.events)},
+          {"advice", in_words(result.lacks)},
+          {"next_drive", in_words(result.next_drive)},
+          {"unobservable", list_json(result.unobservable)},
           {"warnings", result.warnings}};
 }
 
@@ -112,29 +100,17 @@ std::string length(double metres) {
 }
 
 void print_verdict(const Diagnosis& result) {
-  if (result.verdict == Diagnosis::Verdict::nothing_missing) {
-    const std::string text = fmt::format(
-        "nothing missing: none of {} effects tried explains more than chance", result.tried);
-    fmt::print("{}\n", verdict_text(Mood::good, text));
-  } else if (result.verdict == Diagnosis::Verdict::unexplained_misfit) {
-    const std::string text = fmt::format(
-        "unexplained misfit: the model's noise does not allow these errors (p {}), and none of {} "
-        "effects tried explains them",
-        probability_text(result.p_value), result.tried);
-    fmt::print("{}\n", verdict_text(Mood::bad, text));
+  if (result.verdict != Diagnosis::Verdict::missing) {
+    const bool good = result.verdict == Diagnosis::Verdict::nothing_missing;
+    fmt::print("{}\n", verdict_text(good ? Mood::good : Mood::bad, verdict_in_words(result)));
   }
-  for (const Finding& one : result.findings) {
-    if (one.status != Status::missing && one.status != Status::negligible) continue;
-    Effect effect = one.candidate.effect;
-    effect.coefficients = one.joint;
+  for (const Finding* found : found_by(result)) {
+    const Finding& one = *found;
     const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
-    fmt::print("{}\n",
-               verdict_text(mood, fmt::format("{}: {}; {}", name_of(one.status), effect.name,
-                                              in_words(effect, one.joint_sd))));
+    fmt::print("{}\n", verdict_text(mood, in_words(one)));
     for (const LookAlike& rival : one.look_alikes) {
-      fmt::print("  looks the same here: {} ({} x {}), cosine {:.3f}\n", rival.effect.name,
-                 name_of(rival.effect.channel), fmt::join(texts_of(rival.effect.shape), ", "),
-                 rival.cosine);
+      fmt::print("  looks the same here: {} ({}), cosine {:.3f}\n", rival.effect.name,
+                 formula_of(rival.effect), rival.cosine);
     }
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
@@ -144,138 +120,89 @@ void print_verdict(const Diagnosis& result) {
                what, length(result.held_out.arrival_rms), what,
                length(result.with_missing.arrival_rms), result.held_out.legs.size());
   }
-  if (!result.next_drive.empty()) fmt::print("  to tell them apart: {}\n", result.next_drive);
+  if (result.next_drive) fmt::print("  to tell them apart: {}\n", in_words(result.next_drive));
 }
 
 /// Noise laws and single events that are significant.
 void print_others(const Diagnosis& result, std::size_t count) {
-  constexpr double kLevel = 0.05;
   std::size_t shown = 0;
   for (const NoiseTest& one : result.noise) {
-    if (one.p_adjusted >= kLevel || shown >= 2) continue;
+    if (one.p_adjusted >= kSignificance || shown >= 2) continue;
     if (shown++ == 0) fmt::print("\nMore noise than the model states\n");
-    fmt::print("  {}: {} (score {:.1f}, p {})\n", one.law, one.in_words, one.score,
+    fmt::print("  {}: {} (score {:.1f}, p {})\n", one.law, in_words(one), one.score,
                probability_text(one.p_adjusted));
   }
   shown = 0;
   for (const EventTest& one : result.events) {
-    if (one.p_adjusted >= kLevel || shown >= count) continue;
+    if (one.p_adjusted >= kSignificance || shown >= count) continue;
     if (shown++ == 0) fmt::print("\nSingle events\n");
-    fmt::print("  {} {}: {} (score {:.1f}, p {})\n", one.kind, one.name, one.in_words, one.score,
-               probability_text(one.p_adjusted));
+    fmt::print("  {} {}: {} (score {:.1f}, p {})\n", name_of(one.kind), one.name, in_words(one),
+               one.score, probability_text(one.p_adjusted));
   }
 }
 
 /// What is significant by itself and yet absent is explained by what comes before it.
 std::string status_text(const Finding& one) {
-  if (one.status == Status::absent && one.p_adjusted < 0.05) return "explained by the above";
+  if (one.status == Status::absent && one.p_adjusted < kSignificance)
+    return "explained by the above";
   return std::string(name_of(one.status));
 }
 
-void print(const Diagnosis& result, const DiagnoseOptions& options) {
+void print_candidates(const Diagnosis& result, std::size_t count) {
   constexpr std::size_t kWidestCell = 36;  // characters; --json has all of it
-  print_verdict(result);
   TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
                   {},
                   true,
                   2};
   table.rows.push_back({"best candidates", "channel x shape", "chi2 less (dof)", "p, adjusted",
                         "held out [mm]", "status"});
-  for (std::size_t k = 0; k < std::min(options.list, result.findings.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(count, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
-    const Effect& effect = one.candidate.effect;
-    table.rows.push_back({shortened(effect.name, kWidestCell),
-                          shortened(fmt::format("{} x {}", name_of(effect.channel),
-                                                fmt::join(texts_of(effect.shape), ", ")),
-                                    kWidestCell),
-                          fmt::format("{:.1f} ({})", one.score, one.dof),
-                          probability_text(one.p_adjusted),
-                          fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
+    table.rows.push_back(
+        {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
+         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
+         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
   }
-  fmt::print("\nchi2 {:.1f}, dof {}; {} tests\n{}", result.chi2, result.dof, result.tried,
-             table_text(table));
+  fmt::print("\n{}; {} tests\n{}", fit_in_words(result.chi2, result.dof, result.coefficients),
+             result.tried, table_text(table));
+}
+
+void print(const Diagnosis& result, const DiagnoseCommand& options) {
+  print_verdict(result);
+  print_candidates(result, options.list);
   print_others(result, options.list);
   if (!result.unobservable.empty()) fmt::print("\nNot to be seen in these data\n");
   for (const Unobservable& one : result.unobservable) {
-    fmt::print("  {}: {}; {}\n", one.effect.name, one.why, one.remedy);
+    const Advice advice = advice_on(one);
+    fmt::print("  {}: {}; {}\n", one.effect.name, advice.why, advice.drive);
   }
-  if (!result.advice.empty()) fmt::print("\nWhat these data lack\n");
-  for (const std::string& line : result.advice) fmt::print("  {}\n", line);
+  if (!result.lacks.empty()) fmt::print("\nWhat these data lack\n");
+  for (const std::string& line : in_words(result.lacks)) fmt::print("  {}\n", line);
   for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
 }
 
-/// The model with what is missing put in and fitted; with the first alone where not all can be.
-std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
-                                 const ModelRecordings& input, const ModelFit& fit,
-                                 const DiagnosisOptions& how) {
-  ModelFitOptions more = fit_options(how);
-  more.near = &fit;
-  for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
-    Model model = fit.model;
-    for (std::size_t k = 0; k < count; ++k) {
-      model.effects.push_back(missing[k]->candidate.effect);
-    }
-    try {
-      return fit_model(input.recordings, model, more);
-    } catch (const SolveError&) {
-      continue;
-    }
-  }
-  return std::nullopt;
-}
-
-Page page_of(const ModelRecordings& input, const ModelFit& fit, const Diagnosis& result,
-             const DiagnosisOptions& how, const DiagnoseOptions& options) {
-  const ComparisonOptions compared = comparison_options(options.input);
-  const ScoreTest tests(fit);
-  DiagnosisPictures pictures;
-  pictures.given = fitted_model(input.recordings, fit, tests, compared);
-  pictures.trends = trend_pictures(pictures.given.comparison, fit, tests);
-  pictures.tables = diagnosis_tables(result, tests.context());
-  const std::vector<const Finding*> missing = found_by(result);
-  const std::optional<ModelFit> with = fit_with(missing, input, fit, how);
-  std::vector<EffectEstimate> estimates;
-  std::vector<std::vector<LookAlike>> rivals;
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    const std::size_t place = fit.effects.size() + k;
-    estimates.push_back(with && place < with->effects.size()
-                            ? with->effects[place]
-                            : EffectEstimate{missing[k]->candidate.effect, missing[k]->sd, {}});
-    rivals.push_back(missing[k]->look_alikes);
-  }
-  pictures.effects = fitted_effects(fit, estimates, rivals);
-  if (with) {
-    const ScoreTest after(*with);
-    pictures.with = fitted_model(input.recordings, *with, after, compared);
-  }
-  return diagnosis_page(result, pictures,
-                        subject_of(options.input.recordings, options.input.model));
-}
-
-void run_diagnose(const DiagnoseOptions& options) {
+void run_diagnose(const DiagnoseCommand& options) {
   std::vector<ProgressStep> steps{
       {"reading", 0.5}, {"fitting the map", 2.5}, {"looking for what is missing", 50}};
   if (options.page.wanted()) steps.push_back({"comparing with what is missing", 50});
   Progress progress(steps);
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
-  DiagnosisOptions how;
-  how.problem = problem_options(options.input);
-  how.legs = options.input.legs;
-  how.gate = gate_of(options.input);
-  how.level = options.level;
+  const DiagnoseOptions how = diagnose_options(options.input);
   progress.next();
-  const ModelFit fit = fit_model(input.recordings, input.model, fit_options(how));
+  const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
-  Diagnosis result = diagnose(input.recordings, fit, how);
-  result.advice = advice_on(input.recordings, input.model, how.problem);
+  const Diagnosis result = diagnose(input.recordings, fit, how);
   Files files;
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
   progress.next();
   if (options.page.wanted()) {
-    add_page(files, page_of(input, fit, result, how, options), options.page);
+    add_page(files,
+             diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
+                            subject_of(options.input.recordings, options.input.model)),
+             options.page);
   }
   write_files(files);
   progress.end();
@@ -285,13 +212,10 @@ void run_diagnose(const DiagnoseOptions& options) {
 }  // namespace
 
 void setup_diagnose(CLI::App& app) {
-  auto options = std::make_shared<DiagnoseOptions>();
+  auto options = std::make_shared<DiagnoseCommand>();
   CLI::App* command =
       app.add_subcommand("diagnose", "Find out which physical effect a model is missing");
   add_model_recordings(*command, options->input);
-  command->add_option("--level", options->level, "Chance of naming an effect where none is missing")
-      ->check(CLI::Range(1e-6, 0.5))
-      ->capture_default_str();
   command->add_option("--list", options->list, "Candidates to list")->capture_default_str();
   add_html_option(*command, options->page);
   add_plots_option(*command, options->page);

@@ -3,18 +3,18 @@
 //
 // trussmap fit: the coefficients of a model's effects.
 #include "commands.hpp"
-#include "criticism/score_test.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "report/fit_page.hpp"
 #include "terminal.hpp"
+#include "trussmap/compare.hpp"
+#include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
-#include "validation/held_out.hpp"
-#include "wording/effect_words.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -26,69 +26,57 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct FitOptions {
+struct FitCommand {
   ModelRecordingsOptions input;
   std::string out;
   PageOptions page;
 };
 
-/// The model as given and as fitted, side by side.
-struct FitResult {
-  ModelFit before;
-  ModelFit after;
-  HeldOut held_out_before;
-  HeldOut held_out_after;
-  double predicted = 0.0;  ///< decrease of chi^2, by the score test
-};
-
-FitResult fit_both(const ModelRecordings& input, const FitOptions& options, Progress& progress) {
-  ModelFitOptions how;
-  how.problem = problem_options(options.input);
-  how.gate = gate_of(options.input);
-  FitResult result;
+/// The model without effects and as fitted, side by side.
+EffectGain fit_both(const ModelRecordings& input, const FitCommand& options, Progress& progress) {
+  FitOptions how = fit_options(options.input);
   Model without = input.model;
   without.effects.clear();
-  how.fit_effects = false;
   progress.next();
-  result.before = fit_model(input.recordings, without, how);
+  how.fit_effects = false;
+  const ModelFit before = fit_model(input.recordings, without, how);
   how.fit_effects = true;
   progress.next();
-  result.after = fit_model(input.recordings, input.model, how);
+  const ModelFit after = fit_model(input.recordings, input.model, how);
   progress.next();
-  result.held_out_before =
-      predict_held_out(input.recordings, result.before, how, options.input.legs);
-  result.held_out_after = predict_held_out(input.recordings, result.after, how, options.input.legs);
-  std::vector<Effect> effects;
-  for (const EffectEstimate& one : result.after.effects) {
-    if (!one.effect.per_session) effects.push_back(one.effect);
-  }
-  const ScoreTest tests(result.before);
-  if (!effects.empty()) result.predicted = tests.joint_score(effects);
-  return result;
+  return gain_of_effects(input.recordings, before, after, options.input.legs);
 }
 
-ordered_json json(const FitResult& result) {
-  ordered_json effects = ordered_json::array();
-  for (const EffectEstimate& one : result.after.effects) {
-    effects.push_back(estimate_json(one));
-    effects.back()["not_fitted"] = one.not_fitted;
+std::vector<std::string> unfitted_words(const EffectEstimate& estimate) {
+  std::vector<std::string> lines;
+  for (const UnfittedCoefficient& one : estimate.not_fitted) {
+    lines.push_back(in_words(estimate, one));
   }
-  const RecordingAdjustment& after = result.after.adjustment;
+  return lines;
+}
+
+ordered_json json(const EffectGain& result) {
+  ordered_json effects = ordered_json::array();
+  for (const EffectEstimate& one : result.with.effects) {
+    effects.push_back(estimate_json(one));
+    effects.back()["not_fitted"] = unfitted_words(one);
+  }
+  const ModelFit& after = result.with;
   return {{"chi2", after.chi2},
           {"dof", after.dof},
           {"p_value", after.p_value},
           {"effects", effects},
-          {"heldout", held_out_json(result.held_out_after)},
+          {"heldout", held_out_json(result.held_out_with)},
           {"without_effects",
-           {{"chi2", result.before.adjustment.chi2},
-            {"dof", result.before.adjustment.dof},
-            {"heldout", held_out_json(result.held_out_before)}}},
-          {"predicted_decrease", result.predicted},
+           {{"chi2", result.without.chi2},
+            {"dof", result.without.dof},
+            {"heldout", held_out_json(result.held_out_without)}}},
+          {"predicted_decrease", result.predicted_decrease},
           {"warnings", after.warnings}};
 }
 
-void print(const FitResult& result) {
-  for (const EffectEstimate& one : result.after.effects) {
+void print_estimates(const EffectGain& result) {
+  for (const EffectEstimate& one : result.with.effects) {
     const bool none = std::all_of(one.effect.coefficients.begin(), one.effect.coefficients.end(),
                                   [](double a) { return a == 0.0; });
     const bool unseen = none && !one.not_fitted.empty();
@@ -104,40 +92,32 @@ void print(const FitResult& result) {
                             text.value, text.error.empty() ? "" : "+- " + text.error});
     }
     fmt::print("{}", table_text(table));
-    for (const std::string& why : one.not_fitted) fmt::print("    {}\n", why);
+    for (const std::string& why : unfitted_words(one)) fmt::print("    {}\n", why);
   }
-  const RecordingAdjustment& before = result.before.adjustment;
-  const RecordingAdjustment& after = result.after.adjustment;
+}
+
+void print(const EffectGain& result) {
+  print_estimates(result);
+  const ModelFit& before = result.without;
+  const ModelFit& after = result.with;
   TextTable table{
       {Align::left, Align::right, Align::right, Align::right, Align::right}, {}, true, 2};
   table.rows.push_back({"", "chi2", "dof", "p", "held out [mm]"});
-  const auto row = [&table](const char* name, const RecordingAdjustment& fit, const HeldOut& held) {
+  const auto row = [&table](const char* name, const ModelFit& fit, const HeldOut& held) {
     table.rows.push_back({name, fmt::format("{:.1f}", fit.chi2), fmt::format("{}", fit.dof),
                           probability_text(fit.p_value),
                           held.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * held.arrival_rms)});
   };
-  row("without effects", before, result.held_out_before);
-  row("with them", after, result.held_out_after);
+  row("without effects", before, result.held_out_without);
+  row("with them", after, result.held_out_with);
   fmt::print("\n{}", table_text(table));
-  fmt::print("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n", result.predicted,
-             before.chi2 - after.chi2);
-  fmt::print("  {}\n", held_out_line(result.held_out_after));
+  fmt::print("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n",
+             result.predicted_decrease, before.chi2 - after.chi2);
+  fmt::print("  {}\n", in_words(result.held_out_with));
   for (const std::string& warning : after.warnings) fmt::print("{}", warning_text(warning));
 }
 
-Page page_of(const ModelRecordings& input, const FitResult& result, const FitOptions& options) {
-  const ScoreTest before(result.before);
-  const ScoreTest after(result.after);
-  const ComparisonOptions compared = comparison_options(options.input);
-  FittedModel without = fitted_model(input.recordings, result.before, before, compared);
-  without.comparison.held_out = result.held_out_before;
-  FittedModel with = fitted_model(input.recordings, result.after, after, compared);
-  with.comparison.held_out = result.held_out_after;
-  return fit_page(without, with, fitted_effects(result.before, result.after.effects),
-                  subject_of(options.input.recordings, options.input.model));
-}
-
-void run_fit(const FitOptions& options) {
+void run_fit(const FitCommand& options) {
   std::vector<ProgressStep> steps{{"reading", 0.5},
                                   {"fitting without effects", 2.5},
                                   {"fitting the effects", 5},
@@ -150,14 +130,19 @@ void run_fit(const FitOptions& options) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  const FitResult result = fit_both(input, options, progress);
+  const EffectGain result = fit_both(input, options, progress);
   Files files;
-  if (!options.out.empty()) files.emplace_back(options.out, format_model(result.after.model));
+  if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
     files.emplace_back(options.input.json, json(result).dump(2) + "\n");
   }
   progress.next();
-  if (options.page.wanted()) add_page(files, page_of(input, result, options), options.page);
+  if (options.page.wanted()) {
+    add_page(files,
+             fit_page(evidence_of(input.recordings, result, compare_options(options.input)),
+                      subject_of(options.input.recordings, options.input.model)),
+             options.page);
+  }
   write_files(files);
   progress.end();
   print(result);
@@ -166,7 +151,7 @@ void run_fit(const FitOptions& options) {
 }  // namespace
 
 void setup_fit(CLI::App& app) {
-  auto options = std::make_shared<FitOptions>();
+  auto options = std::make_shared<FitCommand>();
   CLI::App* command =
       app.add_subcommand("fit", "Estimate the coefficients of a model's effects from recordings");
   add_model_recordings(*command, options->input);

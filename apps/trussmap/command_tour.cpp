@@ -6,7 +6,6 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "report/tour_page.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/write_files.hpp"
 

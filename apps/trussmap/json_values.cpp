@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "json_values.hpp"
 
-#include "wording/effect_words.hpp"
+#include "trussmap/wording.hpp"
 
 #include <cmath>
 
@@ -24,6 +24,27 @@ ordered_json effect_json(const Effect& effect) {
   return {{"effect", effect.name},
           {"channel", name_of(effect.channel)},
           {"shape", texts_of(effect.shape)}};
+}
+
+ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes) {
+  ordered_json list = ordered_json::array();
+  for (const LookAlike& one : look_alikes) {
+    list.push_back(effect_json(one.effect));
+    list.back()["cosine"] = one.cosine;
+  }
+  return list;
+}
+
+ordered_json metrics_json(const HeldOutMetrics& metrics) {
+  return {{"arrival_rms_m", metrics.arrival_rms},
+          {"stretch_error", metrics.stretch_error},
+          {"orientation_error_rad", metrics.orientation_error}};
+}
+
+ordered_json held_out_json(const HeldOut& held_out) {
+  ordered_json one = {{"legs", held_out.legs.size()}};
+  one.update(metrics_json(held_out));
+  return one;
 }
 
 ordered_json estimate_json(const EffectEstimate& estimate) {

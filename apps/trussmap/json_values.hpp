@@ -4,7 +4,9 @@
 // What several commands write into their JSON.
 #pragma once
 
-#include "fit/model_fit.hpp"
+#include "trussmap/diagnose.hpp"
+#include "trussmap/fit_model.hpp"
+#include "trussmap/held_out.hpp"
 
 #include <vector>
 
@@ -18,7 +20,11 @@ namespace trussmap::app {
 
 /// Name, channel and shape.
 [[nodiscard]] nlohmann::ordered_json effect_json(const Effect& effect);
-/// The same with coefficients, standard errors and words.
+[[nodiscard]] nlohmann::ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes);
+/// Arrival, stretch and orientation error; of held-out legs with their number.
+[[nodiscard]] nlohmann::ordered_json metrics_json(const HeldOutMetrics& metrics);
+[[nodiscard]] nlohmann::ordered_json held_out_json(const HeldOut& held_out);
+/// Name, channel and shape with coefficients, standard errors and words.
 [[nodiscard]] nlohmann::ordered_json estimate_json(const EffectEstimate& estimate);
 
 }  // namespace trussmap::app

@@ -21,7 +21,7 @@ void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
   command.add_option("--json", options.json, "Write every figure as JSON")->type_name("FILE");
   command
       .add_option("--holdout", options.legs.share,
-                  "Share of the legs that is kept aside to judge the model by")
+                  "Share of the legs that is held out to judge the model by")
       ->check(CLI::Range(0.0, 0.9))
       ->capture_default_str();
   command
@@ -44,6 +44,11 @@ void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options) {
                   "this (0: leave none out)")
       ->check(zero_or_more())
       ->capture_default_str();
+  command
+      .add_option("--level", options.level,
+                  "Level of significance: chance of an effect, or a misfit, where there is none")
+      ->check(CLI::Range(1e-6, 0.5))
+      ->capture_default_str();
 }
 
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
@@ -55,44 +60,23 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   return result;
 }
 
-ProblemOptions problem_options(const ModelRecordingsOptions& options) {
+FitOptions fit_options(const ModelRecordingsOptions& options) {
   const auto left_out = [&options](const char* what) {
     return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
   };
-  ProblemOptions result;
-  result.survey = !left_out("survey");
-  result.truth = !left_out("truth");
+  FitOptions result;
+  result.use_survey = !left_out("survey");
+  result.use_truth = !left_out("truth");
+  if (options.gate > 0.0) result.gate = options.gate * options.gate;
   return result;
 }
 
-ComparisonOptions comparison_options(const ModelRecordingsOptions& options) {
-  ComparisonOptions how;
-  how.problem = problem_options(options);
-  how.legs = options.legs;
-  how.gate = gate_of(options);
-  return how;
+CompareOptions compare_options(const ModelRecordingsOptions& options) {
+  return {fit_options(options), options.legs, options.level};
 }
 
-std::optional<double> gate_of(const ModelRecordingsOptions& options) {
-  if (!(options.gate > 0.0)) return std::nullopt;
-  return options.gate * options.gate;
-}
-
-nlohmann::ordered_json held_out_json(const HeldOut& held_out) {
-  return {{"legs", held_out.legs.size()},
-          {"arrival_rms_m", held_out.arrival_rms},
-          {"stretch_error", held_out.stretch_error},
-          {"orientation_error_rad", held_out.orientation_error}};
-}
-
-std::string held_out_line(const HeldOut& held_out) {
-  if (held_out.legs.empty()) return "no leg could be held out: too few, or --holdout 0";
-  return fmt::format(
-      "{} legs not used in the fit end {:.1f} mm off (rms), stretched by {:.2f} %, turned by "
-      "{:.2f} "
-      "mrad (means)",
-      held_out.legs.size(), 1e3 * held_out.arrival_rms, 100.0 * held_out.stretch_error,
-      1e3 * held_out.orientation_error);
+DiagnoseOptions diagnose_options(const ModelRecordingsOptions& options) {
+  return {fit_options(options), options.legs, options.level};
 }
 
 }  // namespace trussmap::app

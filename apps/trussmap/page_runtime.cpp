@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "page_runtime.hpp"
 
-#include "plot/chart_svg.hpp"
-
 // Both files as they are, each between two names.
 #define TRUSSMAP_EMBED(name, file)                                               \
   __asm__(".pushsection .rodata\n.global " #name "\n" #name ":\n.incbin \"" file \
@@ -38,9 +36,9 @@ void add_plots_option(CLI::App& command, PageOptions& options) {
 void add_page(Files& files, const Page& page, const PageOptions& options) {
   if (!options.html.empty()) files.emplace_back(options.html, render_page(page, page_runtime()));
   if (options.plots.empty()) return;
-  for (const Chart* chart : charts_of(page)) {
-    files.emplace_back(std::filesystem::path(options.plots) / (chart->id + ".svg"),
-                       draw_chart(*chart));
+  for (DrawnChart& chart : draw_charts(page)) {
+    files.emplace_back(std::filesystem::path(options.plots) / (chart.id + ".svg"),
+                       std::move(chart.svg));
   }
   std::filesystem::create_directories(options.plots);
 }

@@ -4,7 +4,7 @@
 // --html: style sheet and script are part of the executable.
 #pragma once
 
-#include "report/page.hpp"
+#include "trussmap/pages.hpp"
 
 #include <filesystem>
 #include <string>

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/estimate.hpp"
 
+#include "statistics/distributions.hpp"
+
 #include <cmath>
 #include <stdexcept>
-
-#include <boost/math/distributions/students_t.hpp>
 
 namespace trussmap {
 
 Interval confidence_interval(const Estimate& estimate, double confidence) {
   if (estimate.dof <= 0.0) return {estimate.value, estimate.value};
-  const boost::math::students_t_distribution<double> student(estimate.dof);
   const double reach =
-      boost::math::quantile(student, 0.5 + 0.5 * confidence) * estimate.standard_error;
+      student_quantile(0.5 + 0.5 * confidence, estimate.dof) * estimate.standard_error;
   return {estimate.value - reach, estimate.value + reach};
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/end_moments.hpp"
 #include "calibration/noise_distances.hpp"
+#include "statistics/distributions.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
@@ -10,8 +11,6 @@
 #include <utility>
 
 #include <Eigen/LU>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/chi_squared.hpp>
 
 namespace trussmap {
 namespace {
@@ -27,11 +26,7 @@ EllipseCount count_inside(const std::vector<double>& distances, std::string coor
   result.runs = static_cast<int>(distances.size());
   result.inside = static_cast<int>(
       std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
-  const boost::math::binomial_distribution<double> law(result.runs, kConfidence);
-  const double low = boost::math::cdf(law, result.inside);
-  const double high =
-      result.inside == 0 ? 1.0 : boost::math::cdf(boost::math::complement(law, result.inside - 1));
-  result.p_value = std::min(1.0, 2.0 * std::min(low, high));
+  result.p_value = binomial_p_value(result.inside, result.runs, kConfidence);
   return result;
 }
 
@@ -49,11 +44,10 @@ double kolmogorov_p(double distance, double count) {
 
 double distance_p(std::vector<double> distances) {
   std::sort(distances.begin(), distances.end());
-  const boost::math::chi_squared_distribution<double> law(3.0);
   const auto n = static_cast<double>(distances.size());
   double largest = 0.0;
   for (std::size_t k = 0; k < distances.size(); ++k) {
-    const double expected = boost::math::cdf(law, distances[k]);
+    const double expected = chi2_cdf(distances[k], 3.0);
     const auto rank = static_cast<double>(k);
     largest = std::max({largest, expected - rank / n, (rank + 1.0) / n - expected});
   }
@@ -69,15 +63,13 @@ double shape_p(const NoiseEstimate& estimate, double count) {
   // Bartlett's factor for a covariance in three dimensions.
   const double bartlett = 1.0 - 6.5 / (6.0 * count);
   const double statistic = bartlett * count * (ratio.trace() - std::log(determinant) - 3.0);
-  const boost::math::chi_squared_distribution<double> law(4.0);
-  return boost::math::cdf(boost::math::complement(law, std::max(statistic, 0.0)));
+  return chi2_p_value(std::max(statistic, 0.0), 4);
 }
 
 }  // namespace
 
 double ellipse95_scale(int dimensions) {
-  return std::sqrt(boost::math::quantile(boost::math::chi_squared_distribution<double>(dimensions),
-                                         kConfidence));
+  return std::sqrt(chi2_quantile(kConfidence, dimensions));
 }
 
 double nonlinear_share(const NoiseExperiment& experiment, const NoiseEstimate& estimate) {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "statistics/distributions.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"
 
@@ -8,7 +9,6 @@
 #include <limits>
 
 #include <Eigen/QR>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <fmt/format.h>
 
@@ -35,9 +35,7 @@ Residual residual_of(const SquareClusters& clusters, const SquareSetup& setup) {
 
 double two_sided_p(const Estimate& estimate) {
   if (estimate.dof <= 0.0) return std::numeric_limits<double>::quiet_NaN();
-  const boost::math::students_t_distribution<double> student(estimate.dof);
-  const double t = std::abs(estimate.value) / estimate.standard_error;
-  return 2.0 * boost::math::cdf(boost::math::complement(student, t));
+  return 2.0 * student_p_value(std::abs(estimate.value) / estimate.standard_error, estimate.dof);
 }
 
 /// Smaller of the p-values of the two contrasts that no E_d and E_b can change, times two.

@@ -13,13 +13,6 @@
 namespace trussmap {
 namespace {
 
-constexpr int kBlock = 5;  // legs
-
-bool is_held_out(int leg, double share) {
-  const int block = leg / kBlock;
-  return std::floor((block + 1) * share) > std::floor(block * share);
-}
-
 /// The rows, truth and sightings of one span of time.
 Recording cut(const Recording& whole, double from, double to) {
   constexpr double kSameTime = 1e-9;  // s
@@ -82,7 +75,7 @@ std::vector<TruthLeg> truth_legs(const std::vector<Recording>& recordings, doubl
       const double at = path_at(recording.drive, path, t);
       if (from && at - start < leg) continue;
       if (from) {
-        const bool held_out = is_held_out(static_cast<int>(legs.size()), share);
+        const bool held_out = is_held_out(legs.size(), share);
         legs.push_back({static_cast<int>(session), *from, row, held_out});
       }
       from = row;

@@ -3,6 +3,7 @@
 #include "trussmap/wheel_noise.hpp"
 
 #include "calibration/end_moments.hpp"
+#include "statistics/distributions.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/error.hpp"
 
@@ -14,7 +15,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <boost/math/distributions/fisher_f.hpp>
 
 namespace trussmap {
 namespace {
@@ -209,8 +209,7 @@ double mean_p_value(const Vector3d& off, const Matrix3& scatter, int runs) {
   const double n = runs;
   const double t2 = n * off.dot(factor.solve(off));
   const double f = t2 * (n - 3.0) / (3.0 * (n - 1.0));
-  return boost::math::cdf(
-      boost::math::complement(boost::math::fisher_f_distribution<double>(3.0, n - 3.0), f));
+  return fisher_p_value(f, 3.0, n - 3.0);
 }
 
 WheelConstant constant(double squared, double squared_sd) {

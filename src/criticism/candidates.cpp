@@ -109,7 +109,7 @@ struct Area {
   std::vector<Vector2> centres;  ///< that the robot came near
 };
 
-Area driven_area(const ModelFit& fit) {
+Area driven_area(const FitState& fit) {
   constexpr int kAcross = 8;
   Area area;
   std::vector<Vector2> places;
@@ -142,7 +142,7 @@ Area driven_area(const ModelFit& fit) {
 /// Gathers the candidates.
 class Gatherer {
  public:
-  Gatherer(const ModelFit& fit, const ShapeContext& context)
+  Gatherer(const FitState& fit, const ShapeContext& context)
       : fit_(fit), context_(context), area_(driven_area(fit)) {
     for (const Measurement& one : fit.problem.measurements) {
       has_compass_ |= one.kind == MeasurementKind::segment && one.rows == 4;
@@ -414,7 +414,7 @@ class Gatherer {
     }
   }
 
-  const ModelFit& fit_;
+  const FitState& fit_;
   const ShapeContext& context_;
   Area area_;
   bool has_compass_ = false;
@@ -443,7 +443,7 @@ Candidate with_parameters(const Candidate& candidate, const std::vector<double>&
   return one;
 }
 
-std::vector<Candidate> candidates_for(const ModelFit& fit, const ShapeContext& context) {
+std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& context) {
   return Gatherer(fit, context).run();
 }
 

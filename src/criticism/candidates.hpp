@@ -57,7 +57,7 @@ struct Candidate {
 
 /// All of them for these recordings. What the recordings cannot have (a compass effect without a
 /// compass) is not among them.
-[[nodiscard]] std::vector<Candidate> candidates_for(const ModelFit& fit,
+[[nodiscard]] std::vector<Candidate> candidates_for(const FitState& fit,
                                                     const ShapeContext& context);
 
 /// The same candidate with other parameters, its name and shapes made anew. They are numbers of few

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/event_scores.hpp"
 
+#include "statistics/distributions.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -23,23 +25,23 @@ double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
   for (Eigen::Index k = 0; k < count; ++k) {
     size[k] = std::sqrt(S.block(k * width, k * width, width, width).norm());
   }
-  Eigen::MatrixXd same_layout = Eigen::MatrixXd::Zero(count, count);
+  Eigen::MatrixXd overlap = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < count; ++j) {
       const double both = size[i] * size[j];
       if (both > 0.0) {
-        same_layout(i, j) = S.block(i * width, j * width, width, width).norm() / both;
+        overlap(i, j) = S.block(i * width, j * width, width, width).norm() / both;
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(same_layout);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(overlap);
   const Eigen::ArrayXd l = axes.eigenvalues().array().max(0.0);
   return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
 }
 
 class Scorer {
  public:
-  Scorer(const ModelFit& fit, const RecordingSystem& system, const FitProjection& P)
+  Scorer(const FitState& fit, const RecordingSystem& system, const FitProjection& P)
       : fit_(fit), system_(system), P_(P), r_(P.times(system.residuals())) {}
 
   /// Solves are shared by events that need some.
@@ -146,7 +148,7 @@ class Scorer {
     columns = 0;
   }
 
-  /// M'M of all places together.
+  /// M'M of all places at once.
   [[nodiscard]] static Eigen::MatrixXd gram(const SingleEvent& event) {
     const Eigen::Index count = width(event);
     const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
@@ -206,7 +208,7 @@ class Scorer {
     return result;
   }
 
-  const ModelFit& fit_;
+  const FitState& fit_;
   const RecordingSystem& system_;
   const FitProjection& P_;
   Eigen::VectorXd r_;
@@ -214,14 +216,7 @@ class Scorer {
 
 }  // namespace
 
-double log_chi2_p_value(double chi2, int dof) {
-  if (dof == 0) return 0.0;
-  const double p = chi2_p_value(chi2, dof);
-  if (p > 1e-280) return std::log(p);
-  return -0.5 * chi2 + (0.5 * dof - 1.0) * std::log(0.5 * chi2) - std::lgamma(0.5 * dof);
-}
-
-std::vector<Scored> score_events(const ModelFit& fit, const RecordingSystem& system,
+std::vector<Scored> score_events(const FitState& fit, const RecordingSystem& system,
                                  const FitProjection& projection,
                                  const std::vector<SingleEvent>& events) {
   return Scorer(fit, system, projection).score(events);

@@ -26,11 +26,8 @@ struct Scored {
 };
 
 /// One per event. `projection` is that of the fit itself.
-[[nodiscard]] std::vector<Scored> score_events(const ModelFit& fit, const RecordingSystem& system,
+[[nodiscard]] std::vector<Scored> score_events(const FitState& fit, const RecordingSystem& system,
                                                const FitProjection& projection,
                                                const std::vector<SingleEvent>& events);
-
-/// Natural logarithm of the upper tail of chi^2, also where the tail itself is 0.
-[[nodiscard]] double log_chi2_p_value(double chi2, int dof);
 
 }  // namespace trussmap

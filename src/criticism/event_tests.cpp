@@ -2,30 +2,31 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/event_tests.hpp"
 
-#include "criticism/comparison.hpp"
 #include "criticism/event_scores.hpp"
 #include "criticism/single_events.hpp"
 #include "fit/fit_projection.hpp"
+#include "statistics/distributions.hpp"
+#include "statistics/multiple_tests.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
 namespace trussmap {
 namespace {
 
-constexpr double kLevel = 0.05;
 constexpr std::size_t kMostKept = 64;
 
 struct Ranked {
-  EventTest test;
+  TestedEvent test;
   double log_p = 0.0;
   const Dummies* dummies = nullptr;
 };
 
 /// Sightings that the fit leaves out, against the fit without them.
-void add_left_out(const ModelFit& fit, const RecordingSystem& system, std::vector<Ranked>& ranked) {
+void add_left_out(const FitState& fit, const RecordingSystem& system, std::vector<Ranked>& ranked) {
   if (fit.adjustment.left_out.empty()) return;
   RecordingSystem whole(fit.problem, fit.columns.border);
   whole.linearise(fit.adjustment.state, fit.adjustment.coefficients);
@@ -37,9 +38,10 @@ void add_left_out(const ModelFit& fit, const RecordingSystem& system, std::vecto
     const Eigen::MatrixXd R =
         Eigen::MatrixXd::Identity(one.rows, one.rows) + J.transpose() * system.solve(J);
     Ranked event;
-    event.test.kind = one.kind == MeasurementKind::survey ? "landmark" : "sighting";
+    event.test.kind =
+        one.kind == MeasurementKind::survey ? EventKind::landmark : EventKind::sighting;
     event.test.name = describe(fit.problem, one);
-    event.test.in_words = event.test.name + " contradicts the rest, and is left out";
+    event.test.change = EventChange::left_out;
     event.test.score = r.dot(R.inverse() * r);
     event.test.dof = one.rows;
     const double dispersion =
@@ -58,10 +60,19 @@ Eigen::MatrixXd dense(const Dummies& dummies, const RecordingSystem& system) {
   return M;
 }
 
+/// As EventChange has it: a session without compass has none of its offset.
+std::vector<double> size_of(const Found& found, EventChange change) {
+  std::vector<double> size(found.size.begin(), found.size.end());
+  if (change == EventChange::session_off && size.size() < 4) {
+    size.insert(size.begin() + 2, std::numeric_limits<double>::quiet_NaN());
+  }
+  return size;
+}
+
 }  // namespace
 
-std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
-                                   const Eigen::MatrixXd& nuisance) {
+std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests,
+                                     const Eigen::MatrixXd& nuisance) {
   const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? nuisance : Eigen::MatrixXd(system.rows(), 0);
   const FitProjection P(fit, fit.problem, system, apart);
@@ -78,12 +89,14 @@ std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
     Ranked one;
     one.test.kind = events[e].kind;
     one.test.name = events[e].name;
-    one.test.in_words = events[e].words(best, found[best].size);
+    one.test.change = events[e].places[best].change;
+    one.test.when = events[e].places[best].when;
+    one.test.size = size_of(found[best], one.test.change);
     one.test.score = found[best].score;
     one.test.dof = found[best].dof;
     one.log_p = std::min(0.0, found[best].log_p + std::log(scored[e].tried));
     one.dummies = &events[e].places[best];
-    if (one.test.kind != "session") {
+    if (one.test.kind != EventKind::session) {
       for (const DummyRows& part : one.dummies->parts) {
         one.test.measurements.push_back(part.measurement);
       }
@@ -102,9 +115,10 @@ std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
   const auto key = [](const Ranked& one) { return std::round(1e6 * one.log_p); };
   std::stable_sort(ranked.begin(), ranked.end(),
                    [&](const Ranked& a, const Ranked& b) { return key(a) < key(b); });
-  std::vector<EventTest> result;
+  std::vector<TestedEvent> result;
   for (Ranked& one : ranked) {
-    if (one.test.p_adjusted < kLevel && result.size() < kMostKept && one.dummies != nullptr) {
+    if (one.test.p_adjusted < kSignificance && result.size() < kMostKept &&
+        one.dummies != nullptr) {
       one.test.projected = P.times(dense(*one.dummies, system));
     }
     result.push_back(std::move(one.test));

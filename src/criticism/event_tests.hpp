@@ -25,8 +25,8 @@
 //
 // One event shows in several places: a wrong sighting in the legs on both sides, a bump at a leg's
 // end in the next one's turn. The one of least p-value - the likeliest for its freedom - comes
-// first; ask for the next with the first taken out (`aside`). A landmark's step at its last visit
-// is a wrong sighting and left to that; between sessions it is listed before the sighting.
+// first; ask for the next with the first conditioned on (`nuisance`). A landmark's step at its last
+// visit is a wrong sighting and left to that; between sessions it is listed before the sighting.
 //
 // On 56 legs a bump of 5 sds (with which all else determines it), or a landmark moved by as much
 // between two sessions, is first in nine of ten cases: one who is told the bump's row and wheel has
@@ -35,27 +35,20 @@
 #pragma once
 
 #include "criticism/score_test.hpp"
+#include "trussmap/diagnose.hpp"
 
-#include <string>
 #include <vector>
 
 namespace trussmap {
 
-struct EventTest {
-  std::string kind;      ///< leg, landmark, sighting, session
-  std::string name;      ///< "12 -> 13 at t = 45.2 s", "12", "run 3"
-  std::string in_words;  ///< what it says of the robot or the place
-  double score = 0.0;
-  int dof = 0;
-  double p_value = 1.0;                   ///< of score/phi, times the places tried for this event
-  double p_adjusted = 1.0;                ///< Holm, over all events
+struct TestedEvent : EventTest {
   std::vector<std::size_t> measurements;  ///< whose rows it touches; empty for a session
   Eigen::MatrixXd projected;  ///< rows x dummies, P M; empty (no columns) where p_adjusted >= 0.05
 };
 
-/// All events, the likeliest first. `aside`: projected columns of effects and events that are taken
-/// as given. At most the first 64 keep their columns.
-[[nodiscard]] std::vector<EventTest> test_events(const ModelFit& fit, const ScoreTest& tests,
-                                                 const Eigen::MatrixXd& nuisance = {});
+/// All events, the likeliest first. `nuisance`: projected columns of effects and events that are
+/// taken as given. At most the first 64 keep their columns.
+[[nodiscard]] std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests,
+                                                   const Eigen::MatrixXd& nuisance = {});
 
 }  // namespace trussmap

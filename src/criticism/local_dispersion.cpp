@@ -3,10 +3,9 @@
 #include "criticism/local_dispersion.hpp"
 
 #include "fit/fit_projection.hpp"
+#include "statistics/distributions.hpp"
 
 #include <cmath>
-
-#include <boost/math/special_functions/gamma.hpp>
 
 namespace trussmap {
 namespace {
@@ -15,7 +14,7 @@ constexpr double kChance = 0.001;
 
 }  // namespace
 
-LocalDispersion::LocalDispersion(const ModelFit& fit, const ScoreTest& tests) : tests_(tests) {
+LocalDispersion::LocalDispersion(const FitState& fit, const ScoreTest& tests) : tests_(tests) {
   const FitProjection P(fit, fit.problem, tests.system(), tests.present());
   own_.reserve(fit.problem.measurements.size());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
@@ -50,7 +49,7 @@ double LocalDispersion::operator()(const Score& score) const {
   const double lambda = x2 / v1;
   const double n = v1 * v1 / v2;
   if (lambda <= 1.0) return 1.0;
-  return boost::math::gamma_q(0.5 * n, 0.5 * n * lambda) < kChance ? lambda : 1.0;
+  return chi2_p_value_real(n * lambda, n) < kChance ? lambda : 1.0;
 }
 
 }  // namespace trussmap

@@ -24,7 +24,7 @@ namespace trussmap {
 class LocalDispersion {
  public:
   /// Keeps a reference to the tests, whose present state counts.
-  LocalDispersion(const ModelFit& fit, const ScoreTest& tests);
+  LocalDispersion(const FitState& fit, const ScoreTest& tests);
 
   /// lambda, or 1 where that could be chance. The score has its columns.
   [[nodiscard]] double operator()(const Score& score) const;

@@ -7,14 +7,10 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 // By how much more, in -2 log likelihood, a law must explain than one without: the sort of noise
 // that the model states already is the simplest, and its variants and the rarer laws have to earn
 // their place. Chosen on simulated drives of 56 legs (other seeds than the tests').
@@ -41,7 +37,7 @@ double mean_wheel_noise(const Noise& noise) {
   return std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
 }
 
-std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& context) {
+std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& context) {
   std::vector<DriveLaw> laws;
   const auto add = [&](const char* name, const char* unit, double margin, const Noise& noise) {
     laws.push_back({name, unit, margin, [&fit, noise](std::size_t session, const SegmentRow& row) {
@@ -91,13 +87,13 @@ std::vector<DriveLaw> drive_laws(const ModelFit& fit, const ShapeContext& contex
   return laws;
 }
 
-std::vector<NoiseLaw> of_drives(const ModelFit& fit, const ShapeContext& context) {
+std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context) {
   const RecordingProblem& problem = fit.problem;
   const std::vector<DriveLaw> laws = drive_laws(fit, context);
   std::vector<NoiseLaw> result;
   for (const DriveLaw& law : laws) {
     const std::vector<Matrix4> none(problem.measurements.size(), Matrix4::Zero());
-    result.push_back({law.name, law.unit, law.margin, none});
+    result.push_back({law.name, law.unit, 0.0, law.margin, none});
   }
   const Eigen::VectorXd offsets = offsets_of(fit);
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
@@ -122,10 +118,21 @@ std::vector<NoiseLaw> of_drives(const ModelFit& fit, const ShapeContext& context
   return result;
 }
 
+/// What the model has of a law already; 0 of one that it has not.
+double stated_of(const std::string& law, const Noise& noise) {
+  if (law == "per metre") return mean_wheel_noise(noise);
+  if (law == "per metre, left wheel") return noise.left;
+  if (law == "per metre, right wheel") return noise.right;
+  if (law == "compass") return noise.compass;
+  if (law == "sighting") return noise.sighting;
+  if (law == "range") return noise.range;
+  return law == "bearing" ? noise.bearing : 0.0;
+}
+
 /// The reading's own noise, row by row of each measurement.
-NoiseLaw of_readings(const ModelFit& fit, const char* name, const char* unit,
+NoiseLaw of_readings(const FitState& fit, const char* name, const char* unit,
                      const std::function<double(const Measurement&, int row)>& variance) {
-  NoiseLaw law{name, unit, kReadings, {}};
+  NoiseLaw law{name, unit, 0.0, kReadings, {}};
   for (const Measurement& one : fit.problem.measurements) {
     Matrix4 added = Matrix4::Zero();
     for (int row = 0; row < one.rows; ++row) added(row, row) = variance(one, row);
@@ -136,7 +143,7 @@ NoiseLaw of_readings(const ModelFit& fit, const char* name, const char* unit,
 
 }  // namespace
 
-std::vector<NoiseLaw> noise_laws(const ModelFit& fit, const ShapeContext& context) {
+std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& context) {
   std::vector<NoiseLaw> laws = of_drives(fit, context);
   const auto add = [&](const char* name, const char* unit, auto&& variance) {
     laws.push_back(of_readings(fit, name, unit, variance));
@@ -161,57 +168,8 @@ std::vector<NoiseLaw> noise_laws(const ModelFit& fit, const ShapeContext& contex
     }
     return true;
   });
+  for (NoiseLaw& law : laws) law.stated = stated_of(law.name, fit.model.noise);
   return laws;
-}
-
-std::string noise_in_words(const NoiseLaw& law, double sd, const Model& model) {
-  const Noise& noise = model.noise;
-  const auto total = [sd](double stated) { return std::hypot(stated, sd); };
-  if (law.name == "per metre") {
-    const double stated = mean_wheel_noise(noise);
-    return fmt::format("the wheels' noise is {:.2g} m per root metre, not {:.2g}", total(stated),
-                       stated);
-  }
-  if (law.name == "per metre, left wheel") {
-    return fmt::format("the left wheel's noise is {:.2g} m per root metre, not {:.2g}",
-                       total(noise.left), noise.left);
-  }
-  if (law.name == "per metre, right wheel") {
-    return fmt::format("the right wheel's noise is {:.2g} m per root metre, not {:.2g}",
-                       total(noise.right), noise.right);
-  }
-  if (law.name == "per second") {
-    return fmt::format("each second adds {:.2g} mm of noise to each wheel, also at rest", 1e3 * sd);
-  }
-  if (law.name == "per second, heading") {
-    return fmt::format("each second adds {:.2g} deg of heading noise, also at rest", kDegrees * sd);
-  }
-  if (law.name == "per second, travel") {
-    return fmt::format("each second adds {:.2g} mm of travel noise, also at rest", 1e3 * sd);
-  }
-  if (law.name == "per radian turned") {
-    return fmt::format("each radian turned adds {:.2g} deg of heading noise", kDegrees * sd);
-  }
-  if (law.name == "per start") {
-    return fmt::format("each start adds {:.2g} mm of travel noise", 1e3 * sd);
-  }
-  if (law.name == "per spin") {
-    return fmt::format("each turn on the spot adds {:.2g} deg of heading noise", kDegrees * sd);
-  }
-  if (law.name == "compass") {
-    return fmt::format("a compass reading is good to {:.2g} deg, not {:.2g}",
-                       kDegrees * total(noise.compass), kDegrees * noise.compass);
-  }
-  if (law.name == "sighting") {
-    return fmt::format("the robot stands on its landmarks to {:.2g} mm, not {:.2g}",
-                       1e3 * total(noise.sighting), 1e3 * noise.sighting);
-  }
-  if (law.name == "range") {
-    return fmt::format("a range is good to {:.2g} mm, not {:.2g}", 1e3 * total(noise.range),
-                       1e3 * noise.range);
-  }
-  return fmt::format("a bearing is good to {:.2g} deg, not {:.2g}", kDegrees * total(noise.bearing),
-                     kDegrees * noise.bearing);
 }
 
 }  // namespace trussmap

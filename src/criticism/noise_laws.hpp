@@ -5,7 +5,7 @@
 #pragma once
 
 #include "fit/effect_columns.hpp"
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 
 #include <string>
 #include <vector>
@@ -15,14 +15,12 @@ namespace trussmap {
 struct NoiseLaw {
   std::string name;
   std::string unit;
+  double stated = 0.0;         ///< standard deviation that the model has, in `unit`
   double margin = 0.0;         ///< by which its score must exceed those of laws without
   std::vector<Matrix4> added;  ///< per measurement: covariance per unit of variance, in its values
 };
 
 /// Those that add something anywhere.
-[[nodiscard]] std::vector<NoiseLaw> noise_laws(const ModelFit& fit, const ShapeContext& context);
-
-/// "each start adds 4.0 mm of travel noise"; `sd` in the law's unit.
-[[nodiscard]] std::string noise_in_words(const NoiseLaw& law, double sd, const Model& model);
+[[nodiscard]] std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& context);
 
 }  // namespace trussmap

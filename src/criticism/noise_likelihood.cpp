@@ -11,7 +11,7 @@
 
 namespace trussmap {
 
-NoiseLikelihood::NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& nuisance)
+NoiseLikelihood::NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nuisance)
     : fit_(fit),
       nuisance_stated_(nuisance),
       problem_(fit.problem),
@@ -98,9 +98,10 @@ NoiseLikelihood::Best NoiseLikelihood::best(const NoiseLaw& law, double guess) {
   }
   // Twice, the second time with a third of the step: the curve is no parabola far from its bottom.
   for (int resolution = 0; resolution < 2; ++resolution) {
-    const double bend = value[0] - 2.0 * value[1] + value[2];
-    if (bend > 0.0) {
-      const double vertex = at + std::clamp(0.5 * (value[0] - value[2]) / bend, -1.0, 1.0) * step;
+    const double curvature = value[0] - 2.0 * value[1] + value[2];
+    if (curvature > 0.0) {
+      const double vertex =
+          at + std::clamp(0.5 * (value[0] - value[2]) / curvature, -1.0, 1.0) * step;
       const double there = deviance(law, std::exp(vertex));
       if (there < value[1]) {
         at = vertex;

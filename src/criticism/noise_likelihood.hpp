@@ -15,8 +15,8 @@ namespace trussmap {
 
 class NoiseLikelihood {
  public:
-  /// `aside`: whitened columns of further unknowns. Keeps a reference to the fit.
-  NoiseLikelihood(const ModelFit& fit, const Eigen::MatrixXd& nuisance);
+  /// `nuisance`: whitened columns of further unknowns. Keeps a reference to the fit.
+  NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nuisance);
 
   /// -2 log R under the law with this variance, less that of the stated noise. Afterwards problem
   /// and system are those under the law.
@@ -37,7 +37,7 @@ class NoiseLikelihood {
  private:
   [[nodiscard]] double minus_two_log();
 
-  const ModelFit& fit_;
+  const FitState& fit_;
   Eigen::MatrixXd nuisance_stated_;
   Eigen::MatrixXd nuisance_;
   RecordingProblem problem_;

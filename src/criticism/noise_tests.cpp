@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/noise_tests.hpp"
 
-#include "criticism/comparison.hpp"
 #include "criticism/noise_laws.hpp"
 #include "criticism/noise_likelihood.hpp"
 #include "fit/fit_projection.hpp"
+#include "statistics/distributions.hpp"
+#include "statistics/multiple_tests.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/special_functions/gamma.hpp>
 
 namespace trussmap {
 namespace {
@@ -26,16 +25,12 @@ constexpr double kWorthFitting = 0.01;  // p
 constexpr double kLeastDrive = 0.1;     // m
 constexpr double kUnchecked = 1e-6;
 
-double normal_tail(double z) {
-  return boost::math::cdf(boost::math::complement(boost::math::normal(), z));
-}
-
 /// Upper tail of a law with this skewness, in its standard deviations (Pearson's three moments).
 double skewed_tail(double z, double skewness) {
-  if (skewness < 1e-3) return normal_tail(z);
+  if (skewness < 1e-3) return normal_p_value(z);
   const double dof = 8.0 / (skewness * skewness);
   const double chi2 = dof + std::sqrt(2.0 * dof) * z;
-  return chi2 <= 0.0 ? 1.0 : boost::math::gamma_q(0.5 * dof, 0.5 * chi2);
+  return chi2 <= 0.0 ? 1.0 : chi2_p_value_real(chi2, dof);
 }
 
 /// V times columns of whitened rows.
@@ -174,11 +169,9 @@ class ShapeStatistics {
   std::vector<std::pair<std::size_t, std::size_t>> successive_;
 };
 
-NoiseTest shape_test(const char* name, const char* words, double found,
-                     const Eigen::VectorXd& drawn) {
+NoiseTest shape_test(const char* name, double found, const Eigen::VectorXd& drawn) {
   NoiseTest test;
   test.law = name;
-  test.in_words = words;
   const double mean = drawn.mean();
   const double sd =
       std::sqrt((drawn.array() - mean).square().sum() / static_cast<double>(drawn.size() - 1));
@@ -191,7 +184,7 @@ NoiseTest shape_test(const char* name, const char* words, double found,
 }
 
 /// Against residuals drawn under the same fit.
-void test_shapes(const ModelFit& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
+void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<NoiseTest>& tests) {
   const FitProjection P(fit, under.problem(), under.system(), under.nuisance());
   const ShapeStatistics statistics(under.problem(), under.system(), P);
   std::mt19937_64 random(2);
@@ -208,16 +201,14 @@ void test_shapes(const ModelFit& fit, const NoiseLikelihood& under, std::vector<
     correlation[k] = shape.correlation;
   }
   const NoiseShape found = statistics.of(draws.col(kDraws));
-  tests.push_back(
-      shape_test("heavy tails", "a few errors are far larger than the rest", found.tails, tails));
+  tests.push_back(shape_test("heavy tails", found.tails, tails));
   if (statistics.pairs() < 3) return;
-  tests.push_back(shape_test("autocorrelation", "each drive errs much as the one before it did",
-                             found.correlation, correlation));
+  tests.push_back(shape_test("autocorrelation", found.correlation, correlation));
 }
 
 }  // namespace
 
-std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tests,
+std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
                                        const Eigen::MatrixXd& nuisance) {
   const RecordingProblem& problem = fit.problem;
   const RecordingSystem& system = tests.system();
@@ -250,7 +241,7 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
       test.score = best.gain;
     }
     test.size = std::sqrt(variance);
-    test.in_words = noise_in_words(law, test.size, fit.model);
+    test.stated = law.stated;
     result.push_back(std::move(test));
     laws.push_back(std::move(law));
   }
@@ -270,7 +261,7 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
     for (std::size_t k = 1; k < result.size(); ++k) {
       if (claim(k) > claim(best)) best = k;
     }
-    const double size = result[best].p_adjusted < 0.05 ? result[best].size : 0.0;
+    const double size = result[best].p_adjusted < kSignificance ? result[best].size : 0.0;
     static_cast<void>(likelihood.deviance(laws[best], size * size));
   }
   test_shapes(fit, likelihood, result);
@@ -284,12 +275,12 @@ std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tes
   return sorted;
 }
 
-ModelFit with_noise(const ModelFit& fit, const ScoreTest& tests, const NoiseTest& law) {
+FitState with_noise(const FitState& fit, const ScoreTest& tests, const NoiseTest& law) {
   for (const NoiseLaw& one : noise_laws(fit, tests.context())) {
     if (one.name != law.law) continue;
     NoiseLikelihood likelihood(fit, {});
     static_cast<void>(likelihood.deviance(one, law.size * law.size));
-    ModelFit result = fit;
+    FitState result = fit;
     result.problem = likelihood.problem();
     return result;
   }

@@ -24,7 +24,7 @@
 //
 // It is on the scale of ScoreTest's scores: noise that only stands in for a missing effect gains
 // less than the effect takes away (x - log(1 + x) < x), so the larger of the two has the better
-// claim; `aside` asks what noise there is besides.
+// claim; `nuisance` asks what noise there is besides.
 //
 // "heavy tails" and "autocorrelation" are shapes of noise rather than amounts. They are asked of
 // the fit under the best law, and their score is z^2: fourth powers of what each measurement misses
@@ -42,32 +42,21 @@
 #pragma once
 
 #include "criticism/score_test.hpp"
+#include "trussmap/diagnose.hpp"
 
-#include <string>
 #include <vector>
 
 namespace trussmap {
 
-struct NoiseTest {
-  std::string law;     ///< "per metre", "per second", "per start", ...; a variant after a comma
-  double score = 0.0;  ///< as above
-  int dof = 1;
-  double p_value = 1.0;
-  double p_adjusted = 1.0;  ///< Holm, over the laws
-  double size = 0.0;        ///< standard deviation that the law adds, in `unit`
-  std::string unit;         ///< "m/sqrt(m)", "m per start", ...; of a shape, none
-  std::string in_words;     ///< "each start adds 4.0 mm of travel noise"
-};
-
-/// All laws that the recordings could show, best explanation first. `aside`: projected columns (of
-/// Score or EventTest) of what else may be missing, which is left out of the question. Costs some
-/// hundred solves, and some 4 factorisations for each law of which p < 0.01.
-[[nodiscard]] std::vector<NoiseTest> test_noise_laws(const ModelFit& fit, const ScoreTest& tests,
+/// All laws that the recordings could show, best explanation first. `nuisance`: projected columns
+/// (of Score or EventTest) of what else may be missing, which is left out of the question. Costs
+/// some hundred solves, and some 4 factorisations for each law of which p < 0.01.
+[[nodiscard]] std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
                                                      const Eigen::MatrixXd& nuisance = {});
 
 /// The same fit, its measurements as noisy as one of these laws has them besides. Throws
 /// std::invalid_argument on a shape of noise.
-[[nodiscard]] ModelFit with_noise(const ModelFit& fit, const ScoreTest& tests,
+[[nodiscard]] FitState with_noise(const FitState& fit, const ScoreTest& tests,
                                   const NoiseTest& law);
 
 }  // namespace trussmap

@@ -20,7 +20,7 @@ constexpr Eigen::Index kBatch = 64;  // columns at a time
 constexpr double kQuick = 1.0;       // s of driving at a time
 constexpr double kShows = 0.05;      // p
 
-/// Less what landmarks and poses can take up.
+/// Less what landmarks and poses absorb.
 Eigen::MatrixXd free_of_map(const RecordingSystem& system, const Eigen::MatrixXd& M) {
   return M - system.times(system.solve_nodes(system.transposed_times(M)));
 }
@@ -41,7 +41,7 @@ bool changes_within_a_second(const Effect& effect) {
 
 }  // namespace
 
-ScoreTest::ScoreTest(const ModelFit& fit)
+ScoreTest::ScoreTest(const FitState& fit)
     : fit_(fit),
       clean_(std::make_shared<NoiseFree>(fit.recordings, fit.model, fit.problem, fit.columns.border,
                                          offsets_of(fit), fit.adjustment.state)),
@@ -112,7 +112,7 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
     const double square = projected.col(k).squaredNorm();
     result.share.push_back(square / std::max(columns.col(k).squaredNorm(), 1e-300));
     result.information.push_back(square);
-    // What the data tell must not be less than what was believed before.
+    // What the data tell must not be less than the prior.
     const double uncertainty = most * std::sqrt(dispersion_ / std::max(square, 1e-300));
     if (most > 0.0 && result.share.back() > kLeastShare &&
         uncertainty < kLargestUncertainty * prior_sd) {

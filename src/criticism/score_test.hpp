@@ -6,11 +6,11 @@
 //   r    whitened residuals of the fit          J   its whitened rows, poses and landmarks
 //   M    columns of the candidate               M_  = M less its projections on J and on the
 //                                                     columns of the effects that the model has
-//   g = M_' r,  S = M_' M_,  P = phi (plausible size)^-2 (a weak prior on each coefficient)
+//   g = M_' r,  S = M_' M_,  P = phi (prior sd)^-2, a weak prior on each coefficient
 //   score = g' (S + P)^-1 g: the chi^2 that adding the effect would take away;  chi^2(dof) if the
 //           effect is absent
 //   estimate = -(S + P)^-1 g,  sd^2 = diag (S + P)^-1
-//   smallest detectable = sqrt(24.4 / S_kk): 90 % power at p = 0.05/200
+//   minimal detectable = sqrt(24.4 / S_kk): 90 % power at p = 0.05/200
 //
 // phi = max(1, chi^2/dof): under a large misfit a smaller map has smaller residuals, and without
 // phi the pure scale would take credit for that (design of score tests: Rao 1948).
@@ -24,7 +24,7 @@
 
 #include "estimation/recording_system.hpp"
 #include "fit/column_builder.hpp"
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 #include "fit/noise_free.hpp"
 
 #include <memory>
@@ -57,15 +57,15 @@ enum class Resolution { exact, quick, screening };
 
 class ScoreTest {
  public:
-  /// Keeps a reference to the fit. A copy shares all but what was taken out.
-  explicit ScoreTest(const ModelFit& fit);
+  /// Keeps a reference to the fit. A copy shares all but what it is conditioned on.
+  explicit ScoreTest(const FitState& fit);
 
   /// Tests several candidates at once (their coefficients at 0). Throws
   /// std::invalid_argument like effect_columns.
   [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,
                                         Resolution resolution = Resolution::exact) const;
 
-  /// The chi^2 that adding all of these together would take away, without priors.
+  /// The chi^2 that adding all of these jointly would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 
   /// Whitened columns of an effect, M.
@@ -83,9 +83,9 @@ class ScoreTest {
   void condition_on(const Eigen::MatrixXd& columns);
 
   [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
-  /// Of the fit, less what the columns taken out explain.
+  /// Of the fit, less what the columns that it is conditioned on explain.
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
-  /// Orthonormal columns that the model's effects, and what was taken out, span.
+  /// Orthonormal columns that the model's effects, and what it is conditioned on, span.
   [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
@@ -100,7 +100,7 @@ class ScoreTest {
   /// Rows of the landmarks, zero where held, among those of all nodes.
   [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
 
-  const ModelFit& fit_;
+  const FitState& fit_;
   std::shared_ptr<const NoiseFree> clean_;
   std::shared_ptr<RecordingSystem> system_;
   std::shared_ptr<RecordingSystem> clean_system_;

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/single_events.hpp"
 
-#include "validation/held_out.hpp"
+#include "validation/leg_spans.hpp"
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -14,14 +13,13 @@
 namespace trussmap {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostSteps = 16;  // tried for one landmark in one session
 constexpr std::size_t kBumps = 5;       // places tried in a drive; on the spot only the 3 numbers
 constexpr double kLeastPath = 0.1;      // m
 
 class Collector {
  public:
-  Collector(const ModelFit& fit, const ScoreTest& tests, const FitProjection& projection)
+  Collector(const FitState& fit, const ScoreTest& tests, const FitProjection& projection)
       : fit_(fit), problem_(fit.problem), tests_(tests), projection_(projection) {}
 
   std::vector<SingleEvent> run() {
@@ -59,38 +57,24 @@ class Collector {
       const std::string between =
           sighted ? problem_.landmarks[idx(from.to)] + " -> " + problem_.landmarks[idx(to.to)]
                   : "drive";
-      SingleEvent event{"leg",
+      SingleEvent event{EventKind::leg,
                         fmt::format("{} {} t = {:.1f} s{}", between, sighted ? "at" : "to",
                                     leg.time.to, of_session(leg.session)),
-                        {},
                         {}};
-      std::vector<std::string> bumped;  // the wheel, per place
       for (int node = from.from; node != to.from;) {
         const auto found = segment_from.find(node);
         if (found == segment_from.end()) break;
         const Measurement& segment = at(found->second);
         node = segment.to;
         if (projection_.left_out(found->second)) continue;
-        add_bumps(found->second, event.places, bumped);
+        add_bumps(found->second, event.places);
       }
-      event.words = [name = event.name, bumped](std::size_t place, const Eigen::VectorXd& size) {
-        if (size.size() > 1) {
-          return fmt::format(
-              "something moved the robot by {:.1f} cm ahead, {:.1f} cm to the left and {:.1f} deg "
-              "that its wheels do not say, in the leg {}",
-              100.0 * size[0], 100.0 * size[1], kDegrees * size[2], name);
-        }
-        return fmt::format("the {} wheel said {:.1f} cm too {} at once, in the leg {}",
-                           bumped[place], 100.0 * std::abs(size[0]),
-                           size[0] < 0.0 ? "much" : "little", name);
-      };
       if (!event.places.empty()) events_.push_back(std::move(event));
     }
   }
 
   /// Motion beyond the record after some of a segment's rows: of one wheel, or any.
-  void add_bumps(std::size_t k, std::vector<Dummies>& places,
-                 std::vector<std::string>& bumped) const {
+  void add_bumps(std::size_t k, std::vector<Dummies>& places) const {
     const Measurement& segment = at(k);
     const std::vector<SegmentRow>& rows = problem_.segments[segment.source];
     std::vector<Pose> ends;
@@ -119,31 +103,30 @@ class Collector {
     const int group = 2 * static_cast<int>(places.size());
     for (std::size_t part = 0; drives && part < kBumps; ++part) {
       const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));
-      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, -by_turn))}, {}, group});
-      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, by_turn))}, {}, group});
-      bumped.insert(bumped.end(), {"left", "right"});
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, -by_turn))},
+                        {},
+                        group,
+                        EventChange::left_wheel});
+      places.push_back({{changed(k, change * Eigen::Vector3d(0.5, 0.0, by_turn))},
+                        {},
+                        group,
+                        EventChange::right_wheel});
     }
-    places.push_back({{changed(k, by_motion(rows.size() / 2))}, {}, group + 1});
-    bumped.emplace_back("");
+    places.push_back(
+        {{changed(k, by_motion(rows.size() / 2))}, {}, group + 1, EventChange::motion});
   }
 
   void add_sightings() {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
       if (projection_.left_out(k) || one.to < 0 || !problem_.is_landmark(one.to)) continue;
-      SingleEvent event{"sighting",
-                        describe(problem_, one),
-                        {{{changed(k, Eigen::MatrixXd::Identity(one.rows, one.rows))}}},
-                        {}};
-      event.words = [kind = one.kind, name = event.name](std::size_t, const Eigen::VectorXd& size) {
-        if (kind != MeasurementKind::view) {
-          return fmt::format("{} is off by {:.1f} cm", name, 100.0 * size.norm());
-        }
-        std::string words = fmt::format("{} is off by {:.1f} cm", name, 100.0 * size[0]);
-        if (size.size() > 1) words += fmt::format(" and {:.1f} deg", kDegrees * size[1]);
-        return words;
-      };
-      events_.push_back(std::move(event));
+      const EventChange change = one.kind != MeasurementKind::view ? EventChange::position_off
+                                 : one.rows > 1                    ? EventChange::view_off
+                                                                   : EventChange::range_off;
+      events_.push_back(
+          {EventKind::sighting,
+           describe(problem_, one),
+           {{{changed(k, Eigen::MatrixXd::Identity(one.rows, one.rows))}, {}, 0, change}}});
     }
   }
 
@@ -151,15 +134,10 @@ class Collector {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
       if (one.kind != MeasurementKind::survey || projection_.left_out(k)) continue;
-      const std::string& name = problem_.landmarks[idx(one.from)];
-      SingleEvent event{"landmark", name, {{{changed(k, Eigen::MatrixXd::Identity(2, 2))}}}, {}};
-      event.words = [name](std::size_t, const Eigen::VectorXd& size) {
-        return fmt::format(
-            "landmark {} is not where the survey has it, but {:.1f} cm along x and {:.1f} cm along "
-            "y from there",
-            name, 100.0 * size[0], 100.0 * size[1]);
-      };
-      events_.push_back(std::move(event));
+      events_.push_back(
+          {EventKind::landmark,
+           problem_.landmarks[idx(one.from)],
+           {{{changed(k, Eigen::MatrixXd::Identity(2, 2))}, {}, 0, EventChange::survey_off}}});
     }
   }
 
@@ -172,6 +150,7 @@ class Collector {
   /// The landmark's place from this visit on, and back where `until` begins.
   [[nodiscard]] Dummies step(const std::vector<Visit>& visits, std::size_t from) const {
     Dummies result;
+    result.change = EventChange::moved;
     for (std::size_t v = from; v < visits.size(); ++v) {
       for (const std::size_t k : visits[v].sightings) {
         result.parts.push_back({k, projection_.rows_of(k).to.topLeftCorner(at(k).rows, 2)});
@@ -201,9 +180,10 @@ class Collector {
   void add_steps(const std::string& name, const std::vector<Visit>& visits, bool surveyed) {
     for (std::size_t v = 1; v < visits.size(); ++v) {
       if (visits[v].session == visits[v - 1].session) continue;
-      const std::string before = problem_.sessions[idx(visits[v - 1].session)];
-      const std::string after = problem_.sessions[idx(visits[v].session)];
-      add_step(name, fmt::format("between {} and {}", before, after), {step(visits, v)}, {});
+      Dummies moved = step(visits, v);
+      moved.when.session = problem_.sessions[idx(visits[v - 1].session)];
+      moved.when.next_session = problem_.sessions[idx(visits[v].session)];
+      events_.push_back({EventKind::landmark, name, {std::move(moved)}});
     }
     for (std::size_t begin = 0; begin < visits.size();) {
       std::size_t end = begin;
@@ -214,31 +194,19 @@ class Collector {
         if (v >= (surveyed ? 1U : 2U) && visits.size() - v >= 2) steps.push_back(v);
       }
       std::vector<Dummies> places;
-      std::vector<double> times;
       const std::size_t count = std::min(steps.size(), kMostSteps);
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t v = steps[(2 * k + 1) * steps.size() / (2 * count)];
         places.push_back(step(visits, v));
-        times.push_back(problem_.poses[idx(visits[v].pose - problem_.landmark_count())].t);
+        MovedWhen& when = places.back().when;
+        when.before_t = problem_.poses[idx(visits[v].pose - problem_.landmark_count())].t;
+        if (problem_.sessions.size() > 1) {
+          when.session = problem_.sessions[idx(visits[begin].session)];
+        }
       }
-      if (count > 0) {
-        add_step(name, of_session(visits[begin].session), std::move(places), std::move(times));
-      }
+      if (count > 0) events_.push_back({EventKind::landmark, name, std::move(places)});
       begin = end;
     }
-  }
-
-  void add_step(const std::string& name, const std::string& when, std::vector<Dummies> places,
-                std::vector<double> times) {
-    SingleEvent event{"landmark", name, std::move(places), {}};
-    event.words = [name, when, times = std::move(times)](std::size_t place,
-                                                         const Eigen::VectorXd& size) {
-      const std::string at =
-          times.empty() ? when : fmt::format("before t = {:.1f} s{}", times[place], when);
-      return fmt::format("landmark {} was moved by {:.1f} cm along x and {:.1f} cm along y {}",
-                         name, 100.0 * size[0], 100.0 * size[1], at);
-    };
-    events_.push_back(std::move(event));
   }
 
   void add_sessions() {
@@ -258,31 +226,17 @@ class Collector {
         M.col(column) = tests_.columns(effect);
         prior_sd[column] = facts_of(channels[c]).prior_sd;
       }
-      Dummies dummies{{}, prior_sd};
+      Dummies dummies{{}, prior_sd, 0, EventChange::session_off};
       for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
         if (at(k).session != session || projection_.left_out(k)) continue;
         dummies.parts.push_back({k, M.middleRows(tests_.system().first_row(k), at(k).rows)});
       }
-      SingleEvent event{"session", problem_.sessions[idx(session)], {std::move(dummies)}, {}};
-      event.words = [name = event.name, channels](std::size_t, const Eigen::VectorXd& size) {
-        std::string words = "session " + name + " is not like the others: there";
-        for (std::size_t c = 0; c < channels.size(); ++c) {
-          const double value = size[static_cast<Eigen::Index>(c)];
-          if (c > 0) words += ",";
-          words += channels[c] == Channel::travel
-                       ? fmt::format(" travel is {:+.2g} %", 100.0 * value)
-                   : channels[c] == Channel::turn ? fmt::format(" turns {:+.2g} %", 100.0 * value)
-                   : channels[c] == Channel::compass
-                       ? fmt::format(" the compass {:+.2g} deg", kDegrees * value)
-                       : fmt::format(" sightings {:+.2g} ms late", 1e3 * value);
-        }
-        return words;
-      };
-      events_.push_back(std::move(event));
+      events_.push_back(
+          {EventKind::session, problem_.sessions[idx(session)], {std::move(dummies)}});
     }
   }
 
-  const ModelFit& fit_;
+  const FitState& fit_;
   const RecordingProblem& problem_;
   const ScoreTest& tests_;
   const FitProjection& projection_;
@@ -291,7 +245,7 @@ class Collector {
 
 }  // namespace
 
-std::vector<SingleEvent> single_events(const ModelFit& fit, const ScoreTest& tests,
+std::vector<SingleEvent> single_events(const FitState& fit, const ScoreTest& tests,
                                        const FitProjection& projection) {
   return Collector(fit, tests, projection).run();
 }

@@ -6,8 +6,8 @@
 
 #include "criticism/score_test.hpp"
 #include "fit/fit_projection.hpp"
+#include "trussmap/diagnose.hpp"
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,17 +23,18 @@ struct Dummies {
   std::vector<DummyRows> parts;
   Eigen::VectorXd prior_sd = {};  ///< sd of a prior on each coefficient; empty: none
   int group = 0;                  ///< of an event's places that may be much the same
+  EventChange change = EventChange::motion;
+  MovedWhen when = {};
 };
 
 struct SingleEvent {
-  std::string kind;
+  EventKind kind = EventKind::leg;
   std::string name;
   std::vector<Dummies> places;
-  std::function<std::string(std::size_t place, const Eigen::VectorXd& size)> words;
 };
 
 /// All that there could be, but for measurements that the fit leaves out.
-[[nodiscard]] std::vector<SingleEvent> single_events(const ModelFit& fit, const ScoreTest& tests,
+[[nodiscard]] std::vector<SingleEvent> single_events(const FitState& fit, const ScoreTest& tests,
                                                      const FitProjection& projection);
 
 }  // namespace trussmap

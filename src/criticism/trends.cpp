@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "criticism/comparison.hpp"
+#include "criticism/trends.hpp"
+
 #include "effects/place_patterns.hpp"
+#include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace trussmap {
 namespace {
@@ -16,7 +17,7 @@ struct Variable {
   std::vector<Shape> shapes;
 };
 
-bool varies(const ModelFit& fit, const std::string& covariate) {
+bool varies(const FitState& fit, const std::string& covariate) {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
   for (const Recording& recording : fit.recordings) {
@@ -32,7 +33,7 @@ bool varies(const ModelFit& fit, const std::string& covariate) {
 }
 
 /// Bells on a grid over the map.
-Variable place_variable(const ModelFit& fit) {
+Variable place_variable(const FitState& fit) {
   constexpr int kAcross = 4;
   Vector2 low(1e300, 1e300);
   Vector2 high = -low;
@@ -58,7 +59,7 @@ Variable place_variable(const ModelFit& fit) {
   return place;
 }
 
-std::vector<Variable> variables_of(const ModelFit& fit) {
+std::vector<Variable> variables_of(const FitState& fit) {
   std::vector<Variable> variables{{"all", {"1"}},
                                   {"heading", {"sin(heading)", "cos(heading)"}},
                                   {"turn sense", {"sign(turn_rate)"}},
@@ -83,7 +84,7 @@ struct Kind {
   Channel channel = Channel::travel;
 };
 
-std::vector<Kind> kinds_of(const ModelFit& fit) {
+std::vector<Kind> kinds_of(const FitState& fit) {
   std::vector<Kind> kinds{{"stretch", Channel::travel},
                           {"orientation", Channel::creep},
                           {"turn", Channel::turn},
@@ -122,22 +123,7 @@ double rms_of(const std::vector<double>& coefficients,
 
 }  // namespace
 
-std::vector<double> holm(const std::vector<double>& p_values) {
-  std::vector<std::size_t> order(p_values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
-  std::vector<double> adjusted(p_values.size(), 1.0);
-  double most = 0.0;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const double left = static_cast<double>(order.size() - rank);
-    most = std::max(most, std::min(1.0, left * p_values[order[rank]]));
-    adjusted[order[rank]] = most;
-  }
-  return adjusted;
-}
-
-std::vector<Trend> find_trends(const ModelFit& fit, const ScoreTest& tests) {
+std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
   std::vector<Trend> trends;
   std::vector<Effect> effects;
   for (const Kind& kind : kinds_of(fit)) {

@@ -3,6 +3,8 @@
 #include "estimation/data_snooping.hpp"
 
 #include "estimation/recording_system.hpp"
+#include "statistics/distributions.hpp"
+#include "statistics/multiple_tests.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -84,17 +86,19 @@ std::vector<CheckedMeasurement> snoop(const RecordingProblem& problem,
   return result;
 }
 
-std::vector<CheckedMeasurement> outliers(const std::vector<CheckedMeasurement>& checked,
-                                         double level) {
-  const double count = static_cast<double>(checked.size());
-  std::vector<CheckedMeasurement> result;
+std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked, double level,
+                                  double dispersion) {
+  const auto count = static_cast<double>(checked.size());
+  std::vector<OutlierTest> result;
   for (const CheckedMeasurement& one : checked) {
-    if (one.p_value * count < level) result.push_back(one);
+    const double statistic = one.statistic / dispersion;
+    const double p = bonferroni(chi2_p_value(statistic, one.checked), count);
+    if (p < level) result.push_back({one.measurement, one.checked, statistic, p});
   }
-  std::stable_sort(
-      result.begin(), result.end(), [](const CheckedMeasurement& a, const CheckedMeasurement& b) {
-        return a.p_value < b.p_value || (a.p_value == b.p_value && a.statistic > b.statistic);
-      });
+  std::stable_sort(result.begin(), result.end(), [](const OutlierTest& a, const OutlierTest& b) {
+    return a.p_adjusted < b.p_adjusted ||
+           (a.p_adjusted == b.p_adjusted && a.statistic > b.statistic);
+  });
   return result;
 }
 

@@ -39,8 +39,17 @@ struct CheckedMeasurement {
                                                     const EffectParameters& border,
                                                     const RecordingAdjustment& adjustment);
 
-/// Those whose p-value times their number (Bonferroni) is below `level`, most significant first.
-[[nodiscard]] std::vector<CheckedMeasurement> outliers(
-    const std::vector<CheckedMeasurement>& checked, double level = 0.05);
+/// A measurement that the others contradict.
+struct OutlierTest {
+  int measurement = -1;
+  int checked = 0;          ///< values that the others check
+  double statistic = 0.0;   ///< over the dispersion
+  double p_adjusted = 1.0;  ///< Bonferroni, over all measurements
+};
+
+/// Those whose adjusted p-value is below `level`, most significant first. `dispersion`: chi^2/dof
+/// of what is no outlier.
+[[nodiscard]] std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked,
+                                                double level = 0.05, double dispersion = 1.0);
 
 }  // namespace trussmap

@@ -4,6 +4,7 @@
 
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <map>
@@ -12,7 +13,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <boost/math/distributions/fisher_f.hpp>
 
 namespace trussmap {
 namespace {
@@ -82,8 +82,7 @@ PureErrorSplit split_pure_error(const LandmarkGraph& map, const std::vector<Repe
   if (result.pure_error_dof > 0 && result.lack_of_fit_dof > 0 && result.pure_error > 0.0) {
     result.F =
         (result.lack_of_fit / result.lack_of_fit_dof) / (result.pure_error / result.pure_error_dof);
-    const boost::math::fisher_f distribution(result.lack_of_fit_dof, result.pure_error_dof);
-    result.p_value = boost::math::cdf(boost::math::complement(distribution, result.F));
+    result.p_value = fisher_p_value(result.F, result.lack_of_fit_dof, result.pure_error_dof);
   }
   return result;
 }

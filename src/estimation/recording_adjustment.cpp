@@ -5,12 +5,12 @@
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
 #include "estimation/recording_start.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -91,11 +91,6 @@ void add_warnings(RecordingAdjustment& result) {
 }
 
 }  // namespace
-
-double chi2_p_value(double chi2, int dof) {
-  if (dof <= 0) return 1.0;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(dof), chi2));
-}
 
 RecordingAdjustment adjust(const RecordingProblem& problem, const EffectParameters& border,
                            const RecordingAdjustmentOptions& options) {

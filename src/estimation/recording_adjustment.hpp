@@ -80,7 +80,4 @@ class UndeterminedError : public SolveError {
                                                const RecordingAdjustment& adjustment,
                                                const std::vector<int>& nodes);
 
-/// Upper tail of the chi^2 distribution; 1 for no degrees of freedom.
-[[nodiscard]] double chi2_p_value(double chi2, int dof);
-
 }  // namespace trussmap

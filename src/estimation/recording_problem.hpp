@@ -37,6 +37,12 @@ namespace trussmap {
 
 enum class MeasurementKind { segment, standing, view, cartesian_view, survey, truth };
 
+/// Of a landmark: standing on it, or seeing it.
+[[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
+  return kind == MeasurementKind::standing || kind == MeasurementKind::view ||
+         kind == MeasurementKind::cartesian_view;
+}
+
 struct Measurement {
   MeasurementKind kind = MeasurementKind::segment;
   int from = -1;                    ///< node

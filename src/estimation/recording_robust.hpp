@@ -19,11 +19,6 @@
 
 namespace trussmap {
 
-[[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
-  return kind == MeasurementKind::standing || kind == MeasurementKind::view ||
-         kind == MeasurementKind::cartesian_view;
-}
-
 /// Weights of Geman and McClure for sightings, (gate/(r^2 + gate))^2, and 1 for all else.
 [[nodiscard]] std::vector<double> soft_weights(const RecordingProblem& problem,
                                                const std::vector<double>& squared_errors,

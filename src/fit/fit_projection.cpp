@@ -14,7 +14,7 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   return factor.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factor.rank());
 }
 
-FitProjection::FitProjection(const ModelFit& fit, const RecordingProblem& problem,
+FitProjection::FitProjection(const FitState& fit, const RecordingProblem& problem,
                              const RecordingSystem& system, const Eigen::MatrixXd& nuisance)
     : problem_(problem),
       system_(system),

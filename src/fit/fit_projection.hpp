@@ -5,14 +5,14 @@
 //
 //   P = 1 - J A^-1 J' - Q Q'     J   whitened rows by landmarks and poses, A = J'J
 //                                Q   orthonormal columns of the coefficients fitted, less their
-//                                    projection on J, and of what else is set aside
+//                                    projection on J, and of nuisance columns
 //
 // A measurement's own block P_kk costs no solve: its nodes are neighbours in A, whose inverse is
 // known there (truss/selected_inverse.hpp).
 #pragma once
 
 #include "estimation/recording_system.hpp"
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 #include "linalg/selected_inverse.hpp"
 
 #include <vector>
@@ -28,8 +28,8 @@ struct NodeRows {
 class FitProjection {
  public:
   /// `problem` has the fit's measurements, perhaps with other weights; `system` is factorised.
-  /// `aside`: columns that are already free of J. Keeps references to problem and system.
-  FitProjection(const ModelFit& fit, const RecordingProblem& problem, const RecordingSystem& system,
+  /// `nuisance`: columns that are already free of J. Keeps references to problem and system.
+  FitProjection(const FitState& fit, const RecordingProblem& problem, const RecordingSystem& system,
                 const Eigen::MatrixXd& nuisance);
 
   /// P times the columns.

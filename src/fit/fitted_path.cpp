@@ -50,9 +50,9 @@ class Reckoner {
 /// Travel and turn that each row lacks, as white noise of the wheels would have it that adds up to
 /// what the whole lacks: Q A' (sum A Q A')^-1 e, with A the row's influence and Q its share of
 /// noise.
-std::vector<Vector2> believed_noise(const std::vector<SegmentRow>& rows, const Drive& drive,
-                                    const Robot& robot, const std::vector<Matrix4>& influences,
-                                    const Eigen::Vector3d& lacking) {
+std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const Drive& drive,
+                                     const Robot& robot, const std::vector<Matrix4>& influences,
+                                     const Eigen::Vector3d& lacking) {
   constexpr double kLeastShare = 1e-6;  // m: rows at rest may err too
   using Influence = Eigen::Matrix<double, 3, 2>;
   std::vector<Influence> spread(rows.size());
@@ -93,7 +93,7 @@ void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckon
     const Eigen::Vector3d lacking(wanted.x - reached.x, wanted.y - reached.y,
                                   wrap_angle(wanted.heading - reached.heading));
     const std::vector<Vector2> noise =
-        believed_noise(rows, drive, robot, reckoner.influences(rows), lacking);
+        estimated_noise(rows, drive, robot, reckoner.influences(rows), lacking);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Vector2 own = rows[k].part * noise[k];
       rows[k].path += own[0];

@@ -18,7 +18,7 @@ namespace trussmap {
 struct SessionPath {
   Pose start;              ///< at the drive's start; map frame, heading not wrapped
   std::vector<Pose> ends;  ///< at the end of each row
-  /// What each row's record lacks of forward travel (m) and turn (rad), as the fit believes: its
+  /// What each row's record lacks of forward travel (m) and turn (rad), as estimated: its
   /// noise. Empty: nothing.
   std::vector<Vector2> missing = {};
 };

@@ -3,7 +3,7 @@
 #include "plot/fit_charts.hpp"
 
 #include "plot/layers.hpp"
-#include "wording/effect_words.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,8 @@ ShownUnit variable_unit(const std::string& variable) {
 }
 
 std::string variable_title(const std::string& variable) {
-  const std::string name = variable_in_words(variable);
+  const std::string name =
+      variable == kPlace ? "distance from its place" : variable_in_words(variable);
   const std::string unit = variable_unit(variable).name;
   return unit.empty() ? name : name + " [" + unit + "]";
 }
@@ -71,68 +72,6 @@ ChartLayer curve_layer(const NamedCurve& curve, const std::string& axis, double 
 }
 
 }  // namespace
-
-ShownUnit shown_unit(const std::string& unit) {
-  if (unit.empty()) return {100.0, "%"};
-  if (unit == "rad") return {kDegrees, "\u00b0"};
-  if (unit == "rad/s") return {kDegrees, "\u00b0/s"};
-  if (unit == "m") return {1000.0, "mm"};
-  if (unit == "s") return {1000.0, "ms"};
-  return {1.0, unit};
-}
-
-std::string shown(double value, const std::string& unit) {
-  const ShownUnit as = shown_unit(unit);
-  return two_digits(as.factor * value) + (as.name.starts_with("\u00b0") ? "" : " ") + as.name;
-}
-
-std::string variable_in_words(const std::string& variable) {
-  return variable == "turn_rate"  ? "turn rate"
-         : variable == "t"        ? "time"
-         : variable == "distance" ? "distance driven"
-         : variable == kPlace     ? "distance from its place"
-                                  : variable;
-}
-
-std::string channel_in_words(Channel channel) {
-  switch (channel) {
-    case Channel::travel:
-      return "travel, measured too short by";
-    case Channel::wheels:
-      return "both wheels, measured too short by";
-    case Channel::left:
-      return "left wheel, measured too short by";
-    case Channel::right:
-      return "right wheel, measured too short by";
-    case Channel::creep:
-      return "slip to the left, of the travel";
-    case Channel::turn:
-      return "turning, measured too little by";
-    case Channel::difference:
-      return "right wheel against left";
-    case Channel::drift:
-      return "turning, missing per second";
-    case Channel::compass:
-      return "compass reads too much by";
-    case Channel::range:
-      return "ranges too long by";
-    case Channel::range_scale:
-      return "ranges too long by";
-    case Channel::bearing:
-      return "bearings too large by";
-    case Channel::lever:
-      return "sensor ahead by";
-    case Channel::lever_left:
-      return "sensor to the left by";
-    case Channel::advance:
-      return "travel, missing per event";
-    case Channel::rotate:
-      return "turning, missing per event";
-    case Channel::delay:
-      return "sightings stamped late by";
-  }
-  return "";
-}
 
 Chart response_chart(const std::string& id, const std::string& title, const std::string& caption,
                      const Response& response, const std::string& curve_name,

@@ -13,30 +13,15 @@
 //   worst_chart     the legs with most chi^2
 #pragma once
 
-#include "criticism/comparison.hpp"
-#include "criticism/response.hpp"
-#include "estimation/source_residuals.hpp"
-#include "fit/fitted_map.hpp"
 #include "plot/chart.hpp"
+#include "trussmap/compare.hpp"
+#include "trussmap/evidence.hpp"
 
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace trussmap {
-
-/// Charts and pages show % for "", degrees for rad, mm for m.
-struct ShownUnit {
-  double factor = 1.0;
-  std::string name;
-};
-[[nodiscard]] ShownUnit shown_unit(const std::string& unit);
-/// A value with the unit it is shown in: "2.1 mm", "0.31 deg", "4 %". Two digits.
-[[nodiscard]] std::string shown(double value, const std::string& unit);
-/// "turn rate" for turn_rate, and so on.
-[[nodiscard]] std::string variable_in_words(const std::string& variable);
-/// What a channel's error is called: "turning", "compass reading" ...
-[[nodiscard]] std::string channel_in_words(Channel channel);
 
 /// The strongest bars are drawn one by one (the others as one faint net). `loudest` is the force
 /// that has the strongest colour.

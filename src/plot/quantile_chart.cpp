@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "plot/fit_charts.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <boost/math/distributions/normal.hpp>
 
 namespace trussmap {
 namespace {
@@ -14,8 +13,7 @@ constexpr std::size_t kMostPoints = 120;  // of a source
 constexpr std::size_t kFewest = 5;        // values that make a line
 
 double normal_quantile(std::size_t k, std::size_t count) {
-  return boost::math::quantile(boost::math::normal(),
-                               (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+  return normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
 }
 
 /// Places in a sorted sample: all, or some evenly spread over the axis of quantiles, both ends

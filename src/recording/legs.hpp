@@ -45,4 +45,8 @@ struct Leg {
 [[nodiscard]] std::vector<Leg> legs_of(const Recording& recording, const std::vector<Stop>& stops,
                                        double min_drive = kDefaultMinDrive);
 
+/// Whether a leg of this number is held out, of which `share` in [0, 1) are: legs are taken in
+/// blocks of five, and the blocks held out are spread evenly.
+[[nodiscard]] bool is_held_out(std::size_t leg, double share);
+
 }  // namespace trussmap

@@ -22,7 +22,6 @@ struct SquareCalibration {
   Estimate right_factor;  ///< likewise
   std::vector<std::string> doubts;
 };
-[[nodiscard]] Page square_page(const SquareCalibration& found, const std::string& subject);
 
 struct NoiseCalibration {
   EndErrors errors;
@@ -31,7 +30,6 @@ struct NoiseCalibration {
   double path = 0.0;  ///< m, its length
   std::vector<std::string> doubts;
 };
-[[nodiscard]] Page noise_page(const NoiseCalibration& found, const std::string& subject);
 
 struct TruthCalibration {
   WheelCalibration wheels;
@@ -39,6 +37,5 @@ struct TruthCalibration {
   ArrivalErrors calibrated;  ///< of the same
   std::string verdict;       ///< one sentence
 };
-[[nodiscard]] Page truth_page(const TruthCalibration& found, const std::string& subject);
 
 }  // namespace trussmap

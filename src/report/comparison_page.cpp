@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/comparison_page.hpp"
 
 #include "plot/fit_charts.hpp"
-#include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
+#include "report/page_words.hpp"
 #include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -18,11 +17,6 @@ namespace {
 
 constexpr std::size_t kWorst = 12;
 constexpr std::size_t kRoutes = 30;
-constexpr double kTelling = 0.05;
-
-std::string against_words(const Trend& trend) {
-  return trend.against == "all" ? "everything alike" : trend.against;
-}
 
 PageTable route_table(const Comparison& result) {
   PageTable table;
@@ -53,98 +47,108 @@ PageTable outlier_table(const Comparison& result) {
   return table;
 }
 
-}  // namespace
-
-std::vector<TrendPicture> trend_pictures(const Comparison& comparison, const ModelFit& fit,
-                                         const ScoreTest& tests) {
-  std::vector<TrendPicture> pictures;
-  std::set<std::string> seen;
-  for (const Trend& trend : comparison.trends) {  // strongest first
-    const std::string variable = natural_variable(trend.effect);
-    if (variable.empty() || seen.contains(variable)) continue;
-    Response response = response_along(variable, trend.effect, fit, tests);
-    if (response.bins.empty()) continue;
-    seen.insert(variable);
-    pictures.push_back({trend, std::move(response)});
-  }
-  return pictures;
+/// The trend to name, where one is clear.
+const Trend* telling_trend(const Comparison& result) {
+  const bool clear = !result.trends.empty() && result.trends.front().p_adjusted < kSignificance;
+  return clear ? &result.trends.front() : nullptr;
 }
 
-std::string comparison_verdict(const Comparison& result) {
-  const std::string held = result.held_out.legs.empty()
-                               ? ""
-                               : fmt::format("{:.0f} mm", 1000.0 * result.held_out.arrival_rms);
-  if (result.consistent) {
+std::string page_verdict(const Comparison& result) {
+  const bool legs = !result.held_out.legs.empty();
+  const std::string held =
+      legs ? fmt::format("{:.0f} mm", 1000.0 * result.held_out.arrival_rms) : "";
+  if (result.consistent()) {
     return "The model explains these measurements" +
-           (held.empty() ? std::string(" to within its noise.")
-                         : ": legs that it has not seen end " + held +
-                               " off, as its noise lets one expect.");
+           (legs ? ": legs that it has not seen end " + held + " off, as its noise lets one expect."
+                 : std::string(" to within its noise."));
   }
-  std::string text = fmt::format(
-      "The model does not explain these measurements: errors are {:.1f} times what its "
-      "noise allows",
-      std::sqrt(result.misfit()));
-  if (!held.empty()) text += ", and legs that it has not seen end " + held + " off";
+  std::string text = "The model does not explain these measurements: " + objection_in_words(result);
+  if (legs) text += ", and legs that it has not seen end " + held + " off";
   text += ".";
-  if (!result.trends.empty() && result.trends.front().p_adjusted < kTelling) {
-    const Trend& first = result.trends.front();
+  if (const Trend* first = telling_trend(result)) {
     text += fmt::format(
-        " Most telling: the {} error{} ({}).", first.kind,
-        first.against == "all" ? ", everywhere alike" : " goes with " + against_words(first),
-        shown(first.size, first.unit));
+        " Most telling: the {} error{} ({}).", first->kind,
+        first->against == "all" ? ", everywhere alike" : " goes with " + trend_variable(*first),
+        shown(first->size, first->unit));
   }
   return text;
 }
 
-Page comparison_page(const FittedModel& model, const std::vector<TrendPicture>& trends,
-                     const std::string& subject) {
-  const Comparison& result = model.comparison;
-  Page page;
-  page.command = "compare";
-  page.subject = subject;
-  page.tone = result.consistent ? Tone::good : Tone::bad;
-  page.verdict = comparison_verdict(result);
-  page.facts = {{fmt::format("{:.2f}", result.misfit()),
-                 "chi\u00b2 per degree of freedom (1 is right)", page.tone},
-                {result.p_value < 1e-12 ? "next to 0" : probability_text(result.p_value),
-                 "chance of errors as large, if the model is right"},
-                {std::to_string(result.legs), "legs"},
-                {std::to_string(result.landmarks), "landmarks"}};
+std::vector<PageFact> facts_on(const Comparison& result, Tone tone) {
+  std::vector<PageFact> facts;
   if (!result.held_out.legs.empty()) {
-    page.facts.insert(page.facts.begin(),
-                      {fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
-                       "held-out legs end so far off (rms)", page.tone});
+    facts.push_back({fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
+                     "held-out legs end so far off (rms)", tone});
   }
-  if (!result.consistent) {
-    page.answers.push_back(
+  facts.push_back({fmt::format("{:.2f}", result.misfit()),
+                   "chi\u00b2 per degree of freedom (1 is right)", tone});
+  facts.push_back({chance_text(result.p_value),
+                   "p-value of chi\u00b2: the chance of errors as large, if the model is right"});
+  facts.push_back({std::to_string(result.legs), "legs"});
+  facts.push_back({std::to_string(result.landmarks), "landmarks"});
+  return facts;
+}
+
+std::vector<PageAnswer> answers_on(const Comparison& result) {
+  std::vector<PageAnswer> answers;
+  if (!result.consistent()) {
+    answers.push_back(
         {kNext,
          "Give trussmap diagnose the same recordings and model. It names the effect behind the "
          "strongest trend, how large it is, what else it could be, and what to drive to tell."});
   }
-  for (const std::string& line : result.advice) {
-    page.answers.push_back({"What do these data lack?", capitalised(typeset(line)) + "."});
+  for (const std::string& line : in_words(result.lacks)) {
+    answers.push_back({"What do these data lack?", capitalised(typeset(line)) + "."});
   }
   for (const std::string& line : result.warnings) {
-    page.answers.push_back({"Warnings", capitalised(typeset(line)) + "."});
+    answers.push_back({"Warnings", capitalised(typeset(line)) + "."});
   }
-  page.sections.push_back({"The map as a truss",
-                           {ChartRow{truss_chart("map", "Map with the forces in its bars",
-                                                 model.map, result.routes, loudest_force(result)),
-                                     worst_chart("worst-legs", result.worst, kWorst)}}});
-  page.sections.push_back(trend_section("What the errors go with", result, trends));
-  page.sections.push_back({"Is the noise right?", {}});
+  return answers;
+}
+
+PageSection map_section(const ModelEvidence& model) {
+  const Comparison& result = model.comparison;
+  return {"The map as a truss",
+          {ChartRow{truss_chart("map", "Map with the forces in its bars", model.map, result.routes,
+                                loudest_force(result)),
+                    worst_chart("worst-legs", result.worst, kWorst)}}};
+}
+
+PageSection noise_section(const ModelEvidence& model) {
+  const Comparison& result = model.comparison;
+  PageSection section{"Is the noise right?", {}};
   ChartRow noise{source_chart("noise", {{"", result.sources}})};
   if (!result.held_out.legs.empty()) {
     noise.push_back(held_out_chart("held-out", {{"", result.held_out}}));
   }
-  page.sections.back().blocks.emplace_back(std::move(noise));
-  add_quantiles(page.sections.back(), {{"", model}});
-  page.sections.push_back(
-      {"Legs and routes",
-       {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
-                 legs_chart("orientation", result.worst, LegError::orientation)}}});
-  if (!result.routes.empty()) page.sections.back().blocks.emplace_back(route_table(result));
-  if (!result.outliers.empty()) page.sections.back().blocks.emplace_back(outlier_table(result));
+  section.blocks.emplace_back(std::move(noise));
+  add_quantiles(section, {{"", model}});
+  return section;
+}
+
+PageSection routes_section(const Comparison& result) {
+  PageSection section{"Legs and routes",
+                      {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
+                                legs_chart("orientation", result.worst, LegError::orientation)}}};
+  if (!result.routes.empty()) section.blocks.emplace_back(route_table(result));
+  if (!result.outliers.empty()) section.blocks.emplace_back(outlier_table(result));
+  return section;
+}
+
+}  // namespace
+
+Page comparison_page(const ComparisonEvidence& evidence, const std::string& subject) {
+  const Comparison& result = evidence.model.comparison;
+  PageContent page;
+  page.command = "compare";
+  page.subject = subject;
+  page.tone = result.consistent() ? Tone::good : Tone::bad;
+  page.verdict = page_verdict(result);
+  page.facts = facts_on(result, page.tone);
+  page.answers = answers_on(result);
+  page.sections = {map_section(evidence.model),
+                   trend_section("What the errors go with", result, evidence.trends),
+                   noise_section(evidence.model), routes_section(result)};
   move_tables_last(page);
   return page;
 }

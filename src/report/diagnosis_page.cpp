@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/diagnosis_page.hpp"
-
 #include "plot/fit_charts.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
+#include "report/page_words.hpp"
 #include "trussmap/table.hpp"
-#include "wording/effect_words.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,20 +18,20 @@ namespace {
 constexpr const char* kGiven = "as given";
 constexpr std::size_t kChangesDrawn = 6;
 
-std::string with_name(const DiagnosisPictures& pictures) {
-  return pictures.effects.size() == 1
-             ? "with " + short_name(pictures.effects.front().estimate.effect)
+std::string with_name(const DiagnosisEvidence& evidence) {
+  return evidence.effects.size() == 1
+             ? "with " + short_name(evidence.effects.front().estimate.effect)
              : "with what is missing";
 }
 
-std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
-  const auto& effects = pictures.effects;
+std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  const auto& effects = evidence.effects;
   const bool matters = diagnosis.findings.front().status == Status::missing;
   std::string text = matters ? "Missing: " : "Missing, but too small to matter: ";
   text += named_with_sizes(effects);
   const std::string it = effects.size() == 1 ? "it" : "them";
-  if (pictures.with) {
-    return text + ". " + gain_sentence(pictures.given.comparison, pictures.with->comparison, it);
+  if (evidence.with) {
+    return text + ". " + gain_sentence(evidence.given.comparison, evidence.with->comparison, it);
   }
   if (diagnosis.held_out.legs.empty()) return text + ".";
   const double off = diagnosis.held_out.arrival_rms;
@@ -42,12 +41,12 @@ std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisPictures&
                             distance_text(with, off));
 }
 
-std::string verdict_of(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
+std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   const std::string off =
       diagnosis.held_out.legs.empty() ? "" : distance_text(diagnosis.held_out.arrival_rms);
   switch (diagnosis.verdict) {
     case Diagnosis::Verdict::missing:
-      return missing_verdict(diagnosis, pictures);
+      return missing_verdict(diagnosis, evidence);
     case Diagnosis::Verdict::nothing_missing:
       return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
                          diagnosis.tried) +
@@ -56,38 +55,35 @@ std::string verdict_of(const Diagnosis& diagnosis, const DiagnosisPictures& pict
     case Diagnosis::Verdict::unexplained_misfit:
       break;
   }
-  std::string text = fmt::format(
-      "Something is wrong that no effect explains: errors are {:.1f} times what the model's noise "
-      "allows.",
-      std::sqrt(diagnosis.chi2 / std::max(1, diagnosis.dof)));
+  const std::string text = "Something is wrong that no effect explains: " +
+                           objection_in_words(evidence.given.comparison) + ".";
   const std::vector<std::string> others = others_notes(diagnosis);
   return others.empty() ? text : text + " " + others.front();
 }
 
-std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
+std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   std::vector<PageFact> facts;
-  for (const FittedEffect& one : pictures.effects) {
+  for (const EffectEvidence& one : evidence.effects) {
     const SizeText size = size_text_of(one);
     facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
                                     (size.error.empty() ? "" : "; standard error " + size.error)});
   }
-  if (!pictures.effects.empty()) {
-    facts.push_back(
-        {chance_text(diagnosis.p_value),
-         fmt::format("chance of as much by luck ({} tests allowed for)", diagnosis.tried)});
+  if (!evidence.effects.empty()) {
+    facts.push_back({chance_text(diagnosis.p_value),
+                     fmt::format("p-value, adjusted for {} tests", diagnosis.tried)});
   }
   if (!diagnosis.held_out.legs.empty()) {
-    const Tone tone = pictures.effects.empty() ? Tone::neutral : Tone::bad;
+    const Tone tone = evidence.effects.empty() ? Tone::neutral : Tone::bad;
     const double off = diagnosis.held_out.arrival_rms;
-    const double less = pictures.with ? pictures.with->comparison.held_out.arrival_rms : off;
+    const double less = evidence.with ? evidence.with->comparison.held_out.arrival_rms : off;
     facts.push_back({distance_text(off, less), kLegsEnd, tone});
-    if (pictures.with) {
-      const Comparison& with = pictures.with->comparison;
+    if (evidence.with) {
+      const Comparison& with = evidence.with->comparison;
       facts.push_back({distance_text(less, off), "the same with what is missing",
-                       is_explained(with) ? Tone::good : Tone::neutral});
+                       with.consistent() ? Tone::good : Tone::neutral});
     }
   }
-  if (pictures.effects.empty()) {
+  if (evidence.effects.empty()) {
     facts.push_back({fmt::format("{:.2f}", diagnosis.chi2 / std::max(1, diagnosis.dof)),
                      "chi\u00b2 per degree of freedom (1 is right)"});
     facts.push_back({std::to_string(diagnosis.tried), "changes to the model tried"});
@@ -111,33 +107,33 @@ std::string noise_advice(const Comparison& comparison) {
       listed(noisy));
 }
 
-std::vector<PageAnswer> answers_on(const Diagnosis& diagnosis, const DiagnosisPictures& pictures) {
+std::vector<PageAnswer> answers_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   std::vector<PageAnswer> answers;
   if (diagnosis.verdict == Diagnosis::Verdict::missing) {
-    for (const FittedEffect& one : pictures.effects) {
+    for (const EffectEvidence& one : evidence.effects) {
       answers.push_back({kHowLarge, sized_in_words(one)});
     }
     answers.push_back({kHowSure, sure_text(diagnosis.p_value, diagnosis.tried)});
     const Finding& first = diagnosis.findings.front();
-    answers.push_back({kWhatElse, rivals_note(first.candidate.effect, first.look_alikes)});
-    if (!diagnosis.next_drive.empty()) {
-      answers.push_back({kNext, "To tell them apart, " + diagnosis.next_drive + "."});
+    answers.push_back({kWhatElse, rivals_note(first.effect, first.look_alikes)});
+    if (diagnosis.next_drive) {
+      answers.push_back({kNext, "To tell them apart, " + in_words(diagnosis.next_drive) + "."});
     }
     answers.push_back(
         {kNext,
          "Put it into the model (trussmap add) and estimate it (trussmap fit), or have trussmap "
          "discover do both, and look for more."});
-    for (const FittedEffect& one : pictures.effects) {
+    for (const EffectEvidence& one : evidence.effects) {
       answers.push_back({kCause, cause_note(one.estimate.effect)});
     }
   } else {
     if (diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit) {
-      answers.push_back({kNext, noise_advice(pictures.given.comparison)});
+      answers.push_back({kNext, noise_advice(evidence.given.comparison)});
     }
-    if (!diagnosis.advice.empty()) {
-      answers.push_back({kNext, advised_drive(diagnosis.advice.front())});
+    if (!diagnosis.lacks.empty()) {
+      answers.push_back({kNext, advised_drive(advice_on(diagnosis.lacks.front()))});
     }
-    answers.push_back({kSeen, seen_from_note(pictures.tables)});
+    answers.push_back({kSeen, seen_from_note({diagnosis, evidence.sizes})});
   }
   const std::vector<std::string> others = others_notes(diagnosis);
   const bool said = diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit;
@@ -153,7 +149,7 @@ Chart changes_chart(const Diagnosis& diagnosis) {
       {kGiven, diagnosis.held_out.arrival_rms, diagnosis.chi2, diagnosis.dof}};
   for (const Finding& one : diagnosis.findings) {
     if (steps.size() > kChangesDrawn) break;
-    steps.push_back({"+ " + name_in_words(one.candidate.effect), one.held_out.arrival_rms,
+    steps.push_back({"+ " + name_in_words(one.effect), one.held_out.arrival_rms,
                      diagnosis.chi2 - one.score, diagnosis.dof - one.dof});
   }
   Chart chart = ladder_chart("changes", steps);
@@ -166,27 +162,29 @@ Chart changes_chart(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& pictures,
+Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence,
                     const std::string& subject) {
-  Page page;
+  const SizedDiagnosis sized{diagnosis, evidence.sizes};
+  PageContent page;
   page.command = "diagnose";
   page.subject = subject;
-  page.verdict = verdict_of(diagnosis, pictures);
+  page.verdict = page_verdict(diagnosis, evidence);
   page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing ? Tone::bad
               : others_notes(diagnosis).empty()                        ? Tone::good
                                                                        : Tone::neutral;
-  page.facts = facts_on(diagnosis, pictures);
-  page.answers = answers_on(diagnosis, pictures);
-  page.sections.push_back({"Part by part", {pictures.tables.parts}});
-  const NamedModel given{kGiven, pictures.given};
-  if (!pictures.effects.empty()) {
-    page.sections.push_back(effect_section("What is missing", pictures.effects));
-    if (!pictures.tables.rivals.rows.empty()) {
-      page.sections.push_back({"What else it could be", {pictures.tables.rivals}});
+  page.facts = facts_on(diagnosis, evidence);
+  page.answers = answers_on(diagnosis, evidence);
+  page.sections.push_back({"Part by part", {parts_table(sized)}});
+  const NamedModel given{kGiven, evidence.given};
+  if (!evidence.effects.empty()) {
+    page.sections.push_back(effect_section("What is missing", evidence.effects));
+    PageTable rivals = rivals_table(sized);
+    if (!rivals.rows.empty()) {
+      page.sections.push_back({"What else it could be", {std::move(rivals)}});
     }
   }
-  if (pictures.with) {
-    const NamedModel with{with_name(pictures), *pictures.with};
+  if (evidence.with) {
+    const NamedModel with{with_name(evidence), *evidence.with};
     PageSection gain = gain_section(given, with);
     if (!diagnosis.held_out.legs.empty())
       gain.blocks.emplace_back(ChartRow{changes_chart(diagnosis)});
@@ -196,9 +194,9 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& picture
     page.sections.push_back(fit_section(given));
   }
   page.sections.push_back(trend_section("What the errors go with, in the model as given",
-                                        pictures.given.comparison, pictures.trends));
-  page.sections.push_back(legs_section("Legs, in the model as given", pictures.given.comparison));
-  page.sections.push_back(tried_section(diagnosis, pictures.tables));
+                                        evidence.given.comparison, evidence.trends));
+  page.sections.push_back(legs_section("Legs, in the model as given", evidence.given.comparison));
+  page.sections.push_back(tried_section(sized));
   move_tables_last(page);
   return page;
 }

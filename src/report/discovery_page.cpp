@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/discovery_page.hpp"
 
 #include "plot/fit_charts.hpp"
-#include "recording/slow_covariates.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
-#include "trussmap/table.hpp"
-#include "wording/effect_words.hpp"
+#include "report/page_words.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +17,13 @@ namespace {
 
 constexpr const char* kModelGiven = "as given";
 constexpr const char* kModelFound = "as found";
+
+/// "as given", "+ hard iron".
+std::string step_name(const DiscoveryStep& step) {
+  std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
+  for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
+  return name;
+}
 
 std::vector<LadderStep> ladder_of(const Discovery& discovery) {
   std::vector<LadderStep> steps;
@@ -72,18 +77,15 @@ PageTable step_table(const Discovery& discovery) {
   return table;
 }
 
-std::string found_verdict(const Discovery& discovery, const DiscoveryPictures& pictures) {
-  const auto& effects = pictures.effects;
-  const Comparison& now = pictures.found.comparison;
+std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& evidence) {
+  const auto& effects = evidence.effects;
+  const Comparison& now = evidence.found.comparison;
   if (effects.empty()) {
     const std::string off = now.held_out.legs.empty()
                                 ? ""
                                 : " Legs end " + distance_text(now.held_out.arrival_rms) + " off";
     if (!discovery.consistent) {
-      return fmt::format(
-                 "Nothing found, and something is unexplained: errors are {:.1f} times what "
-                 "the model's noise allows.",
-                 std::sqrt(now.misfit())) +
+      return "Nothing found, and something is unexplained: " + objection_in_words(now) + "." +
              (off.empty() ? "" : off + ".");
     }
     return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
@@ -93,71 +95,68 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryPictures& p
   std::string text = "Found: ";
   text += named_with_sizes(effects);
   const std::string gain =
-      gain_sentence(pictures.given.comparison, now, effects.size() == 1 ? "it" : "them");
+      gain_sentence(evidence.given.comparison, now, effects.size() == 1 ? "it" : "them");
   if (!gain.empty()) return text + ". " + gain;
-  return text + (is_explained(now) ? ". The model now explains the measurements."
-                                   : ". Something is still unexplained.");
+  return text + (now.consistent() ? ". The model now explains the measurements."
+                                  : ". Something is still unexplained.");
 }
 
-std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryPictures& pictures) {
+std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryEvidence& evidence) {
   std::vector<PageFact> facts;
-  for (const FittedEffect& one : pictures.effects) {
+  for (const EffectEvidence& one : evidence.effects) {
     const SizeText size = size_text_of(one);
     facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
                                     (size.error.empty() ? "" : "; standard error " + size.error)});
   }
-  const Comparison& given = pictures.given.comparison;
-  const Comparison& found = pictures.found.comparison;
-  const Tone tone = is_explained(found) ? Tone::good : Tone::bad;
+  const Comparison& given = evidence.given.comparison;
+  const Comparison& found = evidence.found.comparison;
+  const Tone tone = found.consistent() ? Tone::good : Tone::bad;
   if (!found.held_out.legs.empty()) {
     const double off = given.held_out.arrival_rms;
     const double now = found.held_out.arrival_rms;
-    if (!pictures.effects.empty()) {
+    if (!evidence.effects.empty()) {
       facts.push_back({distance_text(off, now), kLegsEnded, Tone::bad});
     }
     facts.push_back({distance_text(now, off), kLegsEndNow, tone});
   }
   facts.push_back({fmt::format("{:.2f}", found.misfit()),
                    "chi\u00b2 per degree of freedom now (1 is right)", tone});
-  if (pictures.effects.empty()) {
+  if (evidence.effects.empty()) {
     facts.push_back({std::to_string(discovery.last.tried), "changes to the model tried"});
   }
   return facts;
 }
 
-std::vector<PageAnswer> found_answers(const Discovery& discovery, const DiscoveryPictures& pictures,
-                                      const std::vector<std::vector<LookAlike>>& rivals) {
+std::vector<PageAnswer> found_answers(const Discovery& discovery,
+                                      const DiscoveryEvidence& evidence) {
+  const std::vector<std::vector<LookAlike>>& rivals = evidence.look_alikes;
   std::vector<PageAnswer> answers;
-  for (const FittedEffect& one : pictures.effects) {
+  for (const EffectEvidence& one : evidence.effects) {
     answers.push_back({kHowLarge, sized_in_words(one)});
   }
-  if (!pictures.effects.empty()) answers.push_back({kHowSure, gone_text(discovery)});
-  for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
-    answers.push_back({kWhatElse, rivals_note(pictures.effects[k].estimate.effect, rivals[k])});
+  if (!evidence.effects.empty()) answers.push_back({kHowSure, gone_text(discovery)});
+  for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
+    answers.push_back({kWhatElse, rivals_note(evidence.effects[k].estimate.effect, rivals[k])});
   }
-  const std::vector<std::string> slow = slow_covariates(discovery.fit.recordings);
-  for (std::size_t k = 0; k < pictures.effects.size(); ++k) {
-    const Effect& effect = pictures.effects[k].estimate.effect;
-    for (const LookAlike& rival : rivals[k]) {
-      const std::string drive = separating_drive(effect, rival.effect, slow);
-      if (drive.empty()) continue;
-      answers.push_back(
-          {kNext, fmt::format("To tell {} from its rivals, {}.", short_name(effect), drive)});
-      break;
-    }
+  for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
+    if (!evidence.next_drives[k]) continue;
+    const Effect& effect = evidence.effects[k].estimate.effect;
+    answers.push_back({kNext, fmt::format("To tell {} from its rivals, {}.", short_name(effect),
+                                          in_words(evidence.next_drives[k]))});
   }
-  if (!pictures.effects.empty()) {
+  if (!evidence.effects.empty()) {
     answers.push_back({kNext,
                        "Use the model found (trussmap discover --out FILE writes it) with build, "
                        "compare and the robot's own odometry."});
-  } else if (!discovery.last.advice.empty()) {
-    answers.push_back({kNext, advised_drive(discovery.last.advice.front())});
+  } else if (!discovery.last.lacks.empty()) {
+    answers.push_back({kNext, advised_drive(advice_on(discovery.last.lacks.front()))});
   }
-  for (const FittedEffect& one : pictures.effects) {
+  for (const EffectEvidence& one : evidence.effects) {
     answers.push_back({kCause, cause_note(one.estimate.effect)});
   }
-  if (pictures.effects.empty()) answers.push_back({kSeen, seen_from_note(pictures.tables)});
-  answers.push_back({"Why it stopped", capitalised(discovery.stopped) + "."});
+  if (evidence.effects.empty())
+    answers.push_back({kSeen, seen_from_note({discovery.last, evidence.sizes})});
+  answers.push_back({"Why it stopped", capitalised(stop_in_words(discovery)) + "."});
   for (std::string& note : others_notes(discovery.last)) {
     answers.push_back({kBeside, std::move(note)});
   }
@@ -167,56 +166,38 @@ std::vector<PageAnswer> found_answers(const Discovery& discovery, const Discover
 
 }  // namespace
 
-std::string step_name(const DiscoveryStep& step) {
-  std::string name = step.added ? "+ " + name_in_words(*step.added) : kModelGiven;
-  for (const std::string& dropped : step.dropped) name += ", \u2212 " + dropped;
-  return name;
-}
-
-AddedEffects added_effects(const Discovery& discovery) {
-  AddedEffects added;
-  for (const EffectEstimate& one : discovery.fit.effects) {
-    // A place or threshold may have been sought anew since the step: then the name has it.
-    const auto start = [](const std::string& name) { return name.substr(0, name.find(" (x=")); };
-    for (const DiscoveryStep& step : discovery.steps) {
-      if (!step.added || start(step.added->name) != start(one.effect.name)) continue;
-      added.estimates.push_back(one);
-      added.rivals.push_back(step.look_alikes);
-      break;
-    }
-  }
-  return added;
-}
-
-Page discovery_page(const Discovery& discovery, const DiscoveryPictures& pictures,
+Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidence,
                     const std::string& subject) {
-  Page page;
+  const SizedDiagnosis sized{discovery.last, evidence.sizes};
+  PageContent page;
   page.command = "discover";
   page.subject = subject;
-  page.verdict = found_verdict(discovery, pictures);
+  page.verdict = found_verdict(discovery, evidence);
   page.tone = discovery.consistent ? Tone::good : Tone::bad;
-  page.facts = found_facts(discovery, pictures);
-  page.answers = found_answers(discovery, pictures, added_effects(discovery).rivals);
-  page.sections.push_back({"Part by part", {pictures.tables.parts}});
-  const NamedModel given{kModelGiven, pictures.given};
-  const NamedModel found{kModelFound, pictures.found};
-  if (pictures.effects.empty()) {
+  page.facts = found_facts(discovery, evidence);
+  page.answers = found_answers(discovery, evidence);
+  page.sections.push_back({"Part by part", {parts_table(sized, evidence.effects)}});
+  const NamedModel given{kModelGiven, evidence.given};
+  const NamedModel found{kModelFound, evidence.found};
+  if (evidence.effects.empty()) {
     page.sections.push_back(fit_section(given));
   } else {
     PageSection gain = gain_section(given, found, ladder_of(discovery));
     gain.blocks.emplace_back(step_table(discovery));
     page.sections.push_back(std::move(gain));
-    page.sections.push_back(effect_section("What was found", pictures.effects));
+    page.sections.push_back(effect_section("What was found", evidence.effects));
     std::vector<NamedModel> models{given};
-    for (const FittedStep& step : pictures.between) models.push_back({step.name, step.model});
+    for (std::size_t k = 0; k < evidence.between.size(); ++k) {
+      models.push_back({step_name(discovery.steps[k + 1]), evidence.between[k]});
+    }
     models.push_back(
-        {pictures.between.empty() ? kModelFound : last_name(discovery), pictures.found});
+        {evidence.between.empty() ? kModelFound : last_name(discovery), evidence.found});
     page.sections.push_back(maps_section("The map, model by model", models));
   }
   page.sections.push_back(trend_section("What errors go with, in the model found",
-                                        pictures.found.comparison, pictures.trends));
-  page.sections.push_back(legs_section("Legs, in the model found", pictures.found.comparison));
-  page.sections.push_back(tried_section(discovery.last, pictures.tables));
+                                        evidence.found.comparison, evidence.trends));
+  page.sections.push_back(legs_section("Legs, in the model found", evidence.found.comparison));
+  page.sections.push_back(tried_section(sized));
   move_tables_last(page);
   return page;
 }

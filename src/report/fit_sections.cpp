@@ -4,8 +4,10 @@
 
 #include "plot/fit_charts.hpp"
 #include "plot/layers.hpp"
+#include "report/page_words.hpp"
 #include "trussmap/table.hpp"
-#include "wording/effect_words.hpp"
+#include "trussmap/wording.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -17,21 +19,13 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kTrends = 12;
-constexpr double kClear = 0.05;
 
-void replace_all(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
-    text.replace(at, what.size(), by);
-    at += by.size();
-  }
-}
-
-PageTable effect_table(const std::vector<FittedEffect>& effects) {
+PageTable effect_table(const std::vector<EffectEvidence>& effects) {
   PageTable table;
   table.caption = "Coefficients with standard errors";
   table.headings = {"effect", "channel", "shape", "coefficient", "standard error"};
   table.texts = 3;
-  for (const FittedEffect& one : effects) {
+  for (const EffectEvidence& one : effects) {
     const Effect& effect = one.estimate.effect;
     for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
       const QuantityText text = quantity_text(effect.coefficients[k], one.estimate.sd[k]);
@@ -44,7 +38,7 @@ PageTable effect_table(const std::vector<FittedEffect>& effects) {
 }
 
 /// Coefficients in standard errors from zero: the only scale that all share.
-Chart strength_chart(const std::vector<FittedEffect>& effects) {
+Chart strength_chart(const std::vector<EffectEvidence>& effects) {
   Chart chart;
   chart.id = "coefficients";
   chart.title = "How sure are the coefficients?";
@@ -57,7 +51,7 @@ Chart strength_chart(const std::vector<FittedEffect>& effects) {
                    "",
                    {{"coefficient"}, {"standard errors"}, {"95 % from"}, {"to"}, {"value"}, {"sd"}},
                    "1"};
-  for (const FittedEffect& one : effects) {
+  for (const EffectEvidence& one : effects) {
     for (std::size_t k = 0; k < one.estimate.effect.coefficients.size(); ++k) {
       const double sd = one.estimate.sd[k];
       if (!(sd > 0.0) || !std::isfinite(sd)) continue;
@@ -77,10 +71,6 @@ Chart strength_chart(const std::vector<FittedEffect>& effects) {
   return chart;
 }
 
-std::string trend_goes_with(const Trend& trend) {
-  return trend.against == "all" ? "everything alike" : trend.against;
-}
-
 PageTable trend_table(const Comparison& result) {
   PageTable table;
   table.caption = fmt::format("Trends, strongest first (of {} looked for)", result.trends.size());
@@ -88,9 +78,9 @@ PageTable trend_table(const Comparison& result) {
   table.texts = 2;
   for (const Trend& trend : result.trends) {
     if (table.rows.size() == kTrends) break;
-    table.rows.push_back({trend.kind, trend_goes_with(trend), fmt::format("{:.1f}", trend.score),
+    table.rows.push_back({trend.kind, trend_variable(trend), fmt::format("{:.1f}", trend.score),
                           shown(trend.size, trend.unit), probability_text(trend.p_adjusted)});
-    table.tones.push_back(trend.p_adjusted < kClear ? Tone::bad : Tone::neutral);
+    table.tones.push_back(trend.p_adjusted < kSignificance ? Tone::bad : Tone::neutral);
   }
   return table;
 }
@@ -106,88 +96,49 @@ PageTable model_table(const NamedModel& before, const NamedModel& after) {
                           one.held_out.legs.empty()
                               ? "-"
                               : fmt::format("{:.1f}", 1000.0 * one.held_out.arrival_rms)});
-    table.tones.push_back(is_explained(one) ? Tone::good : Tone::bad);
+    table.tones.push_back(one.consistent() ? Tone::good : Tone::bad);
   }
   return table;
 }
 
+/// Curves of rivals that differ in nothing but their place or threshold are one.
+std::vector<NamedCurve> rival_curves(const EffectEvidence& effect) {
+  std::vector<NamedCurve> curves;
+  for (std::size_t k = 0; k < effect.response.rivals.size(); ++k) {
+    const Effect& rival = effect.rivals[k];
+    const bool same = k > 0 && rival.channel == effect.rivals[k - 1].channel &&
+                      rival.shape == effect.rivals[k - 1].shape;
+    if (same) {
+      curves.back().name += " or " + name_in_words(rival);
+    } else {
+      curves.push_back({name_in_words(rival), effect.response.rivals[k]});
+    }
+  }
+  return curves;
+}
+
+Chart effect_chart(const std::string& id, const EffectEvidence& effect) {
+  const std::vector<NamedCurve> rivals = rival_curves(effect);
+  std::string caption =
+      "Points: the error that the recordings show where the model lacks this effect, with 95 % "
+      "intervals. Line: the effect as fitted. Where they agree, the effect has the right shape.";
+  if (!rivals.empty()) {
+    caption +=
+        " Dashed: what the points would show if it were the other effect instead; the nearer to "
+        "the points, the harder to tell.";
+  }
+  return response_chart(id, name_in_words(effect.estimate.effect), caption, effect.response,
+                        "as fitted", rivals);
+}
+
 }  // namespace
 
-std::string typeset(std::string text) {
-  replace_all(text, "+-", "\u00b1");
-  replace_all(text, "chi^2", "chi\u00b2");
-  const std::string degrees = " deg";
-  for (std::size_t at = text.find(degrees); at != std::string::npos; at = text.find(degrees, at)) {
-    const std::size_t end = at + degrees.size();
-    if (end < text.size() && std::isalnum(static_cast<unsigned char>(text[end])) != 0) {
-      at = end;
-      continue;
-    }
-    text.replace(at, degrees.size(), "\u00b0");
-  }
-  return text;
-}
-
-std::string distance_text(double metres, double beside) {
-  const double larger = std::max(metres, beside);
-  if (larger < 0.0995) return two_digits(1000.0 * metres) + " mm";
-  if (larger < 0.995) return two_digits(100.0 * metres) + " cm";
-  return two_digits(metres) + " m";
-}
-
-std::string effect_in_words(const FittedEffect& effect) {
-  const Effect& one = effect.estimate.effect;
-  return name_in_words(one) + ": " +
-         typeset(size_in_words(one, effect.range.least, effect.range.most));
-}
-
-bool is_explained(const Comparison& comparison) {
-  return comparison.p_value >= 0.01;
-}
-
-std::string gain_sentence(const Comparison& before, const Comparison& after,
-                          const std::string& it) {
-  if (before.held_out.legs.empty() || after.held_out.legs.empty()) return "";
-  const double off = before.held_out.arrival_rms;
-  const double with = after.held_out.arrival_rms;
-  return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
-                     distance_text(with, off),
-                     is_explained(after) ? ", as good as this robot's noise allows"
-                                         : ", and something is still unexplained");
-}
-
-PageSection effect_section(const std::string& title, const std::vector<FittedEffect>& effects) {
+PageSection effect_section(const std::string& title, const std::vector<EffectEvidence>& effects) {
   PageSection section{title, {}};
   ChartRow signatures;
   for (std::size_t k = 0; k < effects.size(); ++k) {
-    const FittedEffect& one = effects[k];
-    if (one.response.bins.empty()) continue;
-    Response drawn = one.response;
-    if (drawn.curve.empty()) {
-      drawn.curve = effect_curve(one.estimate.effect, drawn.variable, drawn.bins.front().at,
-                                 drawn.bins.back().at);
-    }
-    std::vector<NamedCurve> rivals;
-    for (std::size_t rival = 0; rival < drawn.rivals.size(); ++rival) {
-      const Effect& other = one.rivals[rival];
-      const bool same = rival > 0 && other.channel == one.rivals[rival - 1].channel &&
-                        other.shape == one.rivals[rival - 1].shape;
-      if (same) {
-        rivals.back().name += " or " + name_in_words(other);
-      } else {
-        rivals.push_back({name_in_words(other), drawn.rivals[rival]});
-      }
-    }
-    signatures.push_back(response_chart(
-        fmt::format("effect-{}", k + 1), name_in_words(one.estimate.effect),
-        std::string(
-            "Points: the error that the recordings show where the model lacks this effect, with "
-            "95 % intervals. Line: the effect as fitted. Where they agree, the effect has the "
-            "right shape.") +
-            (rivals.empty() ? ""
-                            : " Dashed: what the points would show if it were the other effect "
-                              "instead; the nearer to the points, the harder to tell."),
-        drawn, "as fitted", rivals));
+    if (effects[k].response.bins.empty()) continue;
+    signatures.push_back(effect_chart(fmt::format("effect-{}", k + 1), effects[k]));
   }
   if (!signatures.empty()) section.blocks.emplace_back(std::move(signatures));
   section.blocks.emplace_back(ChartRow{strength_chart(effects)});
@@ -250,7 +201,7 @@ void add_quantiles(PageSection& section, const std::vector<NamedModel>& models) 
   if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
 }
 
-void move_tables_last(Page& page) {
+void move_tables_last(PageContent& page) {
   PageSection last{"Tables", {}};
   for (PageSection& section : page.sections) {
     const auto is = [](const PageBlock& block) { return std::holds_alternative<ChartRow>(block); };
@@ -284,7 +235,7 @@ PageSection legs_section(const std::string& title, const Comparison& comparison)
 }
 
 PageSection trend_section(const std::string& title, const Comparison& result,
-                          const std::vector<TrendPicture>& trends) {
+                          const std::vector<TrendEvidence>& trends) {
   PageSection section{title, {}};
   section.blocks.emplace_back(
       "For every variable, the error that goes with it most. Points are what the recordings show, "
@@ -296,7 +247,7 @@ PageSection trend_section(const std::string& title, const Comparison& result,
     charts.push_back(response_chart(
         fmt::format("trend-{}", k + 1),
         trend.kind + " against " + variable_in_words(trends[k].response.variable),
-        trend.p_adjusted < kClear
+        trend.p_adjusted < kSignificance
             ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
                           100.0 * trend.score / std::max(result.chi2, 1e-300),
                           probability_text(trend.p_adjusted))

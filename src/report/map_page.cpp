@@ -232,7 +232,7 @@ std::string verdict(const BuiltMap& built) {
 }  // namespace
 
 Page map_page(const BuiltMap& built, const std::string& subject) {
-  Page page;
+  PageContent page;
   page.command = "build";
   page.subject = subject + ", method " + built.method;
   page.verdict = verdict(built);

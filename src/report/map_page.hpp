@@ -25,6 +25,4 @@ struct BuiltMap {
   std::vector<std::string> warnings;
 };
 
-[[nodiscard]] Page map_page(const BuiltMap& built, const std::string& subject);
-
 }  // namespace trussmap

@@ -118,7 +118,7 @@ PageTable fit_table(const NoiseCalibration& found) {
 
 Page noise_page(const NoiseCalibration& found, const std::string& subject) {
   const NoiseEstimate& estimate = found.estimate;
-  Page page;
+  PageContent page;
   page.command = "noise";
   page.subject = subject;
   page.tone = found.fit.good ? Tone::good : Tone::bad;

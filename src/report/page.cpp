@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "report/page.hpp"
 
+#include "plot/chart_svg.hpp"
 #include "text/xml_text.hpp"
 
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -68,7 +70,7 @@ struct BlockText {
   }
 };
 
-std::string first_screen(const Page& page) {
+std::string first_screen(const PageContent& page) {
   std::string text = fmt::format(
       "<header class=\"{}\">\n<p class=\"command\">trussmap {} <span>{}</span></p>\n<h1>{}</h1>\n",
       class_of(page.tone), xml_escaped(page.command), xml_escaped(page.subject),
@@ -100,7 +102,7 @@ std::string first_screen(const Page& page) {
   return text + "</header>\n";
 }
 
-std::string contents(const Page& page) {
+std::string contents(const PageContent& page) {
   std::string text = "<nav aria-label=\"Sections\"><ul>\n";
   for (std::size_t k = 0; k < page.sections.size(); ++k) {
     text += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", k + 1,
@@ -111,7 +113,7 @@ std::string contents(const Page& page) {
 
 }  // namespace
 
-std::vector<const Chart*> charts_of(const Page& page) {
+std::vector<const Chart*> charts_of(const PageContent& page) {
   std::vector<const Chart*> charts;
   for (const PageSection& section : page.sections) {
     for (const PageBlock& block : section.blocks) {
@@ -123,7 +125,7 @@ std::vector<const Chart*> charts_of(const Page& page) {
   return charts;
 }
 
-std::string render_page(const Page& page, const PageRuntime& runtime) {
+std::string render_page(const PageContent& page, const PageRuntime& runtime) {
   std::set<std::string> ids;
   for (const Chart* chart : charts_of(page)) {
     if (!ids.insert(chart->id).second) {
@@ -154,6 +156,21 @@ std::string render_page(const Page& page, const PageRuntime& runtime) {
       "<div class=\"paper\" hidden></div>\n";
   text += fmt::format("<script>{}</script>\n</body>\n</html>\n", runtime.script);
   return text;
+}
+
+Page::Page(PageContent content)
+    : content_(std::make_shared<const PageContent>(std::move(content))) {}
+
+std::string render_page(const Page& page, const PageRuntime& runtime) {
+  return render_page(page.content(), runtime);
+}
+
+std::vector<DrawnChart> draw_charts(const Page& page) {
+  std::vector<DrawnChart> charts;
+  for (const Chart* chart : charts_of(page.content())) {
+    charts.push_back({chart->id, draw_chart(*chart)});
+  }
+  return charts;
 }
 
 }  // namespace trussmap

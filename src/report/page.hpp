@@ -14,9 +14,9 @@
 #pragma once
 
 #include "plot/chart.hpp"
+#include "trussmap/pages.hpp"
 
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -53,7 +53,7 @@ struct PageSection {
   std::vector<PageBlock> blocks;
 };
 
-struct Page {
+struct PageContent {
   std::string command;  ///< "compare"
   std::string subject;  ///< what of: recordings, model
   Tone tone = Tone::neutral;
@@ -64,17 +64,10 @@ struct Page {
   std::vector<PageSection> sections;
 };
 
-/// What makes the charts live (src/report/page): a style sheet, and a script with the chart
-/// library.
-struct PageRuntime {
-  std::string_view style;
-  std::string_view script;
-};
-
 /// The file. Throws std::invalid_argument like chart_json, and where two charts share an id.
-[[nodiscard]] std::string render_page(const Page& page, const PageRuntime& runtime);
+[[nodiscard]] std::string render_page(const PageContent& page, const PageRuntime& runtime);
 
 /// All charts of a page, in order.
-[[nodiscard]] std::vector<const Chart*> charts_of(const Page& page);
+[[nodiscard]] std::vector<const Chart*> charts_of(const PageContent& page);
 
 }  // namespace trussmap

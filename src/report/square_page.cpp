@@ -97,7 +97,7 @@ PageTable metrics_table(const SquareRound& last) {
         {name, with_error(last.exact.*member, unit), with_error(last.formulas.*member, unit)});
   };
   row("E_d, right wheel over left", &SquareSolution::diameter_ratio, "");
-  row("E_b, wheelbase over believed", &SquareSolution::wheelbase_ratio, "");
+  row("E_b, wheelbase over nominal", &SquareSolution::wheelbase_ratio, "");
   row("alpha, missing per quarter turn", &SquareSolution::alpha, "rad");
   row("beta, turned per leg", &SquareSolution::beta, "rad");
   return table;
@@ -106,12 +106,12 @@ PageTable metrics_table(const SquareRound& last) {
 Chart ratio_chart(const SquareRound& last) {
   Chart chart;
   chart.id = "ratios";
-  chart.title = "Wheels and wheelbase, in percent of what the robot believes";
-  chart.caption = "With 95 % intervals; 0 is a robot that is as its software believes.";
+  chart.title = "Wheels and wheelbase, in percent of nominal";
+  chart.caption = "With 95 % intervals; 0 is a robot as nominal.";
   chart.x = {.title = "error [%]", .zero = true};
-  chart.y.categories = {"right wheel over left", "wheelbase over believed"};
+  chart.y.categories = {"right wheel over left", "wheelbase over nominal"};
   chart.height = bars_height(2) + 20.0;
-  chart.layers.push_back({LayerKind::upright, "", {{"as believed", {0.0}}}, "faint"});
+  chart.layers.push_back({LayerKind::upright, "", {{"nominal", {0.0}}}, "faint"});
   int number = 0;
   for (const auto& [name, solution] :
        {std::pair("exact", &last.exact), std::pair("papers' formulas", &last.formulas)}) {
@@ -160,7 +160,7 @@ std::string verdict(const SquareCalibration& found) {
 
 Page square_page(const SquareCalibration& found, const std::string& subject) {
   const SquareRound& last = found.rounds.back();
-  Page page;
+  PageContent page;
   page.command = "umbmark";
   page.subject = subject;
   page.tone = last.clusters.second_round_worthwhile ? Tone::bad : Tone::good;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/tour_page.hpp"
-
 #include "plot/layers.hpp"
+#include "report/page.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include <algorithm>
 #include <map>
@@ -156,7 +156,7 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
   const TourMetrics& elastic = last.at("elastic");
   const TourMetrics& raw = last.at("raw");
   const TourMetrics& best = last.at("adjustment");
-  Page page;
+  PageContent page;
   page.command = "tour";
   page.subject = subject;
   page.verdict = fmt::format(

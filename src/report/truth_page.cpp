@@ -86,7 +86,7 @@ PageTable table_of(const WheelCalibration& wheels) {
 
 Page truth_page(const TruthCalibration& found, const std::string& subject) {
   const WheelCalibration& wheels = found.wheels;
-  Page page;
+  PageContent page;
   page.command = "calibrate";
   page.subject = subject;
   page.verdict = found.verdict;

@@ -9,7 +9,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFirstPlaceSd = 1.0;    // m: what the filter is told of its first pose
+constexpr double kFirstPlaceSd = 1.0;    // m: the filter's prior on its first pose
 constexpr double kFirstHeadingSd = 0.3;  // rad
 
 }  // namespace

@@ -3,21 +3,27 @@
 //
 // A Kalman filter that follows the robot through one session, with the map as known, and how its
 // estimate would move with further effects.
-//
-//   every step   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate
-//   by
-//                                          c    the step's whitened rows by the coefficient
-//                                          dl   what it moves the step's landmark by
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "estimation/recording_problem.hpp"
-#include "validation/held_out.hpp"
 
 #include <vector>
 
 namespace trussmap {
+
+/// One step of the filter, as it would move with further effects:
+///   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate by
+///                             c    the measurement's whitened rows by the coefficient
+///                             dl   what it moves the measurement's landmark by
+struct FilterStep {
+  std::ptrdiff_t measurement = -1;  ///< -1: a new session begins
+  Matrix3 A = Matrix3::Identity();
+  Eigen::Matrix<double, 3, 4> B = Eigen::Matrix<double, 3, 4>::Zero();
+  Eigen::Matrix<double, 3, 2> L = Eigen::Matrix<double, 3, 2>::Zero();
+  int landmark = -1;
+};
 
 class HeldOutFilter {
  public:

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "wording/effect_words.hpp"
-
-#include "trussmap/catalogue.hpp"
-#include "trussmap/channel.hpp"
+#include "effects/place.hpp"
+#include "trussmap/wording.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -20,80 +18,6 @@ std::string with_error(double value, double sd, const char* unit) {
   if (!(sd > 0.0) || !std::isfinite(sd)) return fmt::format("{:.3g}{}", value, unit);
   const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(sd))));
   return fmt::format("{:.{}f} +- {:.{}f}{}", value, decimals, sd, decimals, unit);
-}
-
-struct Scale {
-  double factor;
-  const char* unit;
-};
-
-/// In what a person reads the channel's g.
-Scale scale_of(Channel channel) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
-  switch (channel) {
-    case Channel::drift:
-      return {kDegrees * 60.0, " deg/min"};
-    case Channel::advance:
-    case Channel::lever:
-    case Channel::lever_left:
-    case Channel::range:
-      return {1e3, " mm"};
-    case Channel::rotate:
-    case Channel::compass:
-    case Channel::bearing:
-      return {kDegrees, " deg"};
-    case Channel::delay:
-      return {1e3, " ms"};
-    default:
-      return {100.0, " %"};
-  }
-}
-
-struct Phrase {
-  const char* subject;  ///< followed by the size
-  const char* more;
-  const char* less;
-};
-
-Phrase phrase_of(Channel channel) {
-  switch (channel) {
-    case Channel::travel:
-      return {"the robot travels", "further than its wheels say", "less far than its wheels say"};
-    case Channel::left:
-      return {"the left wheel rolls", "further than it says", "less far than it says"};
-    case Channel::right:
-      return {"the right wheel rolls", "further than it says", "less far than it says"};
-    case Channel::wheels:
-      return {"both wheels are", "larger than nominal", "smaller than nominal"};
-    case Channel::difference:
-      return {"the right wheel is", "larger than the left", "smaller than the left"};
-    case Channel::turn:
-      return {"the robot turns", "more than its wheels say", "less than its wheels say"};
-    case Channel::drift:
-      return {"the heading drifts by", "to the left", "to the right"};
-    case Channel::advance:
-      return {"each event moves the robot", "forward", "back"};
-    case Channel::rotate:
-      return {"each event turns the robot by", "to the left", "to the right"};
-    case Channel::creep:
-      return {"the robot slips by", "of its travel to the left", "of its travel to the right"};
-    case Channel::lever:
-      return {"the sensor sits", "ahead of the axle", "behind the axle"};
-    case Channel::lever_left:
-      return {"the sensor sits", "to the left of the axle's centre",
-              "to the right of the axle's centre"};
-    case Channel::compass:
-      return {"the compass reads", "too much", "too little"};
-    case Channel::range:
-      return {"ranges read", "too much", "too little"};
-    case Channel::range_scale:
-      return {"ranges read", "too much", "too little"};
-    case Channel::bearing:
-      return {"bearings read", "too much", "too little"};
-    case Channel::delay:
-      return {"sightings and truth are stamped", "late", "early"};
-  }
-  return {"", "", ""};
 }
 
 std::string sentence(Channel channel, double value, double sd) {
@@ -109,67 +33,6 @@ std::optional<std::string> round_of(const Effect& effect) {
   if (effect.shape.size() != 2) return std::nullopt;
   std::optional<std::string> sine = effect.shape[0].argument_of("sin");
   return sine && sine == effect.shape[1].argument_of("cos") ? sine : std::nullopt;
-}
-
-/// What a channel's error is called in a name.
-const char* noun_of(Channel channel) {
-  switch (channel) {
-    case Channel::travel:
-      return "travel error";
-    case Channel::left:
-      return "left wheel's error";
-    case Channel::right:
-      return "right wheel's error";
-    case Channel::wheels:
-      return "error of both wheels";
-    case Channel::difference:
-      return "difference of the wheels";
-    case Channel::turn:
-      return "turning error";
-    case Channel::drift:
-      return "heading drift";
-    case Channel::advance:
-      return "travel error per event";
-    case Channel::rotate:
-      return "turning error per event";
-    case Channel::creep:
-      return "sideways slip";
-    case Channel::lever:
-      return "sensor's place ahead";
-    case Channel::lever_left:
-      return "sensor's place to the left";
-    case Channel::compass:
-      return "compass error";
-    case Channel::range:
-      return "range error";
-    case Channel::range_scale:
-      return "error of the range's scale";
-    case Channel::bearing:
-      return "bearing error";
-    case Channel::delay:
-      return "delay of sightings";
-  }
-  return "";
-}
-
-/// "turn rate" for the word turn_rate, and so on.
-std::string variables_in_words(const std::string& text) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t space = std::min(text.find(' ', at), text.size());
-    const std::string word = text.substr(at, space - at);
-    result += word == "turn_rate"  ? "turn rate"
-              : word == "t"        ? "time"
-              : word == "distance" ? "distance driven"
-                                   : word;
-    if (space < text.size()) result += ' ';
-    at = space + 1;
-  }
-  return result;
-}
-
-std::string place_text(const Vector2& place) {
-  return fmt::format("x {:.1f} m, y {:.1f} m", place.x(), place.y());
 }
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -236,59 +99,10 @@ bool is_plain_factor(const Effect& effect) {
   return effect.is_constant() && !effect.per_session;
 }
 
-/// The speed above which an effect acts, m/s.
-std::optional<double> threshold_of(const Effect& effect) {
-  return effect.shape.size() == 1 ? effect.shape.front().parameter("speed") : std::nullopt;
-}
-
 }  // namespace
 
 std::string two_digits(double value) {
   return std::abs(value) < 99.5 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
-}
-
-std::optional<Vector2> place_of(const Effect& effect) {
-  if (effect.shape.size() != 1 || effect.per_session) return std::nullopt;
-  const Shape& shape = effect.shape.front();
-  if (shape.variables() != std::vector<std::string>{"x", "y"}) return std::nullopt;
-  const std::optional<double> x = shape.parameter("x");
-  const std::optional<double> y = shape.parameter("y");
-  return x && y ? std::optional(Vector2(*x, *y)) : std::nullopt;
-}
-
-std::string short_name(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  return entry == nullptr ? name_in_words(effect) : std::string(entry->name);
-}
-
-std::string name_in_words(const Effect& effect) {
-  const std::string& name = effect.name;
-  if (const CatalogueEntry* entry = find_entry(name)) {
-    const std::size_t open = name.rfind(" (");
-    const std::string rest =
-        open == std::string::npos ? "" : name.substr(open + 2, name.size() - open - 3);
-    if (entry->of_covariate() && !rest.empty()) {
-      return fmt::format("{} with {}", entry->name, variables_in_words(rest));
-    }
-    if (const std::optional<double> v0 = threshold_of(effect); v0 && entry->has_parameters()) {
-      return fmt::format("{} above {} m/s", entry->name, two_digits(*v0));
-    }
-    const std::optional<Vector2> place = place_of(effect);
-    const std::optional<double> r = place ? effect.shape.front().parameter("r") : std::nullopt;
-    if (r && entry->has_parameters()) {
-      return fmt::format("{} at {}, radius {} m", entry->name, place_text(*place), two_digits(*r));
-    }
-    return name;
-  }
-  const std::string_view channel = name_of(effect.channel);
-  if (!name.starts_with(std::string(channel) + " ")) return name;
-  const std::string rest = name.substr(channel.size());
-  const std::optional<Vector2> place = place_of(effect);
-  if ((rest == " at a place" || rest == " within a circle") && place) {
-    return fmt::format("{} at {}", noun_of(effect.channel), place_text(*place));
-  }
-  if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
-  return noun_of(effect.channel) + variables_in_words(rest);
 }
 
 std::string size_in_words(const Effect& effect, double least, double most) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "criticism/diagnosis.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -103,33 +103,8 @@ std::string separating_drive(const Effect& one, const Effect& other,
       one.name, other.name);
 }
 
-Unobservable why_unobservable(const Effect& effect, const ModelFit& fit, const Score& score) {
-  Unobservable result{effect, "", ""};
-  const bool surveyed = std::any_of(
-      fit.problem.measurements.begin(), fit.problem.measurements.end(), [](const Measurement& one) {
-        return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
-      });
-  const bool never = std::all_of(score.largest.begin(), score.largest.end(),
-                                 [](double most) { return most == 0.0; });
-  const bool nothing = std::all_of(score.share.begin(), score.share.end(),
-                                   [](double share) { return share < kLeastShare; });
-  if (never) {
-    result.why = "what it goes with never occurs in these data";
-    result.remedy = "drive so that it does: with starts, spins and changes of direction";
-  } else if (!surveyed && nothing) {
-    result.why = "without measured positions the map turns, grows and shrinks with it";
-    result.remedy = "measure the positions of a few landmarks (survey.csv)";
-  } else if (nothing) {
-    result.why = "the map and the poses take its whole trace up";
-    result.remedy =
-        "vary the drive: legs of different length, turns both ways, spins, landmarks met on "
-        "several headings";
-  } else {
-    result.why = "only an implausibly large one would be seen";
-    result.remedy = surveyed ? "collect more data in which what it goes with varies"
-                             : "measure the positions of a few landmarks (survey.csv)";
-  }
-  return result;
+std::string in_words(const std::optional<NextDrive>& drive) {
+  return drive ? separating_drive(drive->effect, drive->rival, drive->slow) : "";
 }
 
 }  // namespace trussmap

@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // --html of every command that has it, as a browser sees it.
+#include "apps/browser.hpp"
+#include "report/large_pages.hpp"
+#include "report/some_charts.hpp"
+#include "scratch_folder.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -11,11 +16,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "apps/browser.hpp"
-#include "report/large_pages.hpp"
-#include "report/some_charts.hpp"
-#include "scratch_folder.hpp"
 
 namespace trussmap {
 namespace {
@@ -249,7 +249,7 @@ TEST(PageInBrowser, HostileNamesStayText) {
   TRUSSMAP_NEEDS_BROWSER();
   const ScratchFolder scratch;
   const std::string name = testing::kHostile;
-  Page page;
+  PageContent page;
   page.command = "compare";
   page.verdict = name;
   page.sections = {{name, {name, testing::charts_of_every_kind(name)}}};
@@ -262,52 +262,6 @@ TEST(PageInBrowser, HostileNamesStayText) {
   // The page's own, the two of the test, and one of data per chart.
   EXPECT_EQ(found["scripts"], 3 + testing::charts_of_every_kind(name).size());
   EXPECT_NE(found["charts"][0]["hover"].get<std::string>().find("</script>"), std::string::npos);
-}
-
-TEST(PageInBrowser, TenThousandLegsAreNotSlow) {
-  TRUSSMAP_NEEDS_BROWSER();
-  const ScratchFolder scratch;
-  const std::string script = testing::text_in(TRUSSMAP_PAGE_SCRIPT);
-  const std::string style = testing::text_of("src/report/page/page.css");
-  Chart dots;
-  dots.id = "dots";
-  ChartColumn x{"x"}, y{"y"};
-  for (int k = 0; k < 100; ++k) {
-    x.numbers.push_back(k);
-    y.numbers.push_back(std::sin(k));
-  }
-  dots.layers = {{LayerKind::dots, "", {x, y}}};
-  Page small;
-  small.verdict = "A hundred marks.";
-  small.sections = {{"One chart", {ChartRow{dots}}}};
-  const fs::path little = scratch.write("small.html", render_page(small, {style, script}));
-  const std::vector<std::pair<std::string, Page>> pages{
-      {"compare", testing::large_comparison_page(10000)},
-      {"diagnose", testing::large_diagnosis_page(10000)},
-      {"discover", testing::large_discovery_page(10000)},
-      {"build", testing::large_map_page(10000)}};
-  // The first chart is drawn when the page's own script ends; then it is laid out.
-  const std::string timed =
-      "{const figure = document.querySelector('figure.chart svg');"
-      "figure.getBoundingClientRect();"
-      "const ms = performance.now();"
-      "document.body.append(Object.assign(document.createElement('pre'),"
-      "{id: 'checked', textContent: JSON.stringify({ms, errors: pageErrors})}));}";
-  for (const auto& [name, page] : pages) {
-    const fs::path large = scratch.write(name + ".html", render_page(page, {style, script}));
-    EXPECT_LT(fs::file_size(large), 5'000'000U) << name;
-    // Both in turn, so that what else the machine does slows both; further tries are for bad luck.
-    double small_ms = 1.0;
-    double large_ms = 1e9;
-    for (int round = 0; round < 4 && !(large_ms < 3.0 * small_ms); ++round) {
-      small_ms = testing::checked(little, timed, false)["ms"].get<double>();
-      large_ms = testing::checked(large, timed, false)["ms"].get<double>();
-    }
-    RecordProperty(name + "_bytes", std::to_string(fs::file_size(large)));
-    RecordProperty(name + "_ms", std::to_string(large_ms));
-    RecordProperty(name + "_beside_ms", std::to_string(small_ms));
-    EXPECT_LT(large_ms, 3.0 * small_ms) << name << ": " << large_ms << " ms against " << small_ms;
-  }
 }
 
 }  // namespace

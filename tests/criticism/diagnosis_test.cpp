@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 
-#include "criticism/discovery.hpp"
 #include "criticism/inverted_recordings.hpp"
 #include "criticism/known_events.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "shared_data.hpp"
+#include "trussmap/discover.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/wording.hpp"
+#include "validation/held_out_legs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +73,7 @@ TEST_P(HiddenEffect, IsNamedFirst) {
   EXPECT_EQ(first.status, Status::missing);
   EXPECT_TRUE(std::any_of(
       GetParam().effects.begin(), GetParam().effects.end(),
-      [&](const std::vector<Answer>& answers) { return is_any(first.candidate.effect, answers); }))
+      [&](const std::vector<Answer>& answers) { return is_any(first.effect, answers); }))
       << result.missing;
   EXPECT_LT(first.held_out.arrival_rms, result.held_out.arrival_rms);
 }
@@ -83,9 +85,9 @@ TEST_P(SlowHiddenEffect, IsDiscoveredAndNothingElse) {
   read();
   const Discovery result = discover(recordings_, model_);
   EXPECT_TRUE(result.consistent);
-  EXPECT_EQ(result.fit.model.effects.size(), GetParam().effects.size());
+  EXPECT_EQ(result.found.model.effects.size(), GetParam().effects.size());
   for (const std::vector<Answer>& answers : GetParam().effects) {
-    EXPECT_TRUE(std::any_of(result.fit.model.effects.begin(), result.fit.model.effects.end(),
+    EXPECT_TRUE(std::any_of(result.found.model.effects.begin(), result.found.model.effects.end(),
                             [&](const Effect& effect) { return is_any(effect, answers); }))
         << name_of(answers.front().channel);
   }
@@ -158,12 +160,13 @@ TEST(Diagnosis, WithoutASurveyWhatOnlyASurveyShowsIsNamedAsUnobservable) {
         std::find_if(result.unobservable.begin(), result.unobservable.end(),
                      [&](const Unobservable& unseen) { return unseen.effect.name == name; });
     ASSERT_NE(found, result.unobservable.end()) << name;
-    EXPECT_NE(found->remedy.find("survey.csv"), std::string::npos) << found->remedy;
+    EXPECT_EQ(found->why, Unseen::in_the_map);
+    EXPECT_NE(advice_on(*found).drive.find("survey.csv"), std::string::npos);
     EXPECT_TRUE(found->effect.coefficients.empty());
   }
 }
 
-TEST(Diagnosis, PromisesWhatTheFitThenKeeps) {
+TEST(Diagnosis, PredictsWhatTheFitThenGives) {
   // Predicted held-out error and decrease of chi^2 against those of a fit.
   const testing::InvertedOptions plain;
   testing::InvertedOptions options = plain;
@@ -189,8 +192,8 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
   // An effect is the same as a recording with its action already in it.
   constexpr double kSize = 2e-3;
   const testing::SimulatedRecording one = testing::simulate_recording({true, true, true}, 9);
-  const ModelFit fit = fit_model({one.recording}, one.model);
-  const HeldOutLegs legs({one.recording}, fit, {});
+  const FitState fit = fit_recordings({one.recording}, one.model);
+  const HeldOutLegs legs({one.recording}, fit, {}, {});
   ASSERT_TRUE(legs.same_layout(fit.problem));
   const ScoreTest tests(fit);
   for (const Channel channel :
@@ -221,8 +224,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
       if (channel == Channel::bearing) sighting.bearing -= kSize;
       if (channel == Channel::range) sighting.range -= kSize;
     }
-    const HeldOut realised =
-        predict_held_out({changed}, fit_model({changed}, one.model), ModelFitOptions{});
+    const HeldOut realised = predict_held_out({changed}, fit_model({changed}, one.model));
     ASSERT_EQ(told.legs.size(), realised.legs.size());
     const HeldOut before = legs.metrics();
     double off = 0.0;

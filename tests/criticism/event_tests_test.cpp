@@ -27,17 +27,17 @@ using testing::simulate_world;
 using testing::with_another;
 using testing::with_moved_landmark;
 
-std::vector<EventTest> events_of(const NoisyDrive& world) {
-  const ModelFit fit = fit_model(world.recordings, world.model);
+std::vector<TestedEvent> events_of(const NoisyDrive& world) {
+  const FitState fit = fit_recordings(world.recordings, world.model);
   return test_events(fit, ScoreTest(fit));
 }
 
 TEST(EventTests, TheScoreIsWhatTheProjectedColumnsExplain) {
   const Bump one = bumped({true, true, false, 1}, 9.0, 3);
-  const ModelFit fit = fit_model(one.world.recordings, one.world.model);
+  const FitState fit = fit_recordings(one.world.recordings, one.world.model);
   const ScoreTest tests(fit);
   int kept = 0;
-  for (const EventTest& event : test_events(fit, tests)) {
+  for (const TestedEvent& event : test_events(fit, tests)) {
     if (event.p_adjusted >= 0.05) {
       EXPECT_EQ(event.projected.cols(), 0);
       continue;
@@ -55,12 +55,12 @@ TEST(EventTests, TheScoreIsWhatTheProjectedColumnsExplain) {
 
 TEST(EventTests, AWrongSightingHasTheStatisticOfDataSnooping) {
   const NoisyDrive world = simulate_world({true, false, true, 1}, 8);
-  const ModelFit fit = fit_model(world.recordings, world.model);
+  const FitState fit = fit_recordings(world.recordings, world.model);
   const std::vector<CheckedMeasurement> checked =
       snoop(fit.problem, fit.columns.border, fit.adjustment);
   int compared = 0;
-  for (const EventTest& event : test_events(fit, ScoreTest(fit))) {
-    if (event.kind != "sighting") continue;
+  for (const TestedEvent& event : test_events(fit, ScoreTest(fit))) {
+    if (event.kind != EventKind::sighting) continue;
     const CheckedMeasurement& same = checked[event.measurements.front()];
     // To what a fit's settled residuals leave of their gradient.
     EXPECT_NEAR(event.score, same.statistic, 1e-3 * (1.0 + same.statistic)) << event.name;
@@ -73,28 +73,32 @@ TEST(EventTests, AWrongSightingHasTheStatisticOfDataSnooping) {
 TEST(EventTests, AMovedLandmarkIsWorthTwoLandmarks) {
   std::string landmark;
   const NoisyDrive world = with_moved_landmark(12.0, 5, landmark);
-  const ModelFit fit = fit_model(world.recordings, world.model);
-  const EventTest found = test_events(fit, ScoreTest(fit)).front();
-  EXPECT_EQ(found.kind, "landmark");
+  const FitState fit = fit_recordings(world.recordings, world.model);
+  const TestedEvent found = test_events(fit, ScoreTest(fit)).front();
+  EXPECT_EQ(found.kind, EventKind::landmark);
   EXPECT_EQ(found.name, landmark);
   const Moved moved = moved_by(world, landmark);
   const double fallen = fit.adjustment.chi2 - moved.chi2;
   EXPECT_NEAR(found.score, fallen, 0.02 * fallen);
-  EXPECT_NE(found.in_words.find("between run 1 and run 2"), std::string::npos) << found.in_words;
+  EXPECT_EQ(found.change, EventChange::moved);
+  EXPECT_EQ(found.when.session, "run 1");
+  EXPECT_EQ(found.when.next_session, "run 2");
+  const Vector2 by(found.size.at(0), found.size.at(1));
+  EXPECT_LT((by - moved.by).norm(), 0.1 * moved.by.norm());
 }
 
 TEST(EventTests, AWrongSurveyPointIsTheLandmarksOwn) {
   NoisyDrive world = simulate_world({}, 9);
   SurveyPoint& wrong = world.recordings.front().survey[5];
   wrong.x += 0.1;
-  const ModelFit fit = fit_model(world.recordings, world.model);
-  const EventTest found = test_events(fit, ScoreTest(fit)).front();
-  EXPECT_EQ(found.kind, "landmark");
+  const FitState fit = fit_recordings(world.recordings, world.model);
+  const TestedEvent found = test_events(fit, ScoreTest(fit)).front();
+  EXPECT_EQ(found.kind, EventKind::landmark);
   EXPECT_EQ(found.name, wrong.landmark);
-  EXPECT_NE(found.in_words.find("survey"), std::string::npos) << found.in_words;
+  EXPECT_EQ(found.change, EventChange::survey_off);
   world.recordings.front().survey.erase(world.recordings.front().survey.begin() + 5);
   const double fallen =
-      fit.adjustment.chi2 - fit_model(world.recordings, world.model).adjustment.chi2;
+      fit.adjustment.chi2 - fit_recordings(world.recordings, world.model).adjustment.chi2;
   EXPECT_NEAR(found.score, fallen, 0.02 * fallen);
 }
 
@@ -107,8 +111,8 @@ TEST(EventTests, ALandmarkThatMovesDuringASessionIsFound) {
       sighting.range += 0.3;
     }
   }
-  const std::vector<EventTest> found = events_of(world);
-  EXPECT_EQ(found.front().kind, "landmark");
+  const std::vector<TestedEvent> found = events_of(world);
+  EXPECT_EQ(found.front().kind, EventKind::landmark);
   EXPECT_EQ(found.front().name, "L1_2");
 }
 
@@ -117,19 +121,19 @@ TEST(EventTests, ASessionWithAnotherScaleIsOutOfLine) {
   Drive& drive = world.recordings[1].drive;
   for (double& left : drive.left) left *= 1.01;
   for (double& right : drive.right) right *= 1.01;
-  const std::vector<EventTest> found = events_of(world);
-  EXPECT_EQ(found.front().kind, "session");
+  const std::vector<TestedEvent> found = events_of(world);
+  EXPECT_EQ(found.front().kind, EventKind::session);
   EXPECT_EQ(found.front().name, "run 2");
   EXPECT_LT(found.front().p_adjusted, 1e-3);
 }
 
-TEST(EventTests, WhatIsTakenOutIsNotFoundAgain) {
+TEST(EventTests, WhatItIsConditionedOnIsNotFoundAgain) {
   const Bump one = bumped({true, true, false, 1}, 9.0, 4);
-  const ModelFit fit = fit_model(one.world.recordings, one.world.model);
+  const FitState fit = fit_recordings(one.world.recordings, one.world.model);
   const ScoreTest tests(fit);
-  const EventTest first = test_events(fit, tests).front();
+  const TestedEvent first = test_events(fit, tests).front();
   ASSERT_EQ(first.name, one.name);
-  for (const EventTest& event : test_events(fit, tests, first.projected)) {
+  for (const TestedEvent& event : test_events(fit, tests, first.projected)) {
     EXPECT_GT(event.p_adjusted, 0.05) << event.name;
   }
 }
@@ -139,8 +143,8 @@ TEST(SlowEventTests, ABumpOfFiveStandardDeviationsIsFirst) {
   int first = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Bump one = bumped({}, 5.0, seed);
-    const EventTest found = events_of(one.world).front();
-    first += found.kind == "leg" && found.name == one.name ? 1 : 0;
+    const TestedEvent found = events_of(one.world).front();
+    first += found.kind == EventKind::leg && found.name == one.name ? 1 : 0;
   }
   EXPECT_GE(first, 0.76 * kSeeds);  // of 200, 180 are: 0.9 less 2.3 sds of a count
 }
@@ -150,8 +154,8 @@ TEST(SlowEventTests, ALandmarkMovedByFiveStandardDeviationsIsFirst) {
   int first = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     std::string landmark;
-    const EventTest found = events_of(with_moved_landmark(5.0, seed, landmark)).front();
-    first += found.kind == "landmark" && found.name == landmark ? 1 : 0;
+    const TestedEvent found = events_of(with_moved_landmark(5.0, seed, landmark)).front();
+    first += found.kind == EventKind::landmark && found.name == landmark ? 1 : 0;
   }
   EXPECT_GE(first, 0.76 * kSeeds);  // of 200, 182 are: 0.91 less 2.6 sds of a count
 }

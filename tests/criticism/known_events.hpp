@@ -37,7 +37,7 @@ inline Bump bumped(const NoisyWorld& how, double sds, std::uint64_t seed) {
   } while (motion.rows[row].activity != Activity::drive);
   const bool left = random() % 2 == 0;
   const double sign = random() % 2 == 0 ? 1.0 : -1.0;
-  const ModelFit fit = fit_model(result.world.recordings, result.world.model);
+  const FitState fit = fit_recordings(result.world.recordings, result.world.model);
   const ScoreTest tests(fit);
   EffectPattern pattern;
   pattern.drives.emplace_back(drive.rows());
@@ -73,7 +73,7 @@ struct Moved {
   double chi2 = 0.0;
 };
 inline Moved moved_by(const NoisyDrive& world, const std::string& landmark) {
-  const ModelFit fit = fit_model(with_another(world.recordings, landmark), world.model);
+  const FitState fit = fit_recordings(with_another(world.recordings, landmark), world.model);
   int before = -1;
   int after = -1;
   for (int k = 0; k < fit.problem.landmark_count(); ++k) {

@@ -23,7 +23,7 @@ using testing::NoisyDrive;
 using testing::simulate_world;
 
 std::vector<NoiseTest> noise_of(const NoisyDrive& world) {
-  const ModelFit fit = fit_model(world.recordings, world.model);
+  const FitState fit = fit_recordings(world.recordings, world.model);
   return test_noise_laws(fit, ScoreTest(fit));
 }
 
@@ -33,7 +33,7 @@ const NoiseTest& find(const std::vector<NoiseTest>& tests, const std::string& la
 }
 
 /// Variance that a unit of the law adds to the whitened rows; both laws have a diagonal one.
-Eigen::MatrixXd dense_law(const ModelFit& fit, const RecordingSystem& system,
+Eigen::MatrixXd dense_law(const FitState& fit, const RecordingSystem& system,
                           const std::string& law) {
   Eigen::MatrixXd V = Eigen::MatrixXd::Zero(system.rows(), system.rows());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
@@ -54,7 +54,7 @@ Eigen::MatrixXd dense_law(const ModelFit& fit, const RecordingSystem& system,
 
 TEST(NoiseTests, ThePValueIsThatOfTheDenseProjection) {
   NoisyDrive world = simulate_world({true, true, false, 1}, 5);
-  const ModelFit fit = fit_model(world.recordings, world.model);
+  const FitState fit = fit_recordings(world.recordings, world.model);
   const ScoreTest tests(fit);
   const std::vector<NoiseTest> found = test_noise_laws(fit, tests);
   const Eigen::Index rows = tests.system().rows();
@@ -78,7 +78,7 @@ TEST(NoiseTests, ThePValueIsThatOfTheDenseProjection) {
 TEST(NoiseTests, TheScoreIsTheFallOfTheRestrictedLikelihood) {
   NoisyDrive world = simulate_world({true, true, false, 1}, 7);
   world.model.noise.sighting /= 3.0;
-  const ModelFit fit = fit_model(world.recordings, world.model);
+  const FitState fit = fit_recordings(world.recordings, world.model);
   const ScoreTest tests(fit);
   const NoiseTest found = find(test_noise_laws(fit, tests), "sighting");
   const RecordingSystem& system = tests.system();
@@ -122,7 +122,7 @@ TEST(NoiseTests, WhatIsSetAsideIsNoNoise) {
   // A wheelbase off by 4 % looks like noisy turns, until its column is set aside.
   NoisyDrive world = simulate_world({}, 3);
   world.model.robot.wheelbase *= 1.04;
-  const ModelFit fit = fit_model(world.recordings, world.model);
+  const FitState fit = fit_recordings(world.recordings, world.model);
   const ScoreTest tests(fit);
   Effect wheelbase;
   wheelbase.name = "turn";

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/data_snooping.hpp"
 
+#include "criticism/noise_sources.hpp"
 #include "estimation/simulated_recordings.hpp"
-#include "estimation/source_residuals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ TEST(DataSnooping, AWrongSightingIsTheFirstOfTheOutliers) {
     const Spoilt one = spoil_one_sighting(seed);
     ASSERT_GT(one.simulated.recording.sightings.size(), 400U);
     const RecordingProblem problem = make_problem({one.simulated.recording}, one.simulated.model);
-    const std::vector<CheckedMeasurement> found = outliers(snoop(problem, {}, adjust(problem)));
+    const std::vector<OutlierTest> found = outliers(snoop(problem, {}, adjust(problem)));
     ASSERT_FALSE(found.empty());
     const Measurement& first = problem.measurements[idx(found.front().measurement)];
     EXPECT_EQ(first.source, one.wrong);
@@ -144,7 +144,7 @@ TEST(DataSnooping, RobustlyAWrongSightingMovesNoLandmarkOutOfItsEllipse) {
       EXPECT_LT(moved.dot(right.landmark_covariances[k].inverse() * moved), k95);
     }
     // It is listed still, against the fit without it.
-    const std::vector<CheckedMeasurement> found = outliers(snoop(problem, {}, fit));
+    const std::vector<OutlierTest> found = outliers(snoop(problem, {}, fit));
     EXPECT_EQ(found.front().measurement, fit.left_out.front());
   }
 }

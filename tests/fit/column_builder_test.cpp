@@ -8,7 +8,7 @@
 #include "criticism/inverted_recordings.hpp"
 #include "estimation/recording_system.hpp"
 #include "estimation/simulated_recordings.hpp"
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,9 +24,9 @@ TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
   present.shape = {"1"};
   present.coefficients = {0.01};
   model.effects = {present};
-  ModelFitOptions options;
+  FitterOptions options;
   options.fit_effects = false;
-  const ModelFit fit = fit_model({one.recording}, model, options);
+  const FitState fit = fit_recordings({one.recording}, model, options);
   const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
   const std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   ColumnBuilder builder(context, fit.problem, fit.columns.border, offsets_of(fit),
@@ -55,7 +55,7 @@ TEST(ColumnBuilder, SessionsOfTheirOwnAddUpToTheWhole) {
   for (const std::uint64_t seed : {5U, 6U}) {
     recordings.push_back(testing::simulate_recording({}, seed).recording);
   }
-  const ModelFit fit = fit_model(recordings, Model{});
+  const FitState fit = fit_recordings(recordings, Model{});
   const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
   const std::vector<double> weights(fit.problem.measurements.size(), 1.0);
   ColumnBuilder builder(context, fit.problem, fit.columns.border, offsets_of(fit),

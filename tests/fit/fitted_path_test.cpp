@@ -3,7 +3,7 @@
 #include "fit/fitted_path.hpp"
 
 #include "criticism/disturbances.hpp"
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 #include "recording/row_variables.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ TEST(FittedPath, IsTheTruePathOfANoiseFreeRecordingUnderItsEffect) {
     }
     Effect effect;
     effect.name = one.effect;
-    const ModelFit fit = fit_model({simulated.recording}, inverted_model({effect}));
+    const FitState fit = fit_recordings({simulated.recording}, inverted_model({effect}));
     ASSERT_EQ(fit.paths.size(), 1U);
     ASSERT_EQ(fit.paths[0].ends.size(), simulated.places.size());
     double worst = 0.0;
@@ -62,7 +62,7 @@ TEST(FittedPath, WhatIsMissingAtANodeIsNoiseOfTheWheelsThatAddsUpToIt) {
   const InvertedRecording simulated = invert({}, {1}, 42);
   const Model model = inverted_model();
   const std::vector<Recording> recordings = {simulated.recording};
-  const ModelFit fit = fit_model(recordings, model);
+  const FitState fit = fit_recordings(recordings, model);
   RecordingState state = fit.adjustment.state;
   // The end of a drive, and with it the next turn on the spot.
   constexpr std::size_t kMoved = 4;

@@ -3,12 +3,12 @@
 //
 // Models fitted to recordings that were made backwards (inverted_recordings.hpp), and to the
 // practice recordings of another program.
-#include "fit/model_fit.hpp"
-
 #include "criticism/disturbances.hpp"
+#include "fit/fit_state.hpp"
 #include "shared_data.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/wording.hpp"
 
 #include <cmath>
 
@@ -26,7 +26,7 @@ using testing::inverted_model;
 using testing::InvertedOptions;
 using testing::InvertedRecording;
 
-double largest_error(const ModelFit& fit, const InvertedRecording& simulated) {
+double largest_error(const FitState& fit, const InvertedRecording& simulated) {
   double most = 0.0;
   for (const auto& [name, place] : landmark_places(fit)) {
     const std::complex<double> truth = simulated.landmarks.at(name);
@@ -40,10 +40,12 @@ class NoiseFree : public ::testing::TestWithParam<DisturbedCase> {};
 TEST_P(NoiseFree, TheEffectIsFoundExactly) {
   const DisturbedCase& one = GetParam();
   const InvertedRecording simulated = invert(one.disturbance, one.options, 11);
-  const ModelFit without = fit_model({simulated.recording}, inverted_model());
-  const ModelFit fit = fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
+  const FitState without = fit_recordings({simulated.recording}, inverted_model());
+  const FitState fit =
+      fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
   EXPECT_TRUE(fit.settled);
-  ASSERT_TRUE(fit.effects[0].not_fitted.empty()) << fit.effects[0].not_fitted[0];
+  ASSERT_TRUE(fit.effects[0].not_fitted.empty())
+      << in_words(fit.effects[0], fit.effects[0].not_fitted[0]);
   EXPECT_GT(without.adjustment.chi2, 10.0);  // it is there, or its removal would show nothing
   EXPECT_LT(fit.adjustment.chi2, 1e-9 * without.adjustment.chi2);
   const std::vector<double>& found = fit.effects[0].effect.coefficients;
@@ -64,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(ModelFit, NoiseFree, ::testing::ValuesIn(disturbed_case
                          });
 
 TEST(ModelFit, WithoutSurveyAndCompassATwistIsStillFoundExactly) {
+  int found = 0;
   for (const DisturbedCase& one : disturbed_cases()) {
     if (one.effect != "wheelbase" && one.effect != "turn scrub" && one.effect != "twist per spin" &&
         one.effect != "wheel diameter ratio") {
@@ -72,12 +75,14 @@ TEST(ModelFit, WithoutSurveyAndCompassATwistIsStillFoundExactly) {
     InvertedOptions options = one.options;
     options.survey = options.compass = false;
     const InvertedRecording simulated = invert(one.disturbance, options, 12);
-    const ModelFit fit =
-        fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
+    const FitState fit =
+        fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
     EXPECT_LT(fit.adjustment.chi2, 1e-8) << one.effect;
     const double a = one.coefficients[0];
     EXPECT_NEAR(fit.effects[0].effect.coefficients[0], a, 1e-6 * std::abs(a)) << one.effect;
+    ++found;
   }
+  EXPECT_EQ(found, 4);
 }
 
 TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
@@ -95,11 +100,11 @@ TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
       options.noisy = noisy;
       const InvertedRecording simulated = invert(one.disturbance, options, 13);
       // Beside one that they do show.
-      const ModelFit fit = fit_model(
+      const FitState fit = fit_recordings(
           {simulated.recording}, inverted_model({effect_named(name), effect_named("wheelbase")}));
       ASSERT_EQ(fit.effects[0].not_fitted.size(), 1U) << name << noisy;
-      EXPECT_EQ(fit.effects[0].not_fitted[0].find(name), 0U) << fit.effects[0].not_fitted[0];
-      EXPECT_NE(fit.effects[0].not_fitted[0].find("not fitted, "), std::string::npos);
+      const std::string why = in_words(fit.effects[0], fit.effects[0].not_fitted[0]);
+      EXPECT_EQ(why.find(name + " (1): not fitted, "), 0U) << why;
       EXPECT_TRUE(std::isinf(fit.effects[0].sd[0])) << name;
       EXPECT_EQ(fit.effects[0].effect.coefficients[0], 0.0) << name;
       EXPECT_TRUE(fit.effects[1].not_fitted.empty()) << name;
@@ -109,16 +114,18 @@ TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
 }
 
 TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
+  int cases = 0;
   // Without a survey a scale of both wheels shows in the turns alone, like a wheelbase. What the
   // misfit hides at first: no coefficient looks undetermined before the other is fitted.
   for (const DisturbedCase& one : disturbed_cases()) {
     if (one.effect != "wheel scale") continue;
+    ++cases;
     InvertedOptions options = one.options;
     options.survey = false;
     const InvertedRecording simulated = invert(one.disturbance, options, 13);
     for (const std::vector<std::string>& names :
          {std::vector<std::string>{"wheel scale", "wheelbase"}, {"wheelbase", "wheel scale"}}) {
-      const ModelFit fit = fit_model(
+      const FitState fit = fit_recordings(
           {simulated.recording}, inverted_model({effect_named(names[0]), effect_named(names[1])}));
       EXPECT_NEAR(fit.effects[0].effect.coefficients[0], one.coefficients[0], 1e-7) << names[0];
       EXPECT_TRUE(fit.effects[0].not_fitted.empty()) << names[0];
@@ -127,6 +134,7 @@ TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
       EXPECT_LT(fit.adjustment.chi2, 1e-8);
     }
   }
+  EXPECT_EQ(cases, 1);
 }
 
 TEST(ModelFit, WithoutFittingCoefficientsStayAndExplainTheData) {
@@ -134,14 +142,14 @@ TEST(ModelFit, WithoutFittingCoefficientsStayAndExplainTheData) {
   const InvertedRecording simulated = invert(one.disturbance, one.options, 14);
   Model model = inverted_model({effect_named(one.effect)});
   model.effects[0].coefficients = one.coefficients;
-  ModelFitOptions options;
+  FitterOptions options;
   options.fit_effects = false;
-  const ModelFit fit = fit_model({simulated.recording}, model, options);
+  const FitState fit = fit_recordings({simulated.recording}, model, options);
   EXPECT_EQ(fit.effects[0].effect.coefficients, one.coefficients);
   EXPECT_EQ(fit.effects[0].sd[0], 0.0);
   EXPECT_LT(fit.adjustment.chi2, 1e-9);
   EXPECT_EQ(fit.adjustment.dof,
-            fit_model({simulated.recording}, inverted_model(), options).adjustment.dof);
+            fit_recordings({simulated.recording}, inverted_model(), options).adjustment.dof);
 }
 
 TEST(ModelFit, PerSessionEachRecordingHasItsOwnCoefficient) {
@@ -154,14 +162,14 @@ TEST(ModelFit, PerSessionEachRecordingHasItsOwnCoefficient) {
   }
   Effect effect = effect_named("compass offset");
   effect.per_session = true;
-  const ModelFit fit = fit_model(recordings, inverted_model({effect}));
+  const FitState fit = fit_recordings(recordings, inverted_model({effect}));
   ASSERT_EQ(fit.effects[0].effect.coefficients.size(), 3U);
   EXPECT_NEAR(fit.effects[0].effect.coefficients[0], 0.04, 1e-7);
   EXPECT_NEAR(fit.effects[0].effect.coefficients[1], -0.07, 1e-7);
   EXPECT_NEAR(fit.effects[0].effect.coefficients[2], 0.0, 1e-7);
   EXPECT_LT(fit.adjustment.chi2, 1e-7);
   effect.per_session = false;
-  EXPECT_GT(fit_model(recordings, inverted_model({effect})).adjustment.chi2, 100.0);
+  EXPECT_GT(fit_recordings(recordings, inverted_model({effect})).adjustment.chi2, 100.0);
 }
 
 TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
@@ -180,13 +188,13 @@ TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
       {"load on both wheels (payload_kg)", Channel::wheels, {"2 * payload_kg / 2"}},
       {"lever arm", Channel::lever, {"1 + 0*speed"}}};
   for (const Twin& twin : twins) {
-    const ModelFit built_in =
-        fit_model({simulated.recording}, inverted_model({effect_named(twin.name)}));
+    const FitState built_in =
+        fit_recordings({simulated.recording}, inverted_model({effect_named(twin.name)}));
     Effect own;
     own.name = "of my own";
     own.channel = twin.channel;
     own.shape = twin.shape;
-    const ModelFit fit = fit_model({simulated.recording}, inverted_model({own}));
+    const FitState fit = fit_recordings({simulated.recording}, inverted_model({own}));
     EXPECT_NEAR(fit.adjustment.chi2, built_in.adjustment.chi2, 1e-12 * fit.adjustment.chi2);
     EXPECT_EQ(fit.adjustment.dof, built_in.adjustment.dof);
     for (std::size_t k = 0; k < twin.shape.size(); ++k) {
@@ -202,12 +210,12 @@ TEST(ModelFit, TheOrderOfEffectsDoesNotMatter) {
   InvertedOptions options;
   options.noisy = true;
   const InvertedRecording simulated = invert({}, options, 31);
-  const ModelFit one =
-      fit_model({simulated.recording},
-                inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
-  const ModelFit other =
-      fit_model({simulated.recording},
-                inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
+  const FitState one =
+      fit_recordings({simulated.recording},
+                     inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
+  const FitState other =
+      fit_recordings({simulated.recording},
+                     inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
   EXPECT_NEAR(one.effects[0].effect.coefficients[0], other.effects[1].effect.coefficients[0],
               1e-5 * one.effects[0].sd[0]);
   EXPECT_NEAR(one.adjustment.chi2, other.adjustment.chi2, 1e-6);
@@ -234,7 +242,7 @@ TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
     effect.shape = {wrong.shape};
     effect.coefficients = wrong.coefficients;
     try {
-      static_cast<void>(fit_model({simulated.recording}, inverted_model({effect})));
+      static_cast<void>(fit_recordings({simulated.recording}, inverted_model({effect})));
       ADD_FAILURE() << name_of(wrong.channel) << " " << wrong.shape << " was accepted";
     } catch (const std::invalid_argument& error) {
       const std::string message = error.what();
@@ -246,8 +254,31 @@ TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
   Effect effect = effect_named("wheelbase");
   effect.per_session = true;
   effect.coefficients = {0.0, 0.0, 0.0};
-  EXPECT_THROW(static_cast<void>(fit_model({simulated.recording}, inverted_model({effect}))),
+  EXPECT_THROW(static_cast<void>(fit_recordings({simulated.recording}, inverted_model({effect}))),
                std::invalid_argument);
+}
+
+TEST(ModelFit, ShowsWhatItsStateHas) {
+  InvertedOptions options;
+  options.noisy = true;
+  const InvertedRecording simulated = invert({}, options, 33);
+  const Model model = inverted_model({effect_named("wheelbase")});
+  const ModelFit fit = fit_model({simulated.recording}, model);
+  const FitState state = fit_recordings({simulated.recording}, model);
+  EXPECT_DOUBLE_EQ(fit.chi2, state.adjustment.chi2);
+  EXPECT_EQ(fit.dof, state.adjustment.dof);
+  EXPECT_EQ(fit.coefficients, 1);
+  EXPECT_GT(fit.landmarks.size(), 3U);
+  for (const FittedLandmark& one : fit.landmarks) {
+    EXPECT_EQ(one.position, landmark_places(state).at(one.name));
+  }
+  FitOptions held;
+  held.fit_effects = false;
+  const ModelFit as_given = fit_model({simulated.recording}, fit.model, held);
+  EXPECT_EQ(as_given.coefficients, 0);
+  // The same chi^2 at the same coefficients; what is not estimated costs no degree of freedom.
+  EXPECT_NEAR(as_given.chi2, fit.chi2, 1e-6 * fit.chi2);
+  EXPECT_EQ(as_given.dof, fit.dof + fit.coefficients);
 }
 
 struct Practice {
@@ -268,12 +299,14 @@ TEST_P(PracticeRecording, TheAnswerFitsWithItsCoefficients) {
   Model model = read_model(folder / "model.toml");
   model.effects = one.effects;
   for (Effect& effect : model.effects) effect.coefficients.clear();
-  const ModelFit fit = fit_model({read_recording(folder)}, model);
+  const FitState fit = fit_recordings({read_recording(folder)}, model);
   EXPECT_GT(fit.adjustment.p_value, 0.01);
   EXPECT_LT(fit.adjustment.p_value, 0.99);
   RecordProperty("chi2_over_dof", std::to_string(fit.adjustment.chi2 / fit.adjustment.dof));
+  ASSERT_EQ(fit.effects.size(), one.effects.size());
   for (std::size_t e = 0; e < one.effects.size(); ++e) {
     ASSERT_TRUE(fit.effects[e].not_fitted.empty());
+    ASSERT_EQ(fit.effects[e].sd.size(), one.effects[e].coefficients.size());
     for (std::size_t k = 0; k < one.effects[e].coefficients.size(); ++k) {
       const double expected = one.effects[e].coefficients[k];
       const double sd = fit.effects[e].sd[k];
@@ -322,8 +355,8 @@ TEST(SlowModelFit, IntervalsCoverAndChi2IsWhatChanceMakesIt) {
     options.noisy = true;
     const InvertedRecording simulated =
         invert(one.disturbance, options, 1 + static_cast<std::uint64_t>(run));
-    const ModelFit fit =
-        fit_model({simulated.recording}, inverted_model({effect_named(one.effect)}));
+    const FitState fit =
+        fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
     ASSERT_TRUE(fit.effects[0].not_fitted.empty()) << one.effect;
     const double error = fit.effects[0].effect.coefficients[0] - one.coefficients[0];
     if (std::abs(error) < 1.959964 * fit.effects[0].sd[0]) ++covered;
@@ -349,8 +382,8 @@ TEST(SlowModelFit, TheScaleOfEffectFreeDrivesIsUnbiased) {
     InvertedOptions options;
     options.noisy = true;
     const InvertedRecording simulated = invert({}, options, 5000 + seed);
-    const ModelFit fit =
-        fit_model({simulated.recording}, inverted_model({effect_named("wheel scale")}));
+    const FitState fit =
+        fit_recordings({simulated.recording}, inverted_model({effect_named("wheel scale")}));
     sum += fit.effects[0].effect.coefficients[0] / fit.effects[0].sd[0];
   }
   RecordProperty("mean_in_sds", std::to_string(sum / kRuns));

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/diagnosis_page.hpp"
-
 #include "report/large_pages.hpp"
 
 #include <string>
@@ -14,17 +12,20 @@ namespace {
 
 /// A diagnosis with two effects missing, of which the second is as unsure as `sd` says.
 Page page_with_second(double sd) {
-  FittedEffect second = testing::large_effect();
+  EffectEvidence second = testing::large_effect();
   second.estimate.sd = {sd, sd};
-  const FittedModel model = testing::large_model(50);
-  const DiagnosisPictures pictures{
-      model, model, {testing::large_effect(), second}, testing::large_trends(), {}};
-  return diagnosis_page(testing::large_diagnosis(50), pictures, "a recording");
+  const ModelEvidence model = testing::large_model(50);
+  const DiagnosisEvidence evidence{model,
+                                   model,
+                                   {testing::large_effect(), second},
+                                   testing::large_trends(),
+                                   std::vector<FindingSize>(2)};
+  return diagnosis_page(testing::large_diagnosis(50), evidence, "a recording");
 }
 
 std::vector<std::string> answers_to(const Page& page, const std::string& question) {
   std::vector<std::string> answers;
-  for (const PageAnswer& one : page.answers) {
+  for (const PageAnswer& one : page.content().answers) {
     if (one.question == question) answers.push_back(one.answer);
   }
   return answers;
@@ -32,9 +33,10 @@ std::vector<std::string> answers_to(const Page& page, const std::string& questio
 
 TEST(DiagnosisPage, SaysHowLargeEachOfSeveralEffectsIs) {
   const Page page = page_with_second(0.001);
-  EXPECT_NE(page.verdict.find("hard iron (\u00b12.9\u00b0) and hard iron (\u00b12.9\u00b0)"),
-            std::string::npos)
-      << page.verdict;
+  EXPECT_NE(
+      page.content().verdict.find("hard iron (\u00b12.9\u00b0) and hard iron (\u00b12.9\u00b0)"),
+      std::string::npos)
+      << page.content().verdict;
   const std::vector<std::string> sizes = answers_to(page, "How large?");
   ASSERT_EQ(sizes.size(), 2U);
   EXPECT_NE(sizes[1].find("standard error"), std::string::npos) << sizes[1];
@@ -51,7 +53,7 @@ TEST(DiagnosisPage, SaysWhatTheOtherEffectsMakeSuperfluous) {
 TEST(DiagnosisPage, PutsPicturesBeforeTables) {
   const Page page = page_with_second(0.001);
   bool last = false;
-  for (const PageSection& section : page.sections) {
+  for (const PageSection& section : page.content().sections) {
     bool charts = false;
     bool tables = false;
     for (const PageBlock& block : section.blocks) {

@@ -4,10 +4,10 @@
 // Pages of recordings of any size, made up: for their size and speed.
 #pragma once
 
-#include "report/comparison_page.hpp"
-#include "report/diagnosis_page.hpp"
-#include "report/discovery_page.hpp"
 #include "report/map_page.hpp"
+#include "report/page.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/pages.hpp"
 
 #include <cmath>
 #include <string>
@@ -16,10 +16,10 @@
 namespace trussmap::testing {
 
 /// So many legs, a fifth as many routes, a tenth as many landmarks.
-inline FittedModel large_model(int legs) {
+inline ModelEvidence large_model(int legs) {
   const int across = static_cast<int>(std::ceil(std::sqrt(legs / 10.0)));
   Comparison result;
-  result.consistent = false;
+  result.objection = Objection::chi2;
   result.chi2 = 9.0 * legs;
   result.dof = legs;
   result.legs = static_cast<std::size_t>(legs);
@@ -50,17 +50,17 @@ inline FittedModel large_model(int legs) {
   }
   result.held_out.arrival_rms = 0.02;
   result.sources = {{"wheels", 3.0, 0.1, 100.0}, {"compass", 1.0, 0.1, 100.0}};
-  std::vector<SourceResiduals> residuals{{"wheels", {}}, {"compass", {}}};
+  result.residuals = {{"wheels", {}}, {"compass", {}}};
   for (int k = 0; k < 4 * legs; ++k) {
-    residuals[k % 4 == 3 ? 1 : 0].standardised.push_back(8.0 * k / (4.0 * legs) - 4.0);
+    result.residuals[k % 4 == 3 ? 1 : 0].standardised.push_back(8.0 * k / (4.0 * legs) - 4.0);
   }
-  return {result, map, residuals};
+  return {result, map};
 }
 
-inline std::vector<TrendPicture> large_trends() {
-  std::vector<TrendPicture> trends;
+inline std::vector<TrendEvidence> large_trends() {
+  std::vector<TrendEvidence> trends;
   for (const char* variable : {"heading", "speed", "turn_rate", "t", "distance", "payload_kg"}) {
-    TrendPicture picture;
+    TrendEvidence picture;
     picture.trend.kind = "stretch";
     picture.trend.against = variable;
     picture.response.channel = Channel::travel;
@@ -75,13 +75,13 @@ inline std::vector<TrendPicture> large_trends() {
 }
 
 inline Page large_comparison_page(int legs) {
-  FittedModel model = large_model(legs);
-  for (const TrendPicture& one : large_trends()) model.comparison.trends.push_back(one.trend);
-  return comparison_page(model, large_trends(), "a large recording");
+  ModelEvidence model = large_model(legs);
+  for (const TrendEvidence& one : large_trends()) model.comparison.trends.push_back(one.trend);
+  return comparison_page({model, large_trends()}, "a large recording");
 }
 
-inline FittedEffect large_effect() {
-  FittedEffect one;
+inline EffectEvidence large_effect() {
+  EffectEvidence one;
   one.estimate = {{"hard iron", Channel::compass, {"sin(heading)", "cos(heading)"}, {0.04, -0.03}},
                   {0.001, 0.001},
                   {}};
@@ -99,7 +99,7 @@ inline Diagnosis large_diagnosis(int legs) {
   diagnosis.tried = 900;
   diagnosis.held_out = large_model(legs).comparison.held_out;
   Finding finding;
-  finding.candidate.effect = large_effect().estimate.effect;
+  finding.effect = large_effect().estimate.effect;
   finding.status = Status::missing;
   finding.look_alikes = {
       {{"body tilt", Channel::compass, {"sin(heading)", "cos(heading)"}, {}}, 0.99}};
@@ -108,9 +108,12 @@ inline Diagnosis large_diagnosis(int legs) {
 }
 
 inline Page large_diagnosis_page(int legs) {
-  DiagnosisPictures pictures{
-      large_model(legs), large_model(legs), {large_effect(), large_effect()}, large_trends(), {}};
-  return diagnosis_page(large_diagnosis(legs), pictures, "a large recording");
+  const DiagnosisEvidence evidence{large_model(legs),
+                                   large_model(legs),
+                                   {large_effect(), large_effect()},
+                                   large_trends(),
+                                   std::vector<FindingSize>(2)};
+  return diagnosis_page(large_diagnosis(legs), evidence, "a large recording");
 }
 
 /// Five models, one after the other.
@@ -124,20 +127,22 @@ inline Page large_discovery_page(int legs) {
     step.held_out = large_model(legs).comparison.held_out;
     discovery.steps.push_back(step);
   }
-  discovery.stopped = "nothing more is significant";
   discovery.last = large_diagnosis(legs);
-  discovery.fit.effects = {large_effect().estimate};
-  DiscoveryPictures pictures;
-  pictures.given = pictures.found = large_model(legs);
-  for (int k = 0; k < 3; ++k) pictures.between.push_back({"+ an effect", large_model(legs)});
-  pictures.effects = {large_effect()};
-  pictures.trends = large_trends();
-  return discovery_page(discovery, pictures, "a large recording");
+  discovery.found.effects = {large_effect().estimate};
+  DiscoveryEvidence evidence;
+  evidence.given = evidence.found = large_model(legs);
+  evidence.between.assign(3, large_model(legs));
+  evidence.effects = {large_effect()};
+  evidence.look_alikes.resize(1);
+  evidence.next_drives.resize(1);
+  evidence.trends = large_trends();
+  evidence.sizes.resize(2);
+  return discovery_page(discovery, evidence, "a large recording");
 }
 
 inline Page large_map_page(int legs) {
   BuiltMap built;
-  const FittedModel model = large_model(legs);
+  const ModelEvidence model = large_model(legs);
   for (const FittedLandmark& one : model.map.landmarks) {
     built.picture.map.add_landmark(one.name, one.position);
     built.picture.before[one.name] = one.position + Vector2(1.0, 0.1 * one.position.x());

@@ -18,8 +18,8 @@ namespace {
 
 const PageRuntime kRuntime{"main { color: red }\n", "/* the script */"};
 
-Page page_with(const std::string& name) {
-  Page page;
+PageContent page_with(const std::string& name) {
+  PageContent page;
   page.command = "compare";
   page.subject = name;
   page.verdict = "Verdict on " + name;
@@ -32,7 +32,7 @@ Page page_with(const std::string& name) {
   return page;
 }
 
-Page hostile_page() {
+PageContent hostile_page() {
   return page_with(testing::kHostile);
 }
 
@@ -75,7 +75,7 @@ TEST(Page, SaysTheVerdictFirst) {
 }
 
 TEST(Page, EveryChartHasATitleACaptionAndItsData) {
-  const Page page = hostile_page();
+  const PageContent page = hostile_page();
   const std::string html = render_page(page, kRuntime);
   EXPECT_EQ(count(html, "<figure class=\"chart\""), charts_of(page).size());
   EXPECT_EQ(count(html, "<figcaption>"), charts_of(page).size());
@@ -89,13 +89,13 @@ TEST(Page, EveryChartHasATitleACaptionAndItsData) {
 }
 
 TEST(Page, ChartsOfOneNameAreRefused) {
-  Page page = hostile_page();
+  PageContent page = hostile_page();
   page.sections.push_back(page.sections.front());
   EXPECT_THROW(static_cast<void>(render_page(page, kRuntime)), std::invalid_argument);
 }
 
 TEST(Page, AnswersStandUnderTheirQuestions) {
-  Page page = page_with("A");
+  PageContent page = page_with("A");
   page.answers = {{"How sure?", "Very."},
                   {"What to do next?", "Drive."},
                   {"What to do next?", "Look."},
@@ -112,7 +112,7 @@ TEST(Page, TenThousandLegsStaySmall) {
                                    std::pair{"diagnose", testing::large_diagnosis_page(10000)},
                                    std::pair{"discover", testing::large_discovery_page(10000)},
                                    std::pair{"build", testing::large_map_page(10000)}}) {
-    for (const Chart* chart : charts_of(page)) {
+    for (const Chart* chart : charts_of(page.content())) {
       EXPECT_LE(mark_count(*chart), kMostMarks) << name << ", " << chart->id;
       EXPECT_GT(mark_count(*chart), 0U) << name << ", " << chart->id;
     }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "validation/held_out.hpp"
+#include "trussmap/held_out.hpp"
 
 #include "criticism/disturbances.hpp"
 
@@ -29,8 +29,8 @@ DisturbedCase case_of(const std::string& name) {
 }
 
 HeldOut predicted(const std::vector<Recording>& recordings, const Model& model,
-                  const ModelFitOptions& options = {}, const LegOptions& legs = {}) {
-  return predict_held_out(recordings, fit_model(recordings, model, options), options, legs);
+                  const FitOptions& options = {}, const LegOptions& legs = {}) {
+  return predict_held_out(recordings, fit_model(recordings, model, options), legs);
 }
 
 std::vector<LegSpan> spans(const std::vector<Recording>& recordings, const LegOptions& options) {
@@ -203,8 +203,8 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
     // Where delays are fitted anew, to what the fit calls settled.
     EXPECT_LT(worst, name == "sighting delay" ? 1e-4 : 1e-8) << name;
     // That it is bad shows in the fit of all legs.
-    EXPECT_GT(fit_model({bad}, model).adjustment.chi2,
-              1.2 * fit_model({clean}, model).adjustment.chi2)
+    EXPECT_GT(fit_recordings({bad}, model).adjustment.chi2,
+              1.2 * fit_recordings({clean}, model).adjustment.chi2)
         << name;
   }
 }
@@ -214,7 +214,7 @@ TEST(HeldOut, TheTrainingItselfKnowsNothingOfThem) {
   one.options.noisy = true;
   const Recording clean = invert(one.disturbance, one.options, 58).recording;
   const std::vector<LegSpan> legs = spans({clean}, {});
-  ModelFitOptions options;
+  FitterOptions options;
   options.problem.left_out.resize(1);
   std::size_t block = 0;
   for (std::size_t k = 0; k < legs.size(); ++k) {
@@ -233,8 +233,8 @@ TEST(HeldOut, TheTrainingItselfKnowsNothingOfThem) {
   }
   options.problem.left_out[0] = joined;
   const Model model = inverted_model({effect_named(one.effect)});
-  const ModelFit a = fit_model({clean}, model, options);
-  const ModelFit b = fit_model({spoiled(clean, legs, block)}, model, options);
+  const FitState a = fit_recordings({clean}, model, options);
+  const FitState b = fit_recordings({spoiled(clean, legs, block)}, model, options);
   EXPECT_EQ(a.adjustment.dof, b.adjustment.dof);
   EXPECT_NEAR(a.adjustment.chi2, b.adjustment.chi2, 1e-9);
   EXPECT_NEAR(a.effects[0].effect.coefficients[0], b.effects[0].effect.coefficients[0], 1e-12);

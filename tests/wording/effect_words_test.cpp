@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "wording/effect_words.hpp"
-
+#include "effects/place.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/wording.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "criticism/diagnosis.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/wording.hpp"
 
 #include <gtest/gtest.h>
 

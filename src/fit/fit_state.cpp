@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "fit/model_fit.hpp"
+#include "fit/fit_state.hpp"
 
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
@@ -23,7 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class Fitter {
  public:
   Fitter(const std::vector<Recording>& recordings, const Model& model,
-         const ModelFitOptions& options)
+         const FitterOptions& options)
       : recorded_(recordings), options_(options) {
     fit_.model = model;
     for (Effect& effect : fit_.model.effects) {
@@ -31,11 +31,11 @@ class Fitter {
     }
     given_ = fit_.model.effects;
     for (const Effect& effect : fit_.model.effects) {
-      why_not_.emplace_back(effect.coefficients.size());
+      not_fitted_.emplace_back(effect.coefficients.size());
     }
   }
 
-  ModelFit run() {
+  FitState run() {
     lay_out();
     start();
     for (int round = 0; round < options_.max_rounds; ++round) {
@@ -136,7 +136,7 @@ class Fitter {
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[k];
-      if (!options_.fit_effects || !why_not_[one.effect][one.place].empty()) {
+      if (!options_.fit_effects || not_fitted_[one.effect][one.place]) {
         fit_.columns.border[k].held = fit_.model.effects[one.effect].coefficients[one.place];
       }
     }
@@ -152,16 +152,16 @@ class Fitter {
     return values;
   }
 
-  void hold(int coefficient, const std::string& why) {
+  void hold(int coefficient, NotFitted why, double uncertainty = 0.0) {
     const Coefficient& one = fit_.columns.coefficients[idx(coefficient)];
-    why_not_[one.effect][one.place] = why;
+    not_fitted_[one.effect][one.place] = UnfittedCoefficient{one.place, why, uncertainty};
     const double value = given_[one.effect].coefficients[one.place];
     fit_.model.effects[one.effect].coefficients[one.place] = value;
     fit_.columns.border[idx(coefficient)].held = value;
   }
 
   /// Coefficients that no measurement tells from the unknowns, looked for at the best fit without
-  /// them: far from it large residuals make anything look observable.
+  /// them: far from it large residuals make anything appear observable.
   void hold_unobservable() {
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
     if (unknown.empty()) return;
@@ -195,14 +195,14 @@ class Fitter {
       if (error.column() >= 0) throw;
     }
     const std::vector<int> lost = find_undetermined(system);
-    if (lost.empty()) return hold_the_implausible(system);
+    if (lost.empty()) return hold_the_uncertain(system);
     give_way(free[idx(lost.back())]);
     return true;
   }
 
   /// The one added last gives way: the others may be determined without it.
   void give_way(int coefficient) {
-    hold(coefficient, "no measurement tells it from the map, the poses or the rest");
+    hold(coefficient, NotFitted::undetermined);
   }
 
   void adjust_once() {
@@ -238,9 +238,9 @@ class Fitter {
     // Without effects nothing depends on the path but what asks for it afterwards.
     const std::vector<SessionPath> before = std::move(fit_.paths);
     if (!fit_.model.effects.empty()) lay_paths();
-    // What a misfit leaves is no noise to be believed.
+    // The residuals of a misfit are no estimate of noise.
     const bool noise = fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
-    bent_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
+    offset_change_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
                                 offsets_of(fit_), state_)
                   : 0.0;
     moved_ = 0.0;
@@ -260,7 +260,7 @@ class Fitter {
   }
 
   /// The last of those that the data tell too little of gives way, as in give_way.
-  bool hold_the_implausible(const RecordingSystem& system) {
+  bool hold_the_uncertain(const RecordingSystem& system) {
     const Eigen::MatrixXd covariance = system.coefficient_covariance();
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
     for (std::size_t k = unknown.size(); k-- > 0;) {
@@ -272,11 +272,9 @@ class Fitter {
       const double uncertainty =
           std::sqrt(covariance(at, at)) * one.largest / facts_of(effect.channel).prior_sd;
       if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
-      hold(unknown[k], uncertainty > kLargestUncertainty
-                           ? fmt::format("these data leave it uncertain by {:.1f} times its "
-                                         "plausible size",
-                                         uncertainty)
-                           : "next to nothing of it is told from the map and the poses");
+      hold(unknown[k],
+           uncertainty > kLargestUncertainty ? NotFitted::uncertain : NotFitted::faint,
+           uncertainty);
       return true;
     }
     return false;
@@ -285,7 +283,7 @@ class Fitter {
   /// Neither a coefficient nor the path has moved, from which the columns were made.
   [[nodiscard]] bool settled() const {
     constexpr double kStill = 1e-6;  // m and rad
-    if (bent_ > 1e-3) return false;
+    if (offset_change_ > 1e-3) return false;
     if (fit_.columns.border.empty()) return true;
     return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill : change_ < 1.0;
   }
@@ -295,11 +293,9 @@ class Fitter {
       const Effect& effect = fit_.model.effects[e];
       EffectEstimate estimate{effect, std::vector<double>(effect.coefficients.size(), 0.0), {}};
       for (std::size_t place = 0; place < effect.coefficients.size(); ++place) {
-        if (why_not_[e][place].empty()) continue;
+        if (!not_fitted_[e][place]) continue;
         estimate.sd[place] = kInfinity;
-        estimate.not_fitted.push_back(fmt::format("{} ({}): not fitted, {}", effect.name,
-                                                  effect.shape[place % effect.shape.size()].text(),
-                                                  why_not_[e][place]));
+        estimate.not_fitted.push_back(*not_fitted_[e][place]);
       }
       fit_.effects.push_back(std::move(estimate));
     }
@@ -317,19 +313,20 @@ class Fitter {
   }
 
   const std::vector<Recording>& recorded_;
-  ModelFitOptions options_;
-  ModelFit fit_;
+  FitterOptions options_;
+  FitState fit_;
   RecordingState state_;
   std::vector<Effect> given_;                      ///< with the coefficients at first
-  std::vector<std::vector<std::string>> why_not_;  ///< per effect and place; empty: fitted
+  /// Per effect and place; nothing where fitted.
+  std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted_;
   double change_ = 0.0;                            ///< of the coefficients, in what is negligible
-  double bent_ = 0.0;                              ///< of the segments' values, in sds
+  double offset_change_ = 0.0;                     ///< of the linearisation offsets, in sds
   double moved_ = 0.0;                             ///< of the path, m and rad
 };
 
 }  // namespace
 
-std::map<std::string, Vector2> landmark_places(const ModelFit& fit) {
+std::map<std::string, Vector2> landmark_places(const FitState& fit) {
   std::map<std::string, Vector2> places;
   for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
     places[fit.problem.landmarks[k]] = fit.adjustment.state.landmarks[k];
@@ -337,7 +334,7 @@ std::map<std::string, Vector2> landmark_places(const ModelFit& fit) {
   return places;
 }
 
-Eigen::VectorXd offsets_of(const ModelFit& fit) {
+Eigen::VectorXd offsets_of(const FitState& fit) {
   Eigen::VectorXd result(static_cast<Eigen::Index>(fit.columns.border.size()));
   for (std::size_t k = 0; k < fit.columns.border.size(); ++k) {
     const Coefficient& one = fit.columns.coefficients[k];
@@ -347,8 +344,8 @@ Eigen::VectorXd offsets_of(const ModelFit& fit) {
   return result;
 }
 
-ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
-                   const ModelFitOptions& options) {
+FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
+                   const FitterOptions& options) {
   return Fitter(recordings, model, options).run();
 }
 

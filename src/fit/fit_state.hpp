@@ -1,21 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A model fitted to recordings: map, poses and, where wanted, the coefficients of its effects.
+// All that is known of a model fitted to recordings (trussmap/fit_model.hpp), and the fit.
 //
 //   model --effect_columns--> border --adjust--> state, coefficients --fitted_paths--> paths
 //             ^                                                                          |
 //             '--------- shapes that speak of heading, x, y; delays --------------------'
 //
 // Shapes see the path of the fit itself, so the two are repeated in turn until the coefficients
-// stay. A delay is taken out of the time stamps before each round.
+// stay. Time stamps are moved back by a delay before each round.
 //
-// Nothing is fitted that the data cannot show: a coefficient is left as it was, and named, where no
+// Nothing is fitted that the data cannot show: a coefficient keeps its value, and is named, where no
 // measurement tells it from the unknowns, or too little does (kLeastShare, kLargestUncertainty).
 #pragma once
 
 #include "estimation/recording_adjustment.hpp"
 #include "fit/effect_columns.hpp"
+#include "trussmap/fit_model.hpp"
 
 #include <map>
 #include <optional>
@@ -24,29 +25,21 @@
 
 namespace trussmap {
 
-struct ModelFit;
-
-struct ModelFitOptions {
-  bool fit_effects = true;  ///< false: coefficients stay as the model has them (0 where absent)
+struct FitterOptions {
+  bool fit_effects = true;  ///< as FitOptions
   /// What is left out is given in the recordings' own times; delays move it with its sightings.
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
   int max_rounds = 30;
   double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
   /// Start from this fit of the same recordings (to more or fewer of their measurements).
-  const ModelFit* near = nullptr;
+  const FitState* near = nullptr;
 };
 
-struct EffectEstimate {
-  Effect effect;           ///< with coefficients
-  std::vector<double> sd;  ///< standard errors; 0 where held, infinite where not fitted
-  std::vector<std::string> not_fitted;  ///< why, one line per coefficient that is not
-};
-
-struct ModelFit {
-  Model model;  ///< its effects with their coefficients
+struct FitState {
+  Model model;  ///< with resolved effects and their coefficients
   std::vector<EffectEstimate> effects;
-  std::vector<Recording> recordings;  ///< as fitted: delays taken out
+  std::vector<Recording> recordings;  ///< as fitted: moved back by the delays
   RecordingProblem problem;
   EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
   RecordingAdjustment adjustment;
@@ -56,13 +49,25 @@ struct ModelFit {
 
 /// Throws SolveError as adjust does (but not for coefficients), std::invalid_argument on effects
 /// that cannot be applied.
-[[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
-                                 const ModelFitOptions& options = {});
+[[nodiscard]] FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
+                                 const FitterOptions& options = {});
+
+[[nodiscard]] FitterOptions fitter_options(const FitOptions& options);
+
+/// What of it everybody may see, the rest behind ModelFit::state.
+[[nodiscard]] ModelFit model_fit(FitState state, const FitOptions& options);
+
+/// Another model of the same recordings, by the same options, started from this fit.
+[[nodiscard]] ModelFit refit(const std::vector<Recording>& recordings, const Model& model,
+                             const ModelFit& near);
+
+/// How many coefficients were estimated.
+[[nodiscard]] int estimated_coefficients(const FitState& fit);
 
 /// Where the fit has the landmarks, m, map frame.
-[[nodiscard]] std::map<std::string, Vector2> landmark_places(const ModelFit& fit);
+[[nodiscard]] std::map<std::string, Vector2> landmark_places(const FitState& fit);
 
-/// All coefficients of the border less their references.
-[[nodiscard]] Eigen::VectorXd offsets_of(const ModelFit& fit);
+/// All effect parameters less their references.
+[[nodiscard]] Eigen::VectorXd offsets_of(const FitState& fit);
 
 }  // namespace trussmap

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A model set against measurements: is it consistent, where does it fail, and with what does its
+// error grow?
+//
+//   held out   legs that no fit has seen (held_out.hpp)
+//   worst      legs and routes by the energy locked in them; forces in the bars
+//   trends     residual of a kind against a variable, as score tests: a trend of stretch with
+//              payload is the effect travel x payload
+//   sources    sum of squared residuals over redundancy, per source of noise: 1 if its standard
+//              deviation is right, its square root the factor by which it is too small
+//
+// One rule for compare, diagnose and discover, so that none contradicts another on the same fit.
+// A model is consistent with the recordings at a level a where
+//
+//   misfit    neither chi^2 as a whole nor the strongest trend is significant: 2 min(p) >= a
+//   effects   and no effect is missing: none of those that diagnose tries is significant at a
+//
+// Each of the two raises a false alarm in a share a of recordings at most. compare asks the second
+// only where the first is answered.
+#pragma once
+
+#include "trussmap/fit_model.hpp"
+#include "trussmap/held_out.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// Level of significance wherever none is given.
+inline constexpr double kSignificance = 0.05;
+
+struct LegMisfit {
+  std::string from;
+  std::string to;
+  double t = 0.0;                  ///< s, at its end
+  double chi2 = 0.0;               ///< of its segments
+  int dof = 0;                     ///< values among them
+  double stretch_error = 0.0;      ///< (s - s0)/s0, signed: + is measured too long
+  double orientation_error = 0.0;  ///< rad, signed
+};
+
+struct RouteMisfit {
+  std::string from;
+  std::string to;
+  int traversals = 0;
+  double chi2 = 0.0;
+  double force = 0.0;              ///< in the bar, along it, 1/m: gradient of chi^2/2; + is tension
+  double stretch_error = 0.0;      ///< mean, signed
+  double orientation_error = 0.0;  ///< mean, signed, rad
+};
+
+struct LandmarkMisfit {
+  std::string landmark;
+  int sightings = 0;
+  double chi2 = 0.0;  ///< of its sightings and survey
+};
+
+struct Trend {
+  std::string kind;     ///< stretch, orientation, turn, compass, sighting
+  std::string against;  ///< heading, speed, payload_kg, ...; "all" for a constant
+  Effect effect;        ///< the trend as an effect, with its estimated coefficients
+  double score = 0.0;   ///< chi^2 that it explains
+  int dof = 0;
+  double p_value = 1.0;
+  double p_adjusted = 1.0;  ///< Holm, over all trends
+  double size = 0.0;        ///< rms of g over rows or events, unit of the channel
+  std::string unit;
+};
+
+struct SourceCalibration {
+  std::string source;   ///< "wheels", "compass", "sighting", ...: the model's [noise]
+  double factor = 1.0;  ///< by which its stated standard deviation is too small
+  double sd = 0.0;      ///< of the factor
+  double redundancy = 0.0;
+};
+
+/// Standardised residuals of one source of noise: a sample of the standard normal distribution
+/// where the source is as noisy as stated.
+struct SourceResiduals {
+  std::string source;
+  std::vector<double> standardised;  ///< ascending; what is not checked is not among them
+};
+
+/// A measurement that the others contradict.
+struct Outlier {
+  std::string what;  ///< "standing on landmark 12 at t = 3.500 s"
+  double statistic = 0.0;
+  int dof = 0;
+  double p_adjusted = 1.0;  ///< Bonferroni, over all measurements
+};
+
+/// What recordings lack for telling effects apart.
+enum class Lack {
+  positions,        ///< neither survey nor truth
+  compass,          ///< neither compass nor truth
+  headings,         ///< `count` of 8 directions are driven
+  turning_sense,    ///< `share` of all turning is to one side
+  leg_lengths,      ///< all legs are about equally long
+  speeds,           ///< one speed
+  spin_rates,       ///< turns on the spot at one rate
+  rests,            ///< the robot hardly ever stands
+  covariate_range,  ///< `name` never changes
+  revisits          ///< `count` of `total` landmarks are visited once
+};
+
+struct DataLack {
+  Lack what = Lack::positions;
+  int count = 0;
+  int total = 0;
+  double share = 0.0;
+  bool to_the_left = false;
+  std::string name = {};
+};
+
+struct CompareOptions {
+  FitOptions fit = {};  ///< coefficients are held as the model has them, whatever it says
+  LegOptions legs = {};
+  double level = kSignificance;  ///< chance of a false "misfit", see above
+};
+
+/// What speaks against a model.
+enum class Objection { none, chi2, trend, effect };
+
+struct Comparison {
+  Objection objection = Objection::none;
+  std::string missing;  ///< the effect that speaks against it
+  double chi2 = 0.0;
+  int dof = 0;
+  int coefficients = 0;  ///< estimated in this fit, each at the cost of a degree of freedom
+  double p_value = 1.0;  ///< of chi^2 as a whole
+  std::size_t legs = 0;
+  std::size_t landmarks = 0;
+  HeldOut held_out;
+  std::vector<LegMisfit> worst;  ///< all legs, worst first
+  std::vector<RouteMisfit> routes;
+  std::vector<LandmarkMisfit> worst_landmarks;
+  std::vector<Trend> trends;  ///< strongest first
+  std::vector<SourceCalibration> sources;
+  std::vector<SourceResiduals> residuals;
+  std::vector<Outlier> outliers;  ///< most significant first
+  std::vector<DataLack> lacks;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] bool consistent() const { return objection == Objection::none; }
+  [[nodiscard]] double misfit() const { return chi2 / (dof > 1 ? dof : 1); }  ///< 1 is right
+};
+
+/// Throws like fit_model.
+[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const Model& model,
+                                 const CompareOptions& options = {});
+
+/// The same where the fit of these recordings is there already, with coefficients held or not.
+[[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                 const CompareOptions& options = {});
+
+/// A model's effects fitted, beside the same robot without them.
+struct EffectGain {
+  ModelFit without;
+  ModelFit with;
+  HeldOut held_out_without;
+  HeldOut held_out_with;
+  double predicted_decrease = 0.0;  ///< of chi^2, by the score test before the fit
+};
+
+/// `without` is a fit of the model without effects. Throws like fit_model.
+[[nodiscard]] EffectGain gain_of_effects(const std::vector<Recording>& recordings,
+                                         const ModelFit& without, const ModelFit& with,
+                                         const LegOptions& legs = {});
+
+}  // namespace trussmap

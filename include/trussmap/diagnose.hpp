@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Which physical effect is missing?
+//
+//   fit of the present model --> score tests of all candidates --> winner, if any is significant
+//        |                              ^                                |
+//        '--> single events, noise      '------ conditioned on it <------'   a second, a third ...
+//
+//   candidates   the whole catalogue, and every channel against every variable and covariate
+//   p adjusted   Holm's, over all that was tried, members of families counted one by one; judged
+//                against the dispersion that the candidate itself would leave, or against that of
+//                the very rows that speak for it where it is clearly larger: a wrong noise law or
+//                a single bad leg makes no effect
+//   order        evidence: log Bayes factor, sizes equally likely on a logarithmic scale, and a
+//                little more belief in the catalogue than in a free form
+//   look-alike   |P_r v| / |v| >= 0.95: of the winner's own trace v, what a rival's columns can
+//                show as well
+//   absent       where even the minimal detectable size would raise the arrival error by less than
+//                5 %
+//   misfit       where no effect is missing: by the rule of compare.hpp
+//
+// Laws of noise and single events are asked of what the findings leave.
+#pragma once
+
+#include "trussmap/compare.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+enum class Status { missing, absent, negligible, cannot_tell };
+
+struct LookAlike {
+  Effect effect;
+  double cosine = 0.0;
+};
+
+struct Finding {
+  Effect effect;          ///< with the estimated coefficients
+  bool catalogue = true;  ///< false: a channel with a free form of a variable
+  double score = 0.0;     ///< chi^2 that adding it would take away
+  int dof = 0;
+  double p_value = 1.0;
+  double p_adjusted = 1.0;
+  double evidence = 0.0;
+  std::vector<double> sd;
+  std::vector<double> minimal_detectable;  ///< per coefficient alone: 90 % power at p = 0.05/200
+  Status status = Status::cannot_tell;
+  HeldOutMetrics held_out;             ///< predicted, with it added
+  std::vector<LookAlike> look_alikes;  ///< of those that are missing
+  /// Of those that are missing: the coefficients with all that is missing added at once.
+  std::vector<double> joint;
+  std::vector<double> joint_sd;
+  int tried = 1;  ///< members of its family
+};
+
+/// Why recordings cannot show an effect.
+enum class Unseen {
+  never_happens,  ///< what it goes with never occurs
+  in_the_map,     ///< without measured positions the map absorbs it
+  absorbed,       ///< map and poses absorb it completely
+  too_small       ///< it would have to be implausibly large
+};
+
+struct Unobservable {
+  Effect effect;
+  Unseen why = Unseen::absorbed;
+  bool positions = false;  ///< some were measured: by a survey, or as truth
+};
+
+/// More noise than the model states, by one law.
+struct NoiseTest {
+  std::string law;     ///< "per metre", "per second", "per start", ...; a variant after a comma
+  double score = 0.0;  ///< fall of -2 log of the restricted likelihood
+  int dof = 1;
+  double p_value = 1.0;
+  double p_adjusted = 1.0;  ///< Holm, over the laws
+  double size = 0.0;        ///< standard deviation that the law adds, in `unit`
+  double stated = 0.0;      ///< that the model states, same unit; of a law that the model has
+  std::string unit;         ///< "m/sqrt(m)", "m per start", ...; empty: a shape of noise, no amount
+};
+
+enum class EventKind { leg, landmark, sighting, session };
+
+/// What a single event did, and what its sizes are.
+enum class EventChange {
+  left_wheel,    ///< that wheel's travel jumped: m, + is more than it said
+  right_wheel,   ///< likewise
+  motion,        ///< the robot was moved: m ahead, m to the left, rad
+  position_off,  ///< a sighting is off: m, m
+  range_off,     ///< a reading is off: m
+  view_off,      ///< a reading is off: m and rad
+  survey_off,    ///< a landmark is not where the survey has it: m along x, m along y
+  moved,         ///< a landmark was moved: m along x, m along y
+  session_off,  ///< a session is not like the others: travel, turn, compass (rad, NaN: none), delay
+                ///< (s)
+  left_out      ///< a sighting that the gate left out: no size
+};
+
+/// When a landmark was moved.
+struct MovedWhen {
+  std::optional<double> before_t = std::nullopt;  ///< s; none: between two sessions
+  std::string session;                            ///< named only where there are several
+  std::string next_session;                       ///< of a move between two
+};
+
+struct EventTest {
+  EventKind kind = EventKind::leg;
+  std::string name;  ///< "12 -> 13 at t = 45.2 s", "12", "run 3"
+  EventChange change = EventChange::motion;
+  std::vector<double> size;
+  MovedWhen when;
+  double score = 0.0;
+  int dof = 0;
+  double p_value = 1.0;     ///< of score/phi, times the places tried for this event
+  double p_adjusted = 1.0;  ///< Holm, over all events
+};
+
+/// Two effects that a drive could tell apart.
+struct NextDrive {
+  Effect effect;
+  Effect rival;
+  std::vector<std::string> slow;  ///< covariates that vary slowly over the recordings
+};
+
+struct Diagnosis {
+  enum class Verdict { missing, nothing_missing, unexplained_misfit };
+  Verdict verdict = Verdict::nothing_missing;
+  Objection objection = Objection::none;  ///< what an unexplained misfit shows in
+  std::string missing;                    ///< name of the first finding, if it is missing
+  double p_value = 1.0;                   ///< its, adjusted; else of chi^2
+  double chi2 = 0.0;
+  int dof = 0;
+  int coefficients = 0;           ///< estimated in this fit
+  HeldOut held_out;               ///< of the present model
+  HeldOutMetrics with_missing;    ///< predicted, with all that is missing added
+  std::vector<Finding> findings;  ///< best first
+  std::vector<Unobservable> unobservable;
+  std::vector<NoiseTest> noise;   ///< best explanation first
+  std::vector<EventTest> events;  ///< likeliest first
+  std::vector<DataLack> lacks;
+  std::optional<NextDrive> next_drive;  ///< to tell the first finding from its rivals
+  std::size_t tried = 0;                ///< tests
+  std::vector<std::string> warnings;
+};
+
+struct DiagnoseOptions {
+  FitOptions fit = {};
+  LegOptions legs = {};
+  double level = kSignificance;  ///< chance of naming an effect where none is missing
+  std::size_t most_missing = 4;
+};
+
+/// Throws like fit_model.
+[[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
+                                 const DiagnoseOptions& options = {});
+
+/// The same where the fit of these recordings is there already.
+[[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                 const DiagnoseOptions& options = {});
+
+/// Findings that are missing, or there but too small to matter.
+[[nodiscard]] std::vector<const Finding*> found_by(const Diagnosis& diagnosis);
+
+}  // namespace trussmap

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Diagnose, add, fit, and again, while that is justified.
+//
+//   diagnose --> winner and its look-alikes, each fitted --> the best of them is added
+//      ^                                                          |
+//      '---- earlier effects: places and thresholds sought anew, <'
+//            backward elimination of those that are no longer significant
+//
+// Among look-alikes chi^2 decides where it can, else the error of held-out legs, else the order of
+// the diagnosis. Every step's held-out figures are over the same legs.
+#pragma once
+
+#include "trussmap/diagnose.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// One model on the way.
+struct DiscoveryStep {
+  std::optional<Effect> added;  ///< none: the model given
+  std::vector<std::string> dropped;
+  double chi2 = 0.0;
+  int dof = 0;
+  HeldOut held_out;
+  double predicted_chi2 = 0.0;  ///< decrease that the diagnosis predicted
+  HeldOutMetrics predicted;     ///< held-out figures that it predicted
+  std::vector<LookAlike> look_alikes;
+};
+
+enum class StopReason {
+  nothing_significant,
+  limit_reached,    ///< of the number of effects
+  cannot_be_fitted, ///< `effect` beside what the model has
+  predicts_worse    ///< `effect` fits these legs, but predicts others worse
+};
+
+struct Stopped {
+  StopReason reason = StopReason::nothing_significant;
+  std::string effect;
+  std::size_t limit = 0;  ///< effects, where that was reached
+};
+
+struct Discovery {
+  std::vector<DiscoveryStep> steps;  ///< the first is the model given
+  ModelFit given;
+  ModelFit found;
+  Stopped stopped;
+  bool consistent = true;  ///< the model found, by the rule of compare.hpp
+  Diagnosis first;         ///< of the model given
+  Diagnosis last;          ///< of the model found
+};
+
+/// A part of the work that begins.
+struct DiscoveryStage {
+  enum class Kind { fitting_given, searching, fitting_effect };
+  Kind kind = Kind::fitting_given;
+  std::string effect;  ///< that is being fitted
+};
+
+struct DiscoverOptions {
+  DiagnoseOptions diagnosis;
+  std::size_t most_effects = 6;
+  std::function<void(const DiscoveryStage&)> progress = {};
+};
+
+/// Throws like fit_model.
+[[nodiscard]] Discovery discover(const std::vector<Recording>& recordings, const Model& model,
+                                 const DiscoverOptions& options = {});
+
+}  // namespace trussmap

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A model fitted to recordings: map, poses and, where wanted, the coefficients of its effects.
+//
+//   recordings, model --fit_model--> ModelFit --> compare, diagnose, predict_held_out, pages
+//
+// Least squares of all that was measured, each by the noise that the model states for it. Shapes
+// see the path of the fit itself, so path and coefficients are estimated in turn until they stay.
+//
+// Nothing is fitted that the data cannot show: such a coefficient keeps the model's value (0 where
+// it has none), and EffectEstimate says so.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/planar.hpp"
+#include "trussmap/recording.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct FitOptions {
+  bool use_survey = true;   ///< survey.csv as measurements
+  bool use_truth = true;    ///< truth.csv likewise
+  bool fit_effects = true;  ///< false: coefficients stay as the model has them
+  /// Sightings that the others contradict by more are left out: squared standard deviations, 16 for
+  /// one right sighting in 3000. Absent: all stay.
+  std::optional<double> gate = std::nullopt;
+};
+
+/// Why a coefficient was not fitted.
+enum class NotFitted {
+  undetermined,  ///< no measurement tells it from the map, the poses or the rest
+  faint,         ///< the map and the poses absorb it almost completely
+  uncertain      ///< its standard error is a large share of the size that it may have
+};
+
+struct UnfittedCoefficient {
+  std::size_t place = 0;  ///< in the effect's list of coefficients
+  NotFitted why = NotFitted::undetermined;
+  double uncertainty = 0.0;  ///< standard error over the prior standard deviation; of `uncertain`
+};
+
+struct EffectEstimate {
+  Effect effect;                                ///< with channel, shape and coefficients
+  std::vector<double> sd;                       ///< 0 where held, infinite where not fitted
+  std::vector<UnfittedCoefficient> not_fitted;  ///< the coefficients that were not
+};
+
+struct FittedLandmark {
+  std::string name;
+  Vector2 position = Vector2::Zero();            ///< m, map frame
+  Matrix2 covariance = Matrix2::Zero();          ///< m^2; zero where held
+  std::optional<Vector2> survey = std::nullopt;  ///< m, where surveyed
+};
+
+/// All that the fit knows, for the library's own use.
+struct FitState;
+
+struct ModelFit {
+  Model model;  ///< effects with channel, shape and the coefficients found
+  FitOptions options;
+  std::vector<EffectEstimate> effects;    ///< in the model's order
+  std::vector<FittedLandmark> landmarks;  ///< in order of first sighting
+  double chi2 = 0.0;
+  int dof = 0;           ///< measured values less unknowns; coefficients held are no unknowns
+  int coefficients = 0;  ///< estimated, each of which costs a degree of freedom
+  double p_value = 1.0;  ///< chance of a chi^2 as large where the model is right
+  bool settled = true;   ///< shapes and path agree
+  std::vector<std::string> left_out;  ///< sightings that the gate left out
+  std::vector<std::string> warnings;
+  std::shared_ptr<const FitState> state;
+};
+
+/// Throws SolveError where something cannot be determined (a landmark, a pose, sessions that
+/// nothing connects), InputError where a recording has nothing to fit, std::invalid_argument on an
+/// effect that cannot be applied to these recordings.
+[[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+                                 const FitOptions& options = {});
+
+/// The map of a fit, as it is drawn.
+struct FittedMap {
+  std::vector<FittedLandmark> landmarks;
+  std::vector<std::vector<Vector2>> paths;  ///< m, one per session, thinned out
+};
+
+/// At most about `points` points of paths in all.
+[[nodiscard]] FittedMap fitted_map(const ModelFit& fit, std::size_t points = 2000);
+
+}  // namespace trussmap

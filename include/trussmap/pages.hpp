@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Pages: what a command found, in one HTML file that needs nothing else, with charts. A page draws
+// results and what was gathered for it (evidence.hpp); it estimates nothing.
+//
+//   results --comparison_page ...--> Page --render_page--> HTML
+//                                         --draw_charts--> SVG, one for each chart
+//
+// `subject` is what the page is about: recordings and model. Same input, same bytes.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+struct BuiltMap;
+struct ComparisonEvidence;
+struct Diagnosis;
+struct DiagnosisEvidence;
+struct Discovery;
+struct DiscoveryEvidence;
+struct FitEvidence;
+struct NoiseCalibration;
+struct PageContent;
+struct SquareCalibration;
+struct TourResult;
+struct TruthCalibration;
+
+class Page {
+ public:
+  /// For the library's own use, as `content`.
+  Page(PageContent content);  // NOLINT(google-explicit-constructor)
+  [[nodiscard]] const PageContent& content() const { return *content_; }
+
+ private:
+  std::shared_ptr<const PageContent> content_;
+};
+
+/// What makes the charts live (src/report/page): a style sheet, and a script with the chart
+/// library.
+struct PageRuntime {
+  std::string_view style;
+  std::string_view script;
+};
+
+/// The file.
+[[nodiscard]] std::string render_page(const Page& page, const PageRuntime& runtime);
+
+struct DrawnChart {
+  std::string id;   ///< small letters, digits, -
+  std::string svg;  ///< a file
+};
+[[nodiscard]] std::vector<DrawnChart> draw_charts(const Page& page);
+
+[[nodiscard]] Page comparison_page(const ComparisonEvidence& evidence, const std::string& subject);
+[[nodiscard]] Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence,
+                                  const std::string& subject);
+[[nodiscard]] Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidence,
+                                  const std::string& subject);
+[[nodiscard]] Page fit_page(const FitEvidence& evidence, const std::string& subject);
+[[nodiscard]] Page map_page(const BuiltMap& built, const std::string& subject);
+[[nodiscard]] Page noise_page(const NoiseCalibration& found, const std::string& subject);
+[[nodiscard]] Page square_page(const SquareCalibration& found, const std::string& subject);
+[[nodiscard]] Page truth_page(const TruthCalibration& found, const std::string& subject);
+/// Bands are 95 % intervals of the means over the seeds.
+[[nodiscard]] Page tour_page(const TourResult& result, int seeds, const std::string& subject);
+
+}  // namespace trussmap

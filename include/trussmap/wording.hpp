@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Results in words that a robot's owner can act on: sizes, verdicts, advice. Sentences begin small
+// and end without a full stop; "+-" and " deg" are plain text.
+#pragma once
+
+#include "trussmap/compare.hpp"
+#include "trussmap/diagnose.hpp"
+#include "trussmap/discover.hpp"
+#include "trussmap/model.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+// Effects.
+
+/// "the wheelbase is 2.0 +- 0.1 % larger than nominal". `effect` has coefficients;
+/// `sd` as many standard errors (0 or infinite: none is given).
+[[nodiscard]] std::string in_words(const Effect& effect, const std::vector<double>& sd);
+
+/// A name as a sentence has it: "slippery patch at x 12.3 m, y 9.8 m, radius 3.1 m" for
+/// "slippery patch (x=12.345, y=9.8, r=3.1)", "turning error with turn rate" for "turn with
+/// turn_rate". A user's own name stays.
+[[nodiscard]] std::string name_in_words(const Effect& effect);
+/// The same without what is open in the catalogue: "slippery patch".
+[[nodiscard]] std::string short_name(const Effect& effect);
+
+/// "compass x sin(heading), cos(heading)".
+[[nodiscard]] std::string formula_of(const Effect& effect);
+
+/// The most that an effect does in some recordings, from its least to its largest g there: "the
+/// compass reads up to 2.9 deg too much or too little".
+[[nodiscard]] std::string size_in_words(const Effect& effect, double least, double most);
+
+/// "hard iron (cos(heading)): not fitted, no measurement tells it from the map ...".
+[[nodiscard]] std::string in_words(const EffectEstimate& estimate, const UnfittedCoefficient& one);
+
+// Advice.
+
+struct Advice {
+  std::string lack;   ///< what these data lack
+  std::string why;    ///< why that matters
+  std::string drive;  ///< what to drive or to measure
+};
+[[nodiscard]] Advice advice_on(const DataLack& lack);
+/// "lack: why; drive".
+[[nodiscard]] std::string in_words(const Advice& advice);
+[[nodiscard]] std::vector<std::string> in_words(const std::vector<DataLack>& lacks);
+
+/// Why recordings cannot show an effect, and what helps.
+[[nodiscard]] Advice advice_on(const Unobservable& unseen);
+
+/// What to drive to tell two effects apart, where `slow` are the covariates that vary slowly.
+[[nodiscard]] std::string separating_drive(const Effect& one, const Effect& other,
+                                           const std::vector<std::string>& slow);
+[[nodiscard]] std::string in_words(const std::optional<NextDrive>& drive);  ///< none: empty
+
+// Findings beside effects.
+
+/// "each start adds 4.0 mm of travel noise".
+[[nodiscard]] std::string in_words(const NoiseTest& test);
+/// "the left wheel said 3.1 cm too little at once, in the leg 12 -> 13 at t = 45.2 s".
+[[nodiscard]] std::string in_words(const EventTest& event);
+
+// Verdicts, as files have them.
+
+[[nodiscard]] std::string_view name_of(Status status);                ///< "cannot tell"
+[[nodiscard]] std::string_view name_of(EventKind kind);               ///< "leg"
+[[nodiscard]] std::string_view verdict_of(const Comparison& result);  ///< "misfit"
+[[nodiscard]] std::string_view verdict_of(const Diagnosis& result);   ///< "nothing missing"
+[[nodiscard]] std::string_view verdict_of(const Discovery& result);   ///< "unexplained misfit"
+
+/// "misfit: errors are 2.3 times what the model's noise allows": the verdict, then what it rests
+/// on.
+[[nodiscard]] std::string verdict_in_words(const Comparison& result);
+[[nodiscard]] std::string verdict_in_words(const Diagnosis& result);
+[[nodiscard]] std::string verdict_in_words(const Discovery& result);
+
+/// A finding's status and size, with all that is missing: "missing: hard iron; the compass ...".
+[[nodiscard]] std::string in_words(const Finding& finding);
+
+/// "nothing more is significant".
+[[nodiscard]] std::string stop_in_words(const Discovery& result);
+
+/// What speaks against the model: "errors are 2.3 times what the model's noise allows".
+[[nodiscard]] std::string objection_in_words(const Comparison& result);
+
+// Figures.
+
+/// "35 legs not used in the fit end 16.0 mm off (rms), ...".
+[[nodiscard]] std::string in_words(const HeldOut& held_out);
+/// "chi2 118.2, dof 116, 2 coefficients estimated".
+[[nodiscard]] std::string fit_in_words(double chi2, int dof, int coefficients);
+
+/// "2.9", "0.031", "120": two digits, and never an exponent above 1.
+[[nodiscard]] std::string two_digits(double value);
+
+}  // namespace trussmap

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What recordings lack for telling effects apart.
+#pragma once
+
+#include "trussmap/compare.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// The gravest first.
+[[nodiscard]] std::vector<DataLack> lacks_of(const std::vector<Recording>& recordings,
+                                             const Robot& robot, const FitOptions& options);
+
+}  // namespace trussmap

@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/effect_search.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace trussmap {
+namespace {
+
+constexpr double kSecondLevel = 0.02;   // of the level
+constexpr double kSecondShare = 0.002;  // of the chi^2 that the first explain
+constexpr std::size_t kFamiliesRefined = 3;
+constexpr double kWorthALook = 0.01;  // p
+constexpr double kLawLevel = 0.01;
+constexpr double kStays = 0.001;  // p, with the others there
+constexpr std::size_t kMostEvents = 8;
+
+double dispersion_of(const Score& score, const LocalDispersion& local) {
+  return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
+}
+
+void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+  columns.conservativeResize(more.rows(), columns.cols() + more.cols());
+  columns.rightCols(more.cols()) = more;
+}
+
+/// Tests again those for which `wanted` holds.
+template <typename Wanted>
+void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
+                const Wanted& wanted) {
+  std::vector<std::size_t> places;
+  std::vector<Candidate> candidates;
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    if (!wanted(still[k])) continue;
+    places.push_back(k);
+    candidates.push_back(still[k].candidate);
+  }
+  const LocalDispersion local(fit, left);
+  visit_scores(left, candidates, Resolution::screening, [&](std::size_t k, Score& score) {
+    Tested& one = still[places[k]];
+    one.dispersion = dispersion_of(score, local);
+    drop_columns(score);
+    one.score = score;
+  });
+}
+
+bool all(const Tested&) {
+  return true;
+}
+
+}  // namespace
+
+EffectSearch::EffectSearch(const FitState& fit, const ScoreTest& tests,
+                           const SearchOptions& options, const HeldOutLegs* legs)
+    : fit_(fit), tests_(tests), options_(options), legs_(legs), dispersion_(fit, tests) {
+  if (legs_ != nullptr && !legs_->same_layout(fit.problem)) legs_ = nullptr;
+}
+
+void EffectSearch::run() {
+  test_all();
+  judge(tested_, fit_.adjustment.chi2, fit_.adjustment.dof, tried_);
+  refine_families();
+  judge(tested_, fit_.adjustment.chi2, fit_.adjustment.dof, tried_);
+  find_missing();
+}
+
+void EffectSearch::test_all() {
+  const std::vector<Candidate> candidates = candidates_for(fit_, tests_.context());
+  tried_ = static_cast<int>(candidates.size());
+  std::vector<Candidate> members;
+  std::vector<Candidate> tested;
+  for (const Candidate& one : candidates) (one.family.empty() ? tested : members).push_back(one);
+  struct Best {
+    std::size_t member = 0;
+    double score = -1.0;
+    int tried = 0;
+  };
+  std::map<std::string, Best> families;
+  visit_scores(tests_, members, Resolution::quick, [&](std::size_t k, const Score& score) {
+    Best& best = families[members[k].family];
+    ++best.tried;
+    if (score.score > best.score) best = {k, score.score, best.tried};
+  });
+  for (const auto& [name, best] : families) tested.push_back(members[best.member]);
+  visit_scores(tests_, tested, Resolution::screening, [&](std::size_t k, Score& score) {
+    tested_.emplace_back();
+    take(tested_.back(), tested[k], score);
+    if (!tested[k].family.empty()) tested_.back().tried = families[tested[k].family].tried;
+  });
+}
+
+void EffectSearch::take(Tested& tested, const Candidate& candidate, Score& score) {
+  tested.candidate = candidate;
+  tested.dispersion = dispersion_of(score, dispersion_);
+  if (legs_ != nullptr && score.dof > 0) {
+    tested.slopes = legs_->slopes(score.columns, score.landmarks);
+  }
+  drop_columns(score);
+  tested.score = score;
+}
+
+/// Looks for better shape parameters of the most promising families.
+void EffectSearch::refine_families() {
+  std::vector<Tested*> families;
+  for (Tested& one : tested_) {
+    if (!one.candidate.parameters.empty() && one.score.dof > 0 && one.p_adjusted < 0.5) {
+      families.push_back(&one);
+    }
+  }
+  std::stable_sort(families.begin(), families.end(),
+                   [](const Tested* a, const Tested* b) { return a->evidence > b->evidence; });
+  // What refining may add to a score is bounded: a place that explains little is not the one.
+  double best = 0.0;
+  for (const Tested& one : tested_) best = std::max(best, one.score.score);
+  std::erase_if(families, [&](const Tested* one) { return 2.0 * one->score.score < best; });
+  if (families.size() > kFamiliesRefined) families.resize(kFamiliesRefined);
+  for (Tested* one : families) refine(*one);
+}
+
+void EffectSearch::refine(Tested& tested) {
+  const Candidate better = refined(tests_, tested.candidate);
+  if (better.parameters == tested.candidate.parameters) return;
+  Score score = tests_.test({better.effect}).front();
+  const double found = tested.score.score;
+  take(tested, better, score);
+  tested.share_found = std::min(1.0, found / std::max(tested.score.score, 1e-300));
+}
+
+/// The law of noise that explains more than any effect does, if there is one.
+const NoiseTest* EffectSearch::leading_law(const std::vector<NoiseTest>& laws) const {
+  double most = 0.0;
+  for (const Tested& one : tested_) {
+    if (one.p_adjusted < options_.level) most = std::max(most, one.score.score);
+  }
+  for (const NoiseTest& law : laws) {
+    if (law.unit.empty() || law.p_adjusted >= kLawLevel) continue;  // a shape, or chance
+    return law.score > most ? &law : nullptr;
+  }
+  return nullptr;
+}
+
+/// The likeliest event, if it has a better claim than any effect. A whole session that is out of
+/// line is not among them: what goes with a session's load is an effect.
+std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
+                                                        const ScoreTest& left,
+                                                        const std::vector<Tested>& still,
+                                                        const Eigen::MatrixXd& nuisance) const {
+  if (best_of(still, options_.level) == nullptr) return std::nullopt;
+  double p = 1.0;
+  for (const Tested& one : still) {
+    if (one.score.dof > 0 && !is_implausible(one)) p = std::min(p, one.p_adjusted);
+  }
+  std::vector<TestedEvent> events = test_events(ground, left, nuisance);
+  const auto event = std::find_if(events.begin(), events.end(), [](const TestedEvent& one) {
+    return one.kind != EventKind::session && one.projected.cols() > 0;
+  });
+  if (event == events.end() || event->p_adjusted >= p) return std::nullopt;
+  return std::move(*event);
+}
+
+/// Laws of noise and single events that have a better claim than any effect come before them.
+/// `still`: the effects, asked of what is left.
+void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
+                                    std::vector<Tested>& still) const {
+  const auto significant = [this](const Tested& one) {
+    return one.score.dof > 0 && one.p_adjusted < options_.level;
+  };
+  int dof = fit_.adjustment.dof;
+  if (&ground != &fit_) {
+    test_again(ground, left, still, all);
+    judge(still, left.residuals().squaredNorm(), dof, tried_);
+  }
+  Eigen::MatrixXd nuisance(left.residuals().size(), 0);
+  for (std::size_t k = 0; k < kMostEvents; ++k) {
+    const std::optional<TestedEvent> event = claiming_event(ground, left, still, nuisance);
+    if (!event) return;
+    left.condition_on(event->projected);
+    append(nuisance, event->projected);
+    dof -= event->dof;
+    std::vector<double> p_before;
+    for (const Tested& one : still) p_before.push_back(one.p_adjusted);
+    test_again(ground, left, still, significant);
+    judge(still, left.residuals().squaredNorm(), dof, tried_);
+    // Those not tested again cannot have become better.
+    for (std::size_t j = 0; j < still.size(); ++j) {
+      still[j].p_adjusted = std::max(still[j].p_adjusted, p_before[j]);
+    }
+  }
+}
+
+void EffectSearch::find_missing() {
+  if (best_of(tested_, options_.level) == nullptr) return;
+  const std::vector<NoiseTest> laws = test_noise_laws(fit_, tests_);
+  const NoiseTest* law = leading_law(laws);
+  const std::optional<FitState> noisier =
+      law != nullptr ? std::optional(with_noise(fit_, tests_, *law)) : std::nullopt;
+  const FitState& ground = noisier ? *noisier : fit_;
+  ScoreTest left = noisier ? ScoreTest(ground) : tests_;
+  std::vector<Tested> still = tested_;
+  let_others_claim(left, ground, still);
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    tested_[k].p_value = still[k].p_value;
+    tested_[k].p_adjusted = still[k].p_adjusted;
+  }
+  select(left, ground, still);
+  std::stable_sort(missing_.begin(), missing_.end(),
+                   [this](const MissingEffect& a, const MissingEffect& b) {
+                     return tested_[a.tested].evidence > tested_[b.tested].evidence;
+                   });
+  estimate_jointly();
+  eliminate_backward();
+}
+
+/// The best, then the best of what is left when conditioned on it, and so on.
+void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) {
+  int dof = fit_.adjustment.dof;
+  const double at_first = left.residuals().squaredNorm();
+  while (missing_.size() < options_.most_missing) {
+    // What a first effect leaves for being so large is no second one.
+    const double level = missing_.empty() ? options_.level : kSecondLevel * options_.level;
+    const Tested* best = best_of(still, level);
+    if (best == nullptr) break;
+    const double chi2 = left.residuals().squaredNorm();
+    if (!missing_.empty() && best->score.score < kSecondShare * (at_first - chi2)) break;
+    const auto at = static_cast<std::size_t>(best - still.data());
+    missing_.push_back({at, {}});
+    const Score whole = tests_.test({tested_[at].candidate.effect}).front();
+    left.condition_on(left.columns(tested_[at].candidate.effect));
+    append(nuisance_, whole.projected);
+    dof -= whole.dof;
+    if (missing_.size() == options_.most_missing) break;
+    test_again(ground, left, still, all);
+    judge(still, left.residuals().squaredNorm(), dof, tried_);
+  }
+}
+
+/// Sizes of all that is missing, each with the others there.
+void EffectSearch::estimate_jointly() {
+  for (MissingEffect& one : missing_) {
+    const Tested& tested = tested_[one.tested];
+    ScoreTest others = tests_;
+    for (const MissingEffect& other : missing_) {
+      if (&other == &one) continue;
+      others.condition_on(tests_.columns(tested_[other.tested].candidate.effect));
+    }
+    one.joint = others.test({tested.candidate.effect}).front();
+    if (one.joint.dof == 0) one.joint = tested.score;
+    drop_columns(one.joint);
+  }
+}
+
+/// Of effects that are found one after the other, a later one may be all that there is.
+void EffectSearch::eliminate_backward() {
+  while (missing_.size() > 1) {
+    const auto weakest = std::max_element(missing_.begin(), missing_.end(),
+                                          [](const MissingEffect& a, const MissingEffect& b) {
+                                            return a.joint.p_value < b.joint.p_value;
+                                          });
+    if (weakest->joint.p_value < kStays) return;
+    missing_.erase(weakest);
+    estimate_jointly();
+  }
+}
+
+}  // namespace trussmap

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The search for missing effects (trussmap/diagnose.hpp): score tests of all candidates, then
+// forward selection of what is significant, each conditioned on those before it.
+//
+//   test_all         members of families quickly, the best of each and all others in full
+//   refine_families  shape parameters of the most promising
+//   let_others_claim a law of noise or a single event that explains more comes first
+//   select           best, conditioned on it the next, and so on
+//   drop             backward elimination of what the others explain
+#pragma once
+
+#include "criticism/event_tests.hpp"
+#include "criticism/local_dispersion.hpp"
+#include "criticism/noise_tests.hpp"
+#include "criticism/tested_candidate.hpp"
+#include "validation/held_out_legs.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace trussmap {
+
+struct SearchOptions {
+  double level = kSignificance;  ///< of the first; the next have to be far more significant
+  std::size_t most_missing = 4;
+};
+
+/// One effect that is missing.
+struct MissingEffect {
+  std::size_t tested = 0;  ///< place among all
+  Score joint;             ///< with all that is missing added at once; without columns
+};
+
+class EffectSearch {
+ public:
+  /// Keeps references. `legs`, which may be nullptr: whose slopes the tests are to have.
+  EffectSearch(const FitState& fit, const ScoreTest& tests, const SearchOptions& options,
+               const HeldOutLegs* legs);
+
+  void run();
+
+  [[nodiscard]] const std::vector<Tested>& tested() const { return tested_; }
+  [[nodiscard]] const std::vector<MissingEffect>& missing() const {
+    return missing_;
+  }  ///< best first
+  /// Projected columns of what is missing.
+  [[nodiscard]] const Eigen::MatrixXd& nuisance() const { return nuisance_; }
+  [[nodiscard]] int tried() const { return tried_; }
+
+ private:
+  void test_all();
+  void take(Tested& tested, const Candidate& candidate, Score& score);
+  void refine_families();
+  void refine(Tested& tested);
+  void find_missing();
+  void select(ScoreTest& left, const FitState& ground, std::vector<Tested>& still);
+  void let_others_claim(ScoreTest& left, const FitState& ground, std::vector<Tested>& still) const;
+  [[nodiscard]] std::optional<TestedEvent> claiming_event(const FitState& ground,
+                                                          const ScoreTest& left,
+                                                          const std::vector<Tested>& still,
+                                                          const Eigen::MatrixXd& nuisance) const;
+  [[nodiscard]] const NoiseTest* leading_law(const std::vector<NoiseTest>& laws) const;
+  void estimate_jointly();
+  void eliminate_backward();
+
+  const FitState& fit_;
+  const ScoreTest& tests_;
+  SearchOptions options_;
+  const HeldOutLegs* legs_;  ///< nullptr: whose slopes nobody wants, or that cannot have any
+  LocalDispersion dispersion_;
+  int tried_ = 0;
+  std::vector<Tested> tested_;
+  std::vector<MissingEffect> missing_;
+  Eigen::MatrixXd nuisance_;
+};
+
+}  // namespace trussmap

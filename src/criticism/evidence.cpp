@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/evidence.hpp"
+
+#include "criticism/comparison.hpp"
+#include "criticism/response.hpp"
+#include "effects/place.hpp"
+#include "fit/fit_state.hpp"
+#include "recording/slow_covariates.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kMostRivalsDrawn = 3;
+
+CompareOptions compare_options(const DiagnoseOptions& options) {
+  return {options.fit, options.legs, options.level};
+}
+
+ModelEvidence model_evidence(const std::vector<Recording>& recordings, const ModelFit& fit,
+                             const ScoreTest& tests, const CompareOptions& options,
+                             const std::optional<std::string>& known_missing = {}) {
+  return {compare(recordings, fit, options, tests, known_missing), fitted_map(fit)};
+}
+
+std::vector<TrendEvidence> trend_evidence(const Comparison& comparison, const FitState& fit,
+                                          const ScoreTest& tests) {
+  std::vector<TrendEvidence> evidence;
+  std::set<std::string> seen;
+  for (const Trend& trend : comparison.trends) {  // strongest first
+    const std::string variable = natural_variable(trend.effect);
+    if (variable.empty() || seen.contains(variable)) continue;
+    Response response = response_along(variable, trend.effect, fit, tests);
+    if (response.bins.empty()) continue;
+    seen.insert(variable);
+    evidence.push_back({trend, std::move(response)});
+  }
+  return evidence;
+}
+
+/// The first few, with the coefficients that each would have.
+std::vector<Effect> drawn_rivals(const std::vector<LookAlike>& rivals, const ScoreTest& tests) {
+  std::vector<Effect> drawn;
+  for (const LookAlike& one : rivals) {
+    if (drawn.size() == kMostRivalsDrawn) break;
+    drawn.push_back(one.effect);
+  }
+  const std::vector<Score> scores = tests.test(drawn);
+  for (std::size_t k = 0; k < drawn.size(); ++k) drawn[k].coefficients = scores[k].coefficients;
+  return drawn;
+}
+
+/// An effect that is looked at, with what looks like it.
+struct Seen {
+  EffectEstimate estimate;
+  std::vector<LookAlike> rivals;
+};
+
+/// Of effects that a fit lacks, each conditioned on the others.
+std::vector<EffectEvidence> effect_evidence(const FitState& without,
+                                            const std::vector<Seen>& effects) {
+  std::vector<EffectEvidence> result;
+  for (const Seen& seen : effects) {
+    const Effect& effect = seen.estimate.effect;
+    ScoreTest tests(without);
+    for (const Seen& other : effects) {
+      if (&other != &seen) tests.condition_on(tests.columns(other.estimate.effect));
+    }
+    EffectEvidence one{seen.estimate, {}, range_of(effect, tests.context()), {}};
+    one.rivals = drawn_rivals(seen.rivals, tests);
+    const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
+    if (!variable.empty()) {
+      one.response = response_along(variable, effect, without, tests, one.rivals);
+    }
+    if (one.response.curve.empty() && !one.response.bins.empty()) {
+      one.response.curve =
+          effect_curve(effect, variable, one.response.bins.front().at, one.response.bins.back().at);
+    }
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+/// The smallest size that would have been seen, as the largest |g| that it makes; 0 where none
+/// would have been.
+double seen_from(const Finding& finding, ShapeRanges& ranges) {
+  Effect effect = finding.effect;
+  double most = 0.0;
+  for (std::size_t k = 0; k < finding.minimal_detectable.size(); ++k) {
+    if (!std::isfinite(finding.minimal_detectable[k])) return 0.0;
+    std::vector<double> alone(effect.coefficients.size(), 0.0);
+    alone.at(k) = finding.minimal_detectable[k];
+    effect.coefficients = std::move(alone);
+    const EffectRange range = ranges.of(effect);
+    most = std::max({most, std::abs(range.least), std::abs(range.most)});
+  }
+  return most;
+}
+
+std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis, const ShapeContext& context) {
+  ShapeRanges ranges(context);
+  std::vector<FindingSize> sizes;
+  for (const Finding& one : diagnosis.findings) {
+    sizes.push_back({ranges.of(one.effect), seen_from(one, ranges)});
+  }
+  return sizes;
+}
+
+/// The model with what is missing added and fitted; with the first alone where not all can be.
+std::optional<ModelFit> fit_with(const std::vector<const Finding*>& missing,
+                                 const std::vector<Recording>& recordings, const ModelFit& fit) {
+  for (std::size_t count = missing.size(); count > 0; count = count > 1 ? 1 : 0) {
+    Model model = fit.model;
+    for (std::size_t k = 0; k < count; ++k) model.effects.push_back(missing[k]->effect);
+    try {
+      return refit(recordings, model, fit);
+    } catch (const SolveError&) {
+      continue;
+    }
+  }
+  return std::nullopt;
+}
+
+/// What is missing, as it was fitted where it could be.
+std::vector<Seen> seen_in(const std::vector<const Finding*>& missing, std::size_t had,
+                          const std::optional<ModelFit>& with) {
+  std::vector<Seen> seen;
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    const std::size_t place = had + k;
+    const bool fitted = with && place < with->effects.size();
+    seen.push_back(
+        {fitted ? with->effects[place] : EffectEstimate{missing[k]->effect, missing[k]->sd, {}},
+         missing[k]->look_alikes});
+  }
+  return seen;
+}
+
+/// Effects of the model found that the model given does not have.
+std::vector<Seen> added_by(const Discovery& discovery) {
+  std::vector<Seen> added;
+  for (const EffectEstimate& one : discovery.found.effects) {
+    // A place or threshold may have been sought anew since the step: then the name has it.
+    const auto start = [](const std::string& name) { return name.substr(0, name.find(" (x=")); };
+    for (const DiscoveryStep& step : discovery.steps) {
+      if (!step.added || start(step.added->name) != start(one.effect.name)) continue;
+      added.push_back({one, step.look_alikes});
+      break;
+    }
+  }
+  return added;
+}
+
+/// The models between the one given and the one found, fitted anew. Each lacks an effect: that of
+/// the next step.
+std::vector<ModelEvidence> models_between(const std::vector<Recording>& recordings,
+                                          const Discovery& discovery,
+                                          const CompareOptions& options) {
+  std::vector<ModelEvidence> models;
+  Model model = discovery.given.model;
+  for (std::size_t k = 1; k + 1 < discovery.steps.size(); ++k) {
+    const DiscoveryStep& step = discovery.steps[k];
+    model.effects.push_back(*step.added);
+    std::erase_if(model.effects, [&step](const Effect& one) {
+      return std::find(step.dropped.begin(), step.dropped.end(), one.name) != step.dropped.end();
+    });
+    const ModelFit fit = refit(recordings, model, discovery.given);
+    models.push_back(model_evidence(recordings, fit, ScoreTest(*fit.state), options,
+                                    discovery.steps[k + 1].added->name));
+  }
+  return models;
+}
+
+}  // namespace
+
+ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison) {
+  return {{comparison, fitted_map(fit)},
+          trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
+}
+
+FitEvidence evidence_of(const std::vector<Recording>& recordings, const EffectGain& gain,
+                        const CompareOptions& options) {
+  FitEvidence evidence;
+  evidence.without =
+      model_evidence(recordings, gain.without, ScoreTest(*gain.without.state), options);
+  evidence.with = model_evidence(recordings, gain.with, ScoreTest(*gain.with.state), options);
+  std::vector<Seen> effects;
+  for (const EffectEstimate& one : gain.with.effects) effects.push_back({one, {}});
+  evidence.effects = effect_evidence(*gain.without.state, effects);
+  return evidence;
+}
+
+DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const ModelFit& fit,
+                              const Diagnosis& diagnosis, const DiagnoseOptions& options) {
+  const CompareOptions compared = compare_options(options);
+  const ScoreTest tests(*fit.state);
+  DiagnosisEvidence evidence;
+  evidence.given = model_evidence(recordings, fit, tests, compared, diagnosis.missing);
+  evidence.trends = trend_evidence(evidence.given.comparison, *fit.state, tests);
+  evidence.sizes = sizes_of(diagnosis, tests.context());
+  const std::vector<const Finding*> missing = found_by(diagnosis);
+  const std::optional<ModelFit> with = fit_with(missing, recordings, fit);
+  evidence.effects = effect_evidence(*fit.state, seen_in(missing, fit.effects.size(), with));
+  if (with) {
+    evidence.with = model_evidence(recordings, *with, ScoreTest(*with->state), compared);
+  }
+  return evidence;
+}
+
+DiscoveryEvidence evidence_of(const std::vector<Recording>& recordings, const Discovery& discovery,
+                              const DiagnoseOptions& options) {
+  const CompareOptions compared = compare_options(options);
+  const ScoreTest given(*discovery.given.state);
+  const ScoreTest found(*discovery.found.state);
+  DiscoveryEvidence evidence;
+  evidence.given =
+      model_evidence(recordings, discovery.given, given, compared, discovery.first.missing);
+  evidence.between = models_between(recordings, discovery, compared);
+  evidence.found =
+      model_evidence(recordings, discovery.found, found, compared, discovery.last.missing);
+  const std::vector<Seen> added = added_by(discovery);
+  evidence.effects = effect_evidence(*discovery.given.state, added);
+  const std::vector<std::string> slow = slow_covariates(recordings);
+  for (const Seen& one : added) {
+    evidence.look_alikes.push_back(one.rivals);
+    evidence.next_drives.emplace_back();
+    if (one.rivals.empty()) continue;
+    evidence.next_drives.back() = {one.estimate.effect, one.rivals.front().effect, slow};
+  }
+  evidence.trends = trend_evidence(evidence.found.comparison, *discovery.found.state, found);
+  evidence.sizes = sizes_of(discovery.last, found.context());
+  return evidence;
+}
+
+}  // namespace trussmap

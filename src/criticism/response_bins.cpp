@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/response_bins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr int kBins = 9;
+constexpr int kHeadingBins = 12;
+constexpr std::size_t kFewValues = 9;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double in_one_turn(double heading) {
+  const double rest = std::fmod(heading, kTurn);
+  return rest < 0.0 ? rest + kTurn : rest;
+}
+
+/// A formula in all rows in which a wheel turns, in order.
+std::vector<double> values_of(const Shape& formula, const FitState& fit, const ScoreTest& tests) {
+  for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
+    const RowVariables& rows = tests.context().variables(s, ShapeContext::Instant::middle);
+    for (const std::string& name : formula.variables()) {
+      if (!rows.contains(name)) return {};
+    }
+  }
+  const auto all = tests.context().values(formula, ShapeContext::Instant::middle);
+  std::vector<double> values;
+  for (std::size_t s = 0; s < fit.recordings.size(); ++s) {
+    const Drive& drive = fit.recordings[s].drive;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      if (drive.left[row] == 0.0 && drive.right[row] == 0.0) continue;
+      values.push_back(formula == "heading" ? in_one_turn(all[s][row]) : all[s][row]);
+    }
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// Equally many rows in each; one per value where there are few.
+std::vector<double> edges_of(const std::vector<double>& values) {
+  const double span = values.back() - values.front();
+  std::vector<double> distinct;
+  for (const double value : values) {
+    if (distinct.empty() || value - distinct.back() > 1e-6 * span) distinct.push_back(value);
+    if (distinct.size() > kFewValues) break;
+  }
+  std::vector<double> edges{values.front() - 0.01 * span};
+  if (distinct.size() <= kFewValues) {
+    for (std::size_t k = 1; k < distinct.size(); ++k) {
+      edges.push_back(0.5 * (distinct[k - 1] + distinct[k]));
+    }
+  } else {
+    for (int k = 1; k < kBins; ++k) {
+      const double edge = values[values.size() * static_cast<std::size_t>(k) / kBins];
+      if (edge - edges.back() > 0.02 * span) edges.push_back(edge);
+    }
+  }
+  edges.push_back(values.back() + 0.01 * span);
+  return edges;
+}
+
+Bins heading_bins(const std::vector<double>& values) {
+  Bins result;
+  const double width = kTurn / kHeadingBins;
+  for (int k = 0; k < kHeadingBins; ++k) {
+    const double middle = k * width;
+    double sum = 0.0;
+    int count = 0;
+    for (const double value : values) {
+      const double off = std::remainder(value - middle, kTurn);
+      if (std::abs(off) > 0.5 * width) continue;
+      sum += off;
+      ++count;
+    }
+    if (count == 0) continue;
+    result.bins.push_back(
+        {middle + sum / count, middle - 0.5 * width, middle + 0.5 * width, 0.0, 0.0});
+    result.shapes.emplace_back(
+        "(1+sign(cos(heading-{middle})-{edge}))/2",
+        std::vector<ShapeParameter>{{"middle", middle}, {"edge", std::cos(0.5 * width)}});
+  }
+  return result;
+}
+
+Bins bins_of(const Shape& variable, const std::vector<double>& values) {
+  if (variable == "heading") return heading_bins(values);
+  Bins result;
+  if (!(values.back() > values.front())) return result;
+  const std::vector<double> edges = edges_of(values);
+  auto from = values.begin();
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    const auto to = std::lower_bound(from, values.end(), edges[k + 1]);
+    if (to == from) continue;
+    double sum = 0.0;
+    for (auto at = from; at != to; ++at) sum += *at;
+    result.bins.push_back({sum / static_cast<double>(to - from), edges[k], edges[k + 1], 0.0, 0.0});
+    result.shapes.emplace_back(
+        fmt::format("(sign({0}-{{low}})-sign({0}-{{high}}))/2", variable.text()),
+        std::vector<ShapeParameter>{{"low", edges[k]}, {"high", edges[k + 1]}});
+    from = to;
+  }
+  return result;
+}
+
+}  // namespace
+
+Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests) {
+  const std::vector<double> values = values_of(formula, fit, tests);
+  return values.empty() ? Bins() : bins_of(formula, values);
+}
+
+}  // namespace trussmap

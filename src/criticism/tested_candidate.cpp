@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/tested_candidate.hpp"
+
+#include "statistics/distributions.hpp"
+#include "statistics/multiple_tests.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kChunk = 48;  // candidates
+constexpr double kLargestPriorSd = 3.0;
+constexpr double kNoEvidence = -1e300;
+
+/// Log of what an effect of unknown size pays for having been fitted: sizes from the smallest that
+/// shows to a hundred times that are equally likely on a logarithmic scale, so that no unit and no
+/// belief about a size comes between look-alikes.
+double penalty(double score, int dof) {
+  constexpr double kLogRange = 1.3;  // log(2 log(100) / sqrt(2 pi))
+  return dof * (kLogRange + 0.5 * std::log(1.0 + score / std::max(1, dof)));
+}
+
+/// The same for shape parameters: found on a grid, then refined.
+double parameter_penalty(double score, const Tested& one) {
+  return std::log(static_cast<double>(one.tried)) +
+         0.5 * static_cast<double>(one.candidate.parameters.size()) * std::log(1.0 + score);
+}
+
+double dispersion_left(double chi2, int dof, const Score& score) {
+  return std::max(1.0, (chi2 - score.score) / std::max(1, dof - score.dof));
+}
+
+}  // namespace
+
+void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
+                  Resolution resolution,
+                  const std::function<void(std::size_t candidate, Score& score)>& visit) {
+  for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
+    const std::size_t end = std::min(candidates.size(), first + kChunk);
+    std::vector<Effect> effects;
+    for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
+    std::vector<Score> scores = tests.test(effects, resolution);
+    for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
+  }
+}
+
+void drop_columns(Score& score) {
+  score.columns.resize(0, 0);
+  score.projected.resize(0, 0);
+  score.landmarks.resize(0, 0);
+}
+
+void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
+  double least = std::max(1.0, chi2 / std::max(1, dof));
+  std::vector<double> p_values;
+  std::vector<int> tests;
+  for (Tested& one : tested) {
+    one.p_value = 1.0;
+    if (one.score.dof > 0) {
+      const double left = dispersion_left(chi2, dof, one.score);
+      one.p_value = chi2_p_value(one.share_found * one.score.score / std::max(left, one.dispersion),
+                                 one.score.dof);
+      least = std::min(least, left);
+    }
+    p_values.push_back(one.p_value);
+    tests.push_back(one.tried);
+  }
+  const std::vector<double> adjusted = holm(p_values, tests, tried);
+  for (std::size_t k = 0; k < tested.size(); ++k) {
+    Tested& one = tested[k];
+    one.p_adjusted = adjusted[k];
+    // What noise in these very rows would claim is a matter of p: an effect whose rows another
+    // effect moves as well is as large as it is.
+    const double net = one.score.score / least;
+    one.evidence = 0.5 * net - penalty(net, one.score.dof) + one.candidate.log_prior;
+    if (!one.candidate.parameters.empty()) one.evidence -= parameter_penalty(net, one);
+    if (one.score.dof == 0) one.evidence = kNoEvidence;
+  }
+}
+
+bool is_implausible(const Tested& one) {
+  if (one.candidate.effect.is_constant()) return false;
+  const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd;
+  for (std::size_t k = 0; k < one.score.coefficients.size(); ++k) {
+    if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kLargestPriorSd * prior_sd) {
+      return true;
+    }
+  }
+  return false;
+}
+
+const Tested* best_of(const std::vector<Tested>& tested, double level) {
+  const Tested* best = nullptr;
+  for (const Tested& one : tested) {
+    if (one.score.dof == 0 || one.p_adjusted >= level || is_implausible(one)) continue;
+    if (best == nullptr || one.evidence > best->evidence) best = &one;
+  }
+  return best;
+}
+
+}  // namespace trussmap

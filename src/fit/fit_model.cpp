@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/fit_model.hpp"
+
+#include "fit/fit_state.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
+  std::vector<FittedLandmark> landmarks;
+  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
+    FittedLandmark one;
+    one.name = fit.problem.landmarks[k];
+    one.position = fit.adjustment.state.landmarks[k];
+    one.covariance = fit.adjustment.landmark_covariances[k];
+    for (const Recording& recording : fit.recordings) {
+      for (const SurveyPoint& point : recording.survey) {
+        if (point.landmark == one.name) one.survey = Vector2(point.x, point.y);
+      }
+    }
+    landmarks.push_back(std::move(one));
+  }
+  return landmarks;
+}
+
+}  // namespace
+
+FitterOptions fitter_options(const FitOptions& options) {
+  FitterOptions how;
+  how.fit_effects = options.fit_effects;
+  how.problem.survey = options.use_survey;
+  how.problem.truth = options.use_truth;
+  how.gate = options.gate;
+  return how;
+}
+
+int estimated_coefficients(const FitState& fit) {
+  return static_cast<int>(unknown_coefficients(fit.columns.border).size());
+}
+
+ModelFit model_fit(FitState state, const FitOptions& options) {
+  ModelFit fit;
+  fit.model = state.model;
+  fit.options = options;
+  fit.effects = state.effects;
+  fit.landmarks = landmarks_of(state);
+  fit.chi2 = state.adjustment.chi2;
+  fit.dof = state.adjustment.dof;
+  fit.coefficients = estimated_coefficients(state);
+  fit.p_value = state.adjustment.p_value;
+  fit.settled = state.settled;
+  for (const int k : state.adjustment.left_out) {
+    fit.left_out.push_back(describe(state.problem, state.problem.measurements[idx(k)]));
+  }
+  fit.warnings = state.adjustment.warnings;
+  fit.state = std::make_shared<const FitState>(std::move(state));
+  return fit;
+}
+
+ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
+                   const FitOptions& options) {
+  return model_fit(fit_recordings(recordings, model, fitter_options(options)), options);
+}
+
+ModelFit refit(const std::vector<Recording>& recordings, const Model& model, const ModelFit& near) {
+  FitterOptions how = fitter_options(near.options);
+  how.near = near.state.get();
+  return model_fit(fit_recordings(recordings, model, how), near.options);
+}
+
+FittedMap fitted_map(const ModelFit& fit, std::size_t points) {
+  FittedMap map;
+  map.landmarks = fit.landmarks;
+  const std::vector<SessionPath>& paths = fit.state->paths;
+  std::size_t rows = 0;
+  for (const SessionPath& path : paths) rows += path.ends.size();
+  const std::size_t step =
+      std::max<std::size_t>(1, (rows + points - 1) / std::max<std::size_t>(points, 1));
+  for (const SessionPath& path : paths) {
+    std::vector<Vector2> thinned{path.start.position()};
+    for (std::size_t k = 0; k < path.ends.size(); ++k) {
+      if (k % step == 0 || k + 1 == path.ends.size()) thinned.push_back(path.ends[k].position());
+    }
+    map.paths.push_back(std::move(thinned));
+  }
+  return map;
+}
+
+}  // namespace trussmap

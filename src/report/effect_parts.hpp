@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Which part of the robot or its world an effect belongs to.
+#pragma once
+
+#include "trussmap/model.hpp"
+
+#include <array>
+
+namespace trussmap {
+
+enum class EffectPart { wheels, turning, floor, compass, sighting };
+inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning, EffectPart::floor,
+                                         EffectPart::compass, EffectPart::sighting};
+
+[[nodiscard]] const char* name_of(EffectPart part);
+[[nodiscard]] EffectPart part_of(const Effect& effect);
+
+}  // namespace trussmap

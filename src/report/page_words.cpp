@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "report/page_words.hpp"
+
+#include "plot/fit_charts.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/table.hpp"
+#include "wording/channel_words.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at)) {
+    text.replace(at, what.size(), by);
+    at += by.size();
+  }
+}
+
+std::string channel_unit(const Effect& effect) {
+  return std::string(facts_of(effect.channel).unit);
+}
+
+}  // namespace
+
+std::string typeset(std::string text) {
+  replace_all(text, "+-", "\u00b1");
+  replace_all(text, "chi^2", "chi\u00b2");
+  const std::string degrees = " deg";
+  for (std::size_t at = text.find(degrees); at != std::string::npos; at = text.find(degrees, at)) {
+    const std::size_t end = at + degrees.size();
+    if (end < text.size() && std::isalnum(static_cast<unsigned char>(text[end])) != 0) {
+      at = end;
+      continue;
+    }
+    text.replace(at, degrees.size(), "\u00b0");
+  }
+  return text;
+}
+
+std::string distance_text(double metres, double beside) {
+  const double larger = std::max(metres, beside);
+  if (larger < 0.0995) return two_digits(1000.0 * metres) + " mm";
+  if (larger < 0.995) return two_digits(100.0 * metres) + " cm";
+  return two_digits(metres) + " m";
+}
+
+std::string effect_in_words(const EffectEvidence& effect) {
+  const Effect& one = effect.estimate.effect;
+  return name_in_words(one) + ": " +
+         typeset(size_in_words(one, effect.range.least, effect.range.most));
+}
+
+std::string gain_sentence(const Comparison& before, const Comparison& after,
+                          const std::string& it) {
+  if (before.held_out.legs.empty() || after.held_out.legs.empty()) return "";
+  const double off = before.held_out.arrival_rms;
+  const double with = after.held_out.arrival_rms;
+  return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
+                     distance_text(with, off),
+                     after.consistent() ? ", as good as this robot's noise allows"
+                                        : ", and something is still unexplained");
+}
+
+std::string trend_variable(const Trend& trend) {
+  return trend.against == "all" ? "everything alike" : trend.against;
+}
+
+std::string chance_text(double p) {
+  return p < 1e-12 ? "next to 0" : probability_text(p);
+}
+
+std::string listed(const std::vector<std::string>& names, const std::string& last) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += (k == 0 ? std::string() : k + 1 == names.size() ? " " + last + " " : ", ") + names[k];
+  }
+  return text;
+}
+
+SizeText size_text_of(const EffectEvidence& effect) {
+  const Effect& one = effect.estimate.effect;
+  const ShownUnit unit = shown_unit(channel_unit(one));
+  const double least = effect.range.least;
+  const double most = effect.range.most;
+  const double size = unit.factor * std::max(std::abs(least), std::abs(most));
+  double squares = 0.0;
+  double errors = 0.0;
+  for (std::size_t k = 0; k < one.coefficients.size() && k < effect.estimate.sd.size(); ++k) {
+    squares += one.coefficients[k] * one.coefficients[k];
+    errors += std::pow(one.coefficients[k] * effect.estimate.sd[k], 2);
+  }
+  const double sd = squares > 0.0 ? size * std::sqrt(errors) / squares : 0.0;
+  const QuantityText text = quantity_text(size, sd);
+  const std::string with = (unit.name.starts_with("\u00b0") ? "" : " ") + unit.name;
+  const bool both = least * most < 0.0 && std::min(-least, most) > 0.3 * std::max(-least, most);
+  return {(both ? "\u00b1" : "") + (text.error.empty() ? two_digits(size) : text.value) + with,
+          text.error.empty() ? "" : text.error + with};
+}
+
+std::string named_with_sizes(const std::vector<EffectEvidence>& effects) {
+  if (effects.size() == 1) {
+    const EffectEvidence& only = effects.front();
+    return name_in_words(only.estimate.effect) + " \u2013 " +
+           typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
+  }
+  std::vector<std::string> names;
+  for (const EffectEvidence& one : effects) {
+    EffectEvidence roughly = one;
+    roughly.estimate.sd.clear();
+    names.push_back(
+        fmt::format("{} ({})", name_in_words(one.estimate.effect), size_text_of(roughly).size));
+  }
+  return listed(names);
+}
+
+std::string sized_in_words(const EffectEvidence& effect) {
+  constexpr double kClear = 2.0;  // standard errors
+  const SizeText size = size_text_of(effect);
+  std::string text = capitalised(effect_in_words(effect));
+  if (size.error.empty()) return text + ".";
+  text += fmt::format(" ({}, standard error {})", size.size, size.error);
+  const EffectEstimate& fitted = effect.estimate;
+  bool seen = false;
+  for (std::size_t k = 0; k < fitted.sd.size(); ++k) {
+    seen = seen || std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k];
+  }
+  return text + (seen ? "." : "; beside the others it is hardly seen.");
+}
+
+std::string advised_drive(const Advice& advice) {
+  if (advice.drive.empty()) return "A drive that would show more: " + in_words(advice) + ".";
+  return fmt::format("A drive that would show more: {} ({}: {}).", advice.drive, advice.lack,
+                     advice.why);
+}
+
+std::string sure_text(double p, std::size_t tests) {
+  const std::string chance = p < 1e-6   ? "less than one in a million"
+                             : p < 0.01 ? fmt::format("one in {:.0f}", 1.0 / p)
+                                        : fmt::format("{:.2g} %", 100.0 * p);
+  return fmt::format(
+      "If nothing were missing, noise alone would show as much with a probability of {} (adjusted "
+      "for {} tests).",
+      chance, tests);
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty()) {
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  }
+  return text;
+}
+
+std::string cause_note(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  if (entry == nullptr) return "";
+  return fmt::format("{}: {}. What helps for good: {}.", capitalised(short_name(effect)),
+                     entry->cause, entry->remedy);
+}
+
+std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals) {
+  if (rivals.empty()) {
+    return fmt::format("Nothing else in the catalogue looks like {} in these recordings.",
+                       short_name(effect));
+  }
+  std::vector<std::string> names;
+  for (const LookAlike& rival : rivals) {
+    const CatalogueEntry* entry = find_entry(rival.effect.name);
+    names.push_back(name_in_words(rival.effect) +
+                    (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
+  }
+  return fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
+                     short_name(effect), listed(names, "or"));
+}
+
+std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
+  std::vector<std::string> notes;
+  for (const NoiseTest& one : diagnosis.noise) {
+    if (one.p_adjusted >= kSignificance) continue;
+    notes.push_back(
+        fmt::format("More noise than the model states ({}): {}.", one.law, typeset(in_words(one))));
+    break;
+  }
+  for (const EventTest& one : diagnosis.events) {
+    if (one.p_adjusted >= kSignificance) continue;
+    notes.push_back(fmt::format("A single event stands out: {}.", typeset(in_words(one))));
+    break;
+  }
+  return notes;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "validation/held_out_legs.hpp"
+
+#include "validation/training.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace trussmap {
+
+HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
+                         const FitterOptions& options, const LegOptions& leg_options) {
+  const std::vector<LegSpan> legs = leg_spans(fit.recordings, fit.problem, leg_options);
+  if (std::none_of(legs.begin(), legs.end(), [](const LegSpan& leg) { return leg.held_out; })) {
+    return;
+  }
+  const FitState training = fit_without(legs, recordings, fit, options);
+  TrainedModel trained = trained_model(training, recordings, options.problem);
+  // Delays may have moved sightings, and so the ends of legs.
+  const std::vector<LegSpan> again = leg_spans(trained.recordings, trained.problem, leg_options);
+  LegPredictor predictor(trained, again);
+  predictor.run();
+  steps_ = predictor.take_steps();
+  legs_ = predictor.take_legs();
+  problem_ = std::move(trained.problem);
+  int rows = 0;
+  for (const Measurement& one : problem_.measurements) {
+    first_row_.push_back(rows);
+    rows += one.rows;
+  }
+}
+
+Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,
+                                    const Eigen::MatrixXd& landmarks) const {
+  const Eigen::Index count = columns.cols();
+  const auto rows_of = [&](std::size_t measurement) {
+    return columns.middleRows(first_row_[measurement], problem_.measurements[measurement].rows);
+  };
+  const auto advance = [&](const FilterStep& step, Eigen::MatrixXd& s) {
+    s = (step.A * s).eval();
+    if (step.measurement < 0) return;
+    const auto c = rows_of(static_cast<std::size_t>(step.measurement));
+    s += step.B.leftCols(c.rows()) * c;
+    if (step.landmark >= 0) s += step.L * landmarks.middleRows(2 * step.landmark, 2);
+  };
+  const auto seen = [&](const LegEnd& end, const Eigen::MatrixXd& s) -> Eigen::MatrixXd {
+    const auto c = rows_of(end.measurement);
+    Eigen::MatrixXd result = end.by_pose * s + end.by_rows.leftCols(c.rows()) * c;
+    if (end.landmark >= 0) result += end.by_landmark * landmarks.middleRows(2 * end.landmark, 2);
+    return result;
+  };
+  const auto target = [&](const LegEnd& end) -> Eigen::MatrixXd {
+    if (end.landmark < 0) return Eigen::MatrixXd::Zero(2, count);
+    return landmarks.middleRows(2 * end.landmark, 2);
+  };
+  Eigen::MatrixXd result(6 * static_cast<Eigen::Index>(legs_.size()), count);
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(3, count);
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    const PredictedLeg& leg = legs_[k];
+    for (; done < leg.after; ++done) advance(steps_[done], s);
+    Eigen::MatrixXd ahead = s;
+    for (const FilterStep& step : leg.ahead) advance(step, ahead);
+    const auto row = 6 * static_cast<Eigen::Index>(k);
+    const Eigen::MatrixXd arrival = seen(leg.to, ahead);
+    const Eigen::MatrixXd chord = target(leg.to) - target(leg.from);
+    result.middleRows(row, 2) = arrival;
+    result.middleRows(row + 2, 2) = arrival - seen(leg.from, s) + chord;
+    result.middleRows(row + 4, 2) = chord;
+  }
+  return result;
+}
+
+HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
+  HeldOut result;
+  double squares = 0.0;
+  int chords = 0;
+  for (std::size_t k = 0; k < legs_.size(); ++k) {
+    const PredictedLeg& leg = legs_[k];
+    LegPrediction one = leg.prediction;
+    Vector2 predicted = leg.predicted;
+    Vector2 chord = leg.chord;
+    if (change.size() > 0) {
+      const auto row = 6 * static_cast<Eigen::Index>(k);
+      one.arrival_error += change.segment<2>(row);
+      predicted += change.segment<2>(row + 2);
+      chord += change.segment<2>(row + 4);
+    }
+    if (one.has_chord) {
+      one.stretch_error = std::abs(predicted.norm() - chord.norm()) / chord.norm();
+      one.orientation_error = std::abs(wrap_angle(direction(predicted) - direction(chord)));
+      result.stretch_error += one.stretch_error;
+      result.orientation_error += one.orientation_error;
+      ++chords;
+    }
+    squares += one.arrival_error.squaredNorm();
+    result.legs.push_back(std::move(one));
+  }
+  if (result.legs.empty()) return result;
+  result.arrival_rms = std::sqrt(squares / static_cast<double>(result.legs.size()));
+  result.stretch_error /= std::max(1, chords);
+  result.orientation_error /= std::max(1, chords);
+  return result;
+}
+
+bool HeldOutLegs::same_layout(const RecordingProblem& problem) const {
+  const auto& ours = problem_.measurements;
+  const auto& theirs = problem.measurements;
+  return problem_.landmarks == problem.landmarks &&
+         std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
+                    [](const Measurement& a, const Measurement& b) {
+                      return a.kind == b.kind && a.from == b.from && a.to == b.to &&
+                             a.rows == b.rows;
+                    });
+}
+
+HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFit& fit,
+                         const LegOptions& legs) {
+  return HeldOutLegs(recordings, *fit.state, fitter_options(fit.options), legs).metrics();
+}
+
+}  // namespace trussmap

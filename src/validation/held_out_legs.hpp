@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Held-out legs (trussmap/held_out.hpp), and how their predictions would move with further effects.
+#pragma once
+
+#include "fit/fit_state.hpp"
+#include "trussmap/held_out.hpp"
+#include "validation/leg_predictor.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// The held-out legs of a model, and how their predictions would move with further effects.
+class HeldOutLegs {
+ public:
+  /// Starts from a fit of the model to all legs. Its coefficients are estimated anew without the
+  /// held-out legs (those that cannot be stay as they are); legs to landmarks that neither another
+  /// leg sees nor a survey knows are passed over. Throws like fit_model.
+  HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
+              const FitterOptions& options, const LegOptions& legs = {});
+
+  [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }
+
+  /// What one unit of further coefficients does, to first order, from their whitened columns over
+  /// all measurements (ColumnBuilder) and what they move the landmarks by (two rows each): per leg
+  /// six rows, of the arrival error, the predicted chord and the true one.
+  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
+                                       const Eigen::MatrixXd& landmarks) const;
+  /// Metrics with the legs' predictions moved by that much (empty: not at all).
+  [[nodiscard]] HeldOut moved(const Eigen::VectorXd& change) const;
+  /// Whether columns of this problem are columns of the legs' problem too: not after a delay has
+  /// changed the order of sightings.
+  [[nodiscard]] bool same_layout(const RecordingProblem& problem) const;
+
+ private:
+  RecordingProblem problem_;
+  std::vector<int> first_row_;  ///< of each measurement
+  std::vector<FilterStep> steps_;
+  std::vector<PredictedLeg> legs_;
+};
+
+}  // namespace trussmap

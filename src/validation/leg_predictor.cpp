@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "validation/leg_predictor.hpp"
+
+#include "estimation/measurement_rows.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastChord = 0.1;  // m
+
+/// Where a measurement says that what it measures lies, from a pose: the landmark, or the point
+/// that truth tracks. Nothing where only a range was measured.
+std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
+                                 const ViewPattern& view) {
+  const Vector2 sensor = pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
+  if (one.kind == MeasurementKind::view) {
+    if (one.rows < 2) return std::nullopt;
+    const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
+    const double way = pose.heading + view.heading - view.bearing + one.value[1];
+    return sensor + range * rotation(way).col(0);
+  }
+  if (one.kind == MeasurementKind::cartesian_view) {
+    return sensor + rotation(pose.heading + view.heading) * one.value.head<2>();
+  }
+  return sensor;
+}
+
+/// Landmarks of a problem where the training has them, else where a survey does, else NaN.
+struct KnownMap {
+  std::vector<Vector2> places;
+  std::vector<Matrix2> covariances;
+};
+
+KnownMap known_map(const RecordingProblem& problem, const FitState& training, bool survey,
+                   const std::vector<Recording>& recordings) {
+  std::map<std::string, std::pair<Vector2, Matrix2>> known;
+  for (const Recording& recording : recordings) {
+    for (const SurveyPoint& point : recording.survey) {
+      if (!survey) break;
+      const double sd = std::isnan(point.sd) ? training.model.noise.survey : point.sd;
+      known[point.landmark] = {Vector2(point.x, point.y), sd * sd * Matrix2::Identity()};
+    }
+  }
+  for (std::size_t k = 0; k < training.problem.landmarks.size(); ++k) {
+    known[training.problem.landmarks[k]] = {training.adjustment.state.landmarks[k],
+                                            training.adjustment.landmark_covariances[k]};
+  }
+  KnownMap map;
+  for (const std::string& name : problem.landmarks) {
+    const auto found = known.find(name);
+    const bool is_known = found != known.end();
+    map.places.push_back(is_known ? found->second.first : Vector2(kAbsent, kAbsent));
+    map.covariances.push_back(is_known ? found->second.second : Matrix2::Zero());
+  }
+  return map;
+}
+
+std::string landmark_of(const RecordingProblem& problem, const Measurement& one) {
+  return one.to < 0 ? std::string() : problem.landmarks[idx(one.to)];
+}
+
+}  // namespace
+
+TrainedModel trained_model(const FitState& training, const std::vector<Recording>& recordings,
+                           const ProblemOptions& options) {
+  TrainedModel result;
+  ProblemOptions all = options;
+  all.left_out.clear();
+  result.recordings = training.recordings;
+  result.problem = make_problem(training.recordings, training.model, all);
+  const ShapeContext context(training.recordings, training.model.robot, training.paths);
+  result.effects = effect_columns(training.model.effects, context).border;
+  result.offsets = offsets_of(training);
+  for (std::size_t k = 0; k < result.effects.size(); ++k) {
+    result.offsets[static_cast<Eigen::Index>(k)] +=
+        training.columns.border[k].reference - result.effects[k].reference;
+  }
+  KnownMap map = known_map(result.problem, training, options.survey, recordings);
+  result.state.landmarks = std::move(map.places);
+  result.covariances = std::move(map.covariances);
+  for (const PoseNode& node : result.problem.poses) {
+    const std::size_t session = idx(node.session);
+    result.state.poses.push_back(
+        pose_at(training.recordings[session].drive, training.paths[session], node.t));
+  }
+  return result;
+}
+
+LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpan>& legs)
+    : trained_(trained),
+      problem_(trained.problem),
+      legs_(legs),
+      events_(trained.problem.poses.size()),
+      filter_(trained.problem, trained.effects, trained.offsets, trained.state,
+              trained.covariances) {
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    if (one.kind == MeasurementKind::survey) continue;
+    PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
+    if (one.kind == MeasurementKind::segment) {
+      here.segment = static_cast<int>(k);
+    } else {
+      here.views.push_back(k);
+    }
+  }
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    if (legs[k].held_out) starting_[problem_.measurements[legs[k].from].from].push_back(k);
+  }
+}
+
+void LegPredictor::run() {
+  for (std::size_t pose = 0; pose < problem_.poses.size(); ++pose) {
+    const bool first =
+        pose == 0 || problem_.poses[pose].session != problem_.poses[pose - 1].session;
+    if (first) begin_session(pose);
+    const PoseEvents& here = events_[pose];
+    for (const std::size_t k : here.views) steps_.push_back(filter_.see(k));
+    for (const std::size_t k : starting_[problem_.pose_node(static_cast<int>(pose))]) {
+      if (std::optional<PredictedLeg> leg = predicted(k)) predicted_.push_back(std::move(*leg));
+    }
+    if (here.segment >= 0) steps_.push_back(filter_.drive(idx(here.segment)));
+  }
+}
+
+void LegPredictor::begin_session(std::size_t pose) {
+  filter_.start(problem_.pose_node(static_cast<int>(pose)), trained_.state.poses[pose]);
+  FilterStep fresh;
+  fresh.A.setZero();
+  steps_.push_back(fresh);
+}
+
+Vector2 LegPredictor::true_place(const Measurement& measurement) const {
+  return measurement.to < 0 ? Vector2(measurement.value.head<2>())
+                            : trained_.state.landmarks[idx(measurement.to)];
+}
+
+std::optional<Vector2> LegPredictor::seen_by(std::size_t measurement,
+                                             const HeldOutFilter& filter) const {
+  const Measurement& one = problem_.measurements[measurement];
+  return seen_from(filter.pose(one.from), one, view_of(trained_.effects, trained_.offsets, one));
+}
+
+std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
+  const Measurement& from = problem_.measurements[legs_[k].from];
+  const Measurement& to = problem_.measurements[legs_[k].to];
+  const Vector2 target = true_place(to);
+  if (std::isnan(target.x())) return std::nullopt;
+  HeldOutFilter ahead = filter_;
+  PredictedLeg leg;
+  leg.after = steps_.size();
+  for (int at = from.from; at != to.from;) {
+    const int segment = events_[idx(at - problem_.landmark_count())].segment;
+    if (segment < 0) break;
+    leg.ahead.push_back(ahead.drive(idx(segment)));
+    at = problem_.measurements[idx(segment)].to;
+  }
+  const std::optional<Vector2> begin = seen_by(legs_[k].from, filter_);
+  const std::optional<Vector2> end = seen_by(legs_[k].to, ahead);
+  if (!begin || !end) return std::nullopt;
+  leg.chord = target - true_place(from);
+  leg.predicted = *end - *begin;
+  leg.prediction.leg = k;
+  leg.prediction.from = landmark_of(problem_, from);
+  leg.prediction.to = landmark_of(problem_, to);
+  leg.prediction.t = legs_[k].time.to;
+  leg.prediction.arrival_error = *end - target;
+  leg.prediction.has_chord = leg.chord.norm() >= kLeastChord;  // not where the start is not known
+  leg.from = end_of(legs_[k].from, filter_);
+  leg.to = end_of(legs_[k].to, ahead);
+  return leg;
+}
+
+LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter) const {
+  const Measurement& one = problem_.measurements[measurement];
+  const Pose& pose = filter.pose(one.from);
+  const ViewPattern view = view_of(trained_.effects, trained_.offsets, one);
+  const MeasurementRows rows = filter.rows(measurement);
+  // From errors, "expected - measured", to "seen - true" in the map.
+  Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
+  const Matrix2 R = rotation(pose.heading + view.heading);
+  if (one.kind == MeasurementKind::truth) {
+    T.leftCols<2>().setIdentity();
+  } else if (one.kind == MeasurementKind::view) {
+    const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
+    const Matrix2 along = R * rotation(one.value[1] - view.bearing);
+    T.col(0) = -along.col(0) / (1.0 + view.range_scale);
+    T.col(1) = -range * along.col(1);
+  } else {
+    T.leftCols<2>() = -(one.kind == MeasurementKind::standing ? rotation(pose.heading) : R);
+  }
+  Matrix4 W = one.whitener;
+  for (int row = one.rows; row < 4; ++row) W(row, row) = 1.0;
+  LegEnd end;
+  end.measurement = measurement;
+  end.landmark = one.to;
+  end.by_rows = T * W.inverse();
+  end.by_pose = T * rows.by_from;
+  end.by_landmark = (T * rows.by_to).leftCols<2>();
+  return end;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Predictions of held-out legs: a filter follows the robot through all sessions, and at the start
+// of each held-out leg a copy of it drives ahead to the leg's end.
+#pragma once
+
+#include "fit/fit_state.hpp"
+#include "trussmap/held_out.hpp"
+#include "validation/held_out_filter.hpp"
+#include "validation/leg_spans.hpp"
+
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace trussmap {
+
+/// All measurements of all legs, by the model and the map of a fit to some of them (the training).
+struct TrainedModel {
+  std::vector<Recording> recordings;  ///< moved back by the training's delays
+  RecordingProblem problem;
+  EffectParameters effects;
+  Eigen::VectorXd offsets;           ///< of the effects' coefficients from their references
+  RecordingState state;              ///< landmarks that are not known: NaN
+  std::vector<Matrix2> covariances;  ///< of the landmarks, m^2
+};
+
+/// Landmarks that the training has not are where a survey in use has them.
+[[nodiscard]] TrainedModel trained_model(const FitState& training,
+                                         const std::vector<Recording>& recordings,
+                                         const ProblemOptions& options);
+
+/// A leg's first or last measurement: how what it sees moves.
+struct LegEnd {
+  std::size_t measurement = 0;
+  Eigen::Matrix<double, 2, 4> by_rows = Eigen::Matrix<double, 2, 4>::Zero();
+  Eigen::Matrix<double, 2, 3> by_pose = Eigen::Matrix<double, 2, 3>::Zero();
+  Matrix2 by_landmark = Matrix2::Zero();
+  int landmark = -1;
+};
+
+struct PredictedLeg {
+  LegPrediction prediction;
+  Vector2 predicted = Vector2::Zero();  ///< chord, m
+  Vector2 chord = Vector2::Zero();      ///< true, m
+  std::size_t after = 0;                ///< steps of the filter
+  std::vector<FilterStep> ahead;
+  LegEnd from;
+  LegEnd to;
+};
+
+class LegPredictor {
+ public:
+  /// Keeps references.
+  LegPredictor(const TrainedModel& trained, const std::vector<LegSpan>& legs);
+
+  void run();
+
+  [[nodiscard]] std::vector<FilterStep> take_steps() { return std::move(steps_); }
+  [[nodiscard]] std::vector<PredictedLeg> take_legs() { return std::move(predicted_); }
+
+ private:
+  /// All measurements at a pose, and the segment that leaves it.
+  struct PoseEvents {
+    std::vector<std::size_t> views;
+    int segment = -1;
+  };
+
+  void begin_session(std::size_t pose);
+  [[nodiscard]] std::optional<PredictedLeg> predicted(std::size_t leg) const;
+  [[nodiscard]] LegEnd end_of(std::size_t measurement, const HeldOutFilter& filter) const;
+  [[nodiscard]] std::optional<Vector2> seen_by(std::size_t measurement,
+                                               const HeldOutFilter& filter) const;
+  /// NaN where it is not known.
+  [[nodiscard]] Vector2 true_place(const Measurement& measurement) const;
+
+  const TrainedModel& trained_;
+  const RecordingProblem& problem_;
+  const std::vector<LegSpan>& legs_;
+  std::vector<PoseEvents> events_;
+  std::map<int, std::vector<std::size_t>> starting_;  ///< node -> held-out legs
+  HeldOutFilter filter_;
+  std::vector<FilterStep> steps_;
+  std::vector<PredictedLeg> predicted_;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "validation/leg_spans.hpp"
+
+#include "recording/legs.hpp"
+
+#include <map>
+
+namespace trussmap {
+namespace {
+
+double pose_time(const RecordingProblem& problem, int node) {
+  return problem.poses[idx(node - problem.landmark_count())].t;
+}
+
+void add_sighted_legs(const Recording& recording, int session, const RecordingProblem& problem,
+                      const LegOptions& options, std::vector<LegSpan>& legs) {
+  std::map<std::size_t, std::size_t> measurement_of;  // sighting -> measurement
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (is_sighting(one.kind) && one.session == session) measurement_of[one.source] = k;
+  }
+  const std::vector<Stop> stops = stops_of(recording.sightings);
+  for (const Leg& leg : legs_of(recording, stops, options.min_drive)) {
+    const Stop& from = stops[leg.from];
+    const Stop& to = stops[leg.to];
+    legs.push_back({session,
+                    {from.t, to.t},
+                    measurement_of.at(from.reference),
+                    measurement_of.at(to.reference),
+                    false});
+  }
+}
+
+void add_truth_legs(const Recording& recording, int session, const RecordingProblem& problem,
+                    const LegOptions& options, std::vector<LegSpan>& legs) {
+  const std::vector<double> path = driven_path(recording.drive);
+  bool any = false;
+  LegSpan leg;
+  double begun = 0.0;
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (one.kind != MeasurementKind::truth || one.session != session) continue;
+    const double t = pose_time(problem, one.from);
+    const double driven = path_at(recording.drive, path, t);
+    if (any && driven - begun < options.leg) continue;
+    if (any) {
+      leg.to = k;
+      leg.time.to = t;
+      legs.push_back(leg);
+    }
+    leg = {session, {t, t}, k, k, false};
+    begun = driven;
+    any = true;
+  }
+}
+
+}  // namespace
+
+std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
+                               const RecordingProblem& problem, const LegOptions& options) {
+  std::vector<LegSpan> legs;
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const int session = static_cast<int>(s);
+    if (recordings[s].sightings.empty()) {
+      add_truth_legs(recordings[s], session, problem, options, legs);
+    } else {
+      add_sighted_legs(recordings[s], session, problem, options, legs);
+    }
+  }
+  for (std::size_t k = 0; k < legs.size(); ++k) legs[k].held_out = is_held_out(k, options.share);
+  return legs;
+}
+
+}  // namespace trussmap

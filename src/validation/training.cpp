@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "validation/training.hpp"
+
+#include "estimation/recording_descent.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace trussmap {
+namespace {
+
+constexpr double kForever = 1e300;  // s
+
+/// Held-out legs as spans of time, neighbours joined.
+std::vector<std::vector<TimeSpan>> spans_of(const std::vector<LegSpan>& legs,
+                                            std::size_t sessions) {
+  std::vector<std::vector<TimeSpan>> spans(sessions);
+  for (const LegSpan& leg : legs) {
+    if (!leg.held_out) continue;
+    std::vector<TimeSpan>& here = spans[idx(leg.session)];
+    if (!here.empty() && here.back().to >= leg.time.from) {
+      here.back().to = leg.time.to;
+    } else {
+      here.push_back(leg.time);
+    }
+  }
+  return spans;
+}
+
+/// Poses that are not connected to the map, or else of which something can move freely.
+std::set<int> loose_poses(const std::vector<Recording>& recordings, const FitState& fit,
+                          const RecordingProblem& problem) {
+  const std::vector<int> untied = untied_poses(problem);
+  if (!untied.empty()) return {untied.begin(), untied.end()};
+  const std::map<std::string, Vector2> places = landmark_places(fit);
+  RecordingState state;
+  for (const std::string& name : problem.landmarks) state.landmarks.push_back(places.at(name));
+  for (const PoseNode& node : problem.poses) {
+    const std::size_t session = idx(node.session);
+    state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
+  }
+  const EffectParameters no_effects;
+  RecordingSystem system(problem, no_effects);
+  system.linearise(state, Eigen::VectorXd());
+  const std::vector<int> loose = find_loose_nodes(system);
+  const std::set<int> nodes(loose.begin(), loose.end());
+  std::set<int> poses;
+  for (const Measurement& one : problem.measurements) {
+    if (one.session < 0) continue;
+    if (nodes.contains(one.from) || nodes.contains(one.to)) {
+      poses.insert(one.from - problem.landmark_count());
+    }
+  }
+  return poses;
+}
+
+/// Whole segments between spans in which something is loose are left out too.
+void leave_unconnected_segments_out(const std::vector<Recording>& recordings, const FitState& fit,
+                                    ProblemOptions& options) {
+  for (int round = 0; round < 20; ++round) {
+    const RecordingProblem problem = make_problem(recordings, fit.model, options);
+    const std::set<int> poses = loose_poses(recordings, fit, problem);
+    if (poses.empty()) return;
+    for (const int k : poses) {
+      const PoseNode& pose = problem.poses[idx(k)];
+      std::vector<TimeSpan>& spans = options.left_out[idx(pose.session)];
+      const bool gone = std::any_of(spans.begin(), spans.end(), [&](const TimeSpan& span) {
+        return span.from < pose.t && pose.t < span.to;
+      });
+      if (gone) continue;  // with another pose of its segment
+      // From the beginning of the span before it to the end of the span after it.
+      TimeSpan segment{-kForever, kForever};
+      for (const TimeSpan& span : spans) {
+        if (span.to <= pose.t) segment.from = std::max(segment.from, span.from);
+        if (span.from >= pose.t) segment.to = std::min(segment.to, span.to);
+      }
+      std::erase_if(spans, [&](const TimeSpan& span) {
+        return span.from >= segment.from && span.to <= segment.to;
+      });
+      spans.push_back(segment);
+      std::sort(spans.begin(), spans.end(),
+                [](const TimeSpan& a, const TimeSpan& b) { return a.from < b.from; });
+    }
+  }
+}
+
+/// Times of the fit's sightings and truth rows back to those recorded, before delays were taken
+/// out.
+void undo_delays(const std::vector<Recording>& recordings, const Model& model,
+                 std::vector<std::vector<TimeSpan>>& spans) {
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    std::vector<double> recorded;
+    for (const Sighting& sighting : recordings[s].sightings) recorded.push_back(sighting.t);
+    for (const TruthRow& row : recordings[s].truth) recorded.push_back(row.t);
+    const std::vector<double> moved =
+        retimed(recorded, recordings[s], s, recordings.size(), model.effects, model.robot);
+    std::map<double, double> back;
+    for (std::size_t k = 0; k < moved.size(); ++k) back[moved[k]] = recorded[k];
+    // The nearest: the fit's coefficients have moved a little since it took its delays out.
+    const auto recorded_at = [&back](double t) {
+      auto after = back.lower_bound(t);
+      if (after == back.begin()) return after->second;
+      const auto before = std::prev(after);
+      return after == back.end() || t - before->first < after->first - t ? before->second
+                                                                         : after->second;
+    };
+    for (TimeSpan& span : spans[s]) {
+      if (span.from > -kForever) span.from = recorded_at(span.from);
+      if (span.to < kForever) span.to = recorded_at(span.to);
+    }
+  }
+}
+
+}  // namespace
+
+FitState fit_without(const std::vector<LegSpan>& legs, const std::vector<Recording>& recordings,
+                     const FitState& fit, const FitterOptions& options) {
+  FitterOptions how = options;
+  how.fit_effects = true;
+  how.near = &fit;
+  how.still = 1e-5;  // errors of legs are not read so finely
+  how.problem.left_out = spans_of(legs, recordings.size());
+  leave_unconnected_segments_out(fit.recordings, fit, how.problem);
+  undo_delays(recordings, fit.model, how.problem.left_out);
+  return fit_recordings(recordings, fit.model, how);
+}
+
+}  // namespace trussmap

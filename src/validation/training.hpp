@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A model fitted to all legs but those that are held out.
+#pragma once
+
+#include "fit/fit_state.hpp"
+#include "validation/leg_spans.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Starts from `fit`, of all legs of these recordings. What is driven between held-out legs and is
+/// not connected to the map without them is left out as well. Throws like fit_recordings.
+[[nodiscard]] FitState fit_without(const std::vector<LegSpan>& legs,
+                                   const std::vector<Recording>& recordings, const FitState& fit,
+                                   const FitterOptions& options);
+
+}  // namespace trussmap

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "wording/channel_words.hpp"
+
+#include "trussmap/wording.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+}  // namespace
+
+Scale scale_of(Channel channel) {
+  switch (channel) {
+    case Channel::drift:
+      return {kDegrees * 60.0, " deg/min"};
+    case Channel::advance:
+    case Channel::lever:
+    case Channel::lever_left:
+    case Channel::range:
+      return {1e3, " mm"};
+    case Channel::rotate:
+    case Channel::compass:
+    case Channel::bearing:
+      return {kDegrees, " deg"};
+    case Channel::delay:
+      return {1e3, " ms"};
+    default:
+      return {100.0, " %"};
+  }
+}
+
+Phrase phrase_of(Channel channel) {
+  switch (channel) {
+    case Channel::travel:
+      return {"the robot travels", "further than its wheels say", "less far than its wheels say"};
+    case Channel::left:
+      return {"the left wheel rolls", "further than it says", "less far than it says"};
+    case Channel::right:
+      return {"the right wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheels:
+      return {"both wheels are", "larger than nominal", "smaller than nominal"};
+    case Channel::difference:
+      return {"the right wheel is", "larger than the left", "smaller than the left"};
+    case Channel::turn:
+      return {"the robot turns", "more than its wheels say", "less than its wheels say"};
+    case Channel::drift:
+      return {"the heading drifts by", "to the left", "to the right"};
+    case Channel::advance:
+      return {"each event moves the robot", "forward", "back"};
+    case Channel::rotate:
+      return {"each event turns the robot by", "to the left", "to the right"};
+    case Channel::creep:
+      return {"the robot slips by", "of its travel to the left", "of its travel to the right"};
+    case Channel::lever:
+      return {"the sensor sits", "ahead of the axle", "behind the axle"};
+    case Channel::lever_left:
+      return {"the sensor sits", "to the left of the axle's centre",
+              "to the right of the axle's centre"};
+    case Channel::compass:
+      return {"the compass reads", "too much", "too little"};
+    case Channel::range:
+      return {"ranges read", "too much", "too little"};
+    case Channel::range_scale:
+      return {"ranges read", "too much", "too little"};
+    case Channel::bearing:
+      return {"bearings read", "too much", "too little"};
+    case Channel::delay:
+      return {"sightings and truth are stamped", "late", "early"};
+  }
+  return {"", "", ""};
+}
+
+const char* noun_of(Channel channel) {
+  switch (channel) {
+    case Channel::travel:
+      return "travel error";
+    case Channel::left:
+      return "left wheel's error";
+    case Channel::right:
+      return "right wheel's error";
+    case Channel::wheels:
+      return "error of both wheels";
+    case Channel::difference:
+      return "difference of the wheels";
+    case Channel::turn:
+      return "turning error";
+    case Channel::drift:
+      return "heading drift";
+    case Channel::advance:
+      return "travel error per event";
+    case Channel::rotate:
+      return "turning error per event";
+    case Channel::creep:
+      return "sideways slip";
+    case Channel::lever:
+      return "sensor's place ahead";
+    case Channel::lever_left:
+      return "sensor's place to the left";
+    case Channel::compass:
+      return "compass error";
+    case Channel::range:
+      return "range error";
+    case Channel::range_scale:
+      return "error of the range's scale";
+    case Channel::bearing:
+      return "bearing error";
+    case Channel::delay:
+      return "delay of sightings";
+  }
+  return "";
+}
+
+std::string channel_in_words(Channel channel) {
+  switch (channel) {
+    case Channel::travel:
+      return "travel, measured too short by";
+    case Channel::wheels:
+      return "both wheels, measured too short by";
+    case Channel::left:
+      return "left wheel, measured too short by";
+    case Channel::right:
+      return "right wheel, measured too short by";
+    case Channel::creep:
+      return "slip to the left, of the travel";
+    case Channel::turn:
+      return "turning, measured too little by";
+    case Channel::difference:
+      return "right wheel against left";
+    case Channel::drift:
+      return "turning, missing per second";
+    case Channel::compass:
+      return "compass reads too much by";
+    case Channel::range:
+      return "ranges too long by";
+    case Channel::range_scale:
+      return "ranges too long by";
+    case Channel::bearing:
+      return "bearings too large by";
+    case Channel::lever:
+      return "sensor ahead by";
+    case Channel::lever_left:
+      return "sensor to the left by";
+    case Channel::advance:
+      return "travel, missing per event";
+    case Channel::rotate:
+      return "turning, missing per event";
+    case Channel::delay:
+      return "sightings stamped late by";
+  }
+  return "";
+}
+
+ShownUnit shown_unit(const std::string& unit) {
+  if (unit.empty()) return {100.0, "%"};
+  if (unit == "rad") return {kDegrees, "\u00b0"};
+  if (unit == "rad/s") return {kDegrees, "\u00b0/s"};
+  if (unit == "m") return {1000.0, "mm"};
+  if (unit == "s") return {1000.0, "ms"};
+  return {1.0, unit};
+}
+
+std::string shown(double value, const std::string& unit) {
+  const ShownUnit as = shown_unit(unit);
+  return two_digits(as.factor * value) + (as.name.starts_with("\u00b0") ? "" : " ") + as.name;
+}
+
+std::string variable_in_words(const std::string& variable) {
+  return variable == "turn_rate"  ? "turn rate"
+         : variable == "t"        ? "time"
+         : variable == "distance" ? "distance driven"
+                                  : variable;
+}
+
+std::string variables_in_words(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t space = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, space - at);
+    result += variable_in_words(word);
+    if (space < text.size()) result += ' ';
+    at = space + 1;
+  }
+  return result;
+}
+
+std::string place_text(const Vector2& place) {
+  return fmt::format("x {:.1f} m, y {:.1f} m", place.x(), place.y());
+}
+
+}  // namespace trussmap

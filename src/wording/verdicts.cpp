@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+std::string beyond_noise(double chi2, int dof) {
+  return fmt::format("errors are {:.1f} times what the model's noise allows",
+                     std::sqrt(chi2 / std::max(1, dof)));
+}
+
+std::string goes_with(const Trend& trend) {
+  return trend.against == "all"
+             ? fmt::format("the {} error is everywhere alike", trend.kind)
+             : fmt::format("the {} error depends on {}", trend.kind, trend.against);
+}
+
+}  // namespace
+
+std::string_view name_of(Status status) {
+  switch (status) {
+    case Status::missing:
+      return "missing";
+    case Status::absent:
+      return "absent";
+    case Status::negligible:
+      return "negligible";
+    case Status::cannot_tell:
+      break;
+  }
+  return "cannot tell";
+}
+
+std::string_view name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::leg:
+      return "leg";
+    case EventKind::landmark:
+      return "landmark";
+    case EventKind::sighting:
+      return "sighting";
+    case EventKind::session:
+      break;
+  }
+  return "session";
+}
+
+std::string_view verdict_of(const Comparison& result) {
+  return result.consistent() ? "consistent" : "misfit";
+}
+
+std::string_view verdict_of(const Diagnosis& result) {
+  switch (result.verdict) {
+    case Diagnosis::Verdict::missing:
+      return "missing";
+    case Diagnosis::Verdict::nothing_missing:
+      return "nothing missing";
+    case Diagnosis::Verdict::unexplained_misfit:
+      break;
+  }
+  return "unexplained misfit";
+}
+
+std::string_view verdict_of(const Discovery& result) {
+  return result.consistent ? "consistent" : "unexplained misfit";
+}
+
+std::string objection_in_words(const Comparison& result) {
+  switch (result.objection) {
+    case Objection::none:
+      return "the model explains these measurements to within its noise";
+    case Objection::chi2:
+      return beyond_noise(result.chi2, result.dof);
+    case Objection::trend:
+      return "errors are small enough as a whole, but " +
+             (result.trends.empty() ? std::string() : goes_with(result.trends.front()));
+    case Objection::effect:
+      break;
+  }
+  return fmt::format(
+      "errors are small enough as a whole, but {} is missing (see trussmap diagnose)",
+      result.missing);
+}
+
+std::string verdict_in_words(const Comparison& result) {
+  return fmt::format("{}: {}", verdict_of(result), objection_in_words(result));
+}
+
+std::string verdict_in_words(const Diagnosis& result) {
+  std::string text(verdict_of(result));
+  switch (result.verdict) {
+    case Diagnosis::Verdict::missing:
+      return text + ": " + result.missing;
+    case Diagnosis::Verdict::nothing_missing:
+      return text +
+             fmt::format(": none of {} effects tried explains more than chance", result.tried);
+    case Diagnosis::Verdict::unexplained_misfit:
+      break;
+  }
+  if (result.objection == Objection::trend) {
+    return text + fmt::format(
+                      ": errors follow a trend (see trussmap compare), and none of {} effects "
+                      "tried explains it",
+                      result.tried);
+  }
+  return text + fmt::format(
+                    ": the model's noise does not allow these errors (p {}), and none of {} "
+                    "effects tried explains them",
+                    probability_text(result.p_value), result.tried);
+}
+
+std::string verdict_in_words(const Discovery& result) {
+  const auto added =
+      std::count_if(result.steps.begin(), result.steps.end(),
+                    [](const DiscoveryStep& step) { return step.added.has_value(); });
+  const std::string found = added == 0   ? "nothing found, the model stays as it is"
+                            : added == 1 ? "one effect found"
+                                         : fmt::format("{} effects found, one by one", added);
+  return fmt::format("{}: {}; {}", verdict_of(result), found, stop_in_words(result));
+}
+
+std::string in_words(const Finding& finding) {
+  Effect effect = finding.effect;
+  if (!finding.joint.empty()) effect.coefficients = finding.joint;
+  return fmt::format("{}: {}; {}", name_of(finding.status), effect.name,
+                     in_words(effect, finding.joint.empty() ? finding.sd : finding.joint_sd));
+}
+
+std::string stop_in_words(const Discovery& result) {
+  const std::string why = [&] {
+    const Stopped& stopped = result.stopped;
+    switch (stopped.reason) {
+      case StopReason::limit_reached:
+        return fmt::format("effect limit reached ({})", stopped.limit);
+      case StopReason::cannot_be_fitted:
+        return fmt::format("\"{}\" cannot be fitted beside what the model has", stopped.effect);
+      case StopReason::predicts_worse:
+        return fmt::format("\"{}\" fits these legs, but predicts others worse", stopped.effect);
+      case StopReason::nothing_significant:
+        break;
+    }
+    return std::string("nothing more is significant");
+  }();
+  return result.consistent ? why : why + ", but the misfit is not explained";
+}
+
+std::string in_words(const HeldOut& held_out) {
+  if (held_out.legs.empty()) return "no leg could be held out: too few, or --holdout 0";
+  return fmt::format(
+      "{} legs not used in the fit end {:.1f} mm off (rms), stretched by {:.2f} %, turned by "
+      "{:.2f} "
+      "mrad (means)",
+      held_out.legs.size(), 1e3 * held_out.arrival_rms, 100.0 * held_out.stretch_error,
+      1e3 * held_out.orientation_error);
+}
+
+std::string fit_in_words(double chi2, int dof, int coefficients) {
+  return fmt::format("chi2 {:.1f}, dof {}{}", chi2, dof,
+                     coefficients == 0 ? std::string()
+                     : coefficients == 1
+                         ? std::string(" (1 coefficient estimated)")
+                         : fmt::format(" ({} coefficients estimated)", coefficients));
+}
+
+}  // namespace trussmap
