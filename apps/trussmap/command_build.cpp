@@ -2,34 +2,30 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap build: a landmark map from recordings.
-#include "adjusted_map.hpp"
-#include "build_map/recording_map.hpp"
 #include "commands.hpp"
-#include "map_files.hpp"
-#include "odometry/effect_correction.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "plot/map_picture.hpp"
 #include "progress.hpp"
-#include "report/map_page.hpp"
 #include "terminal.hpp"
+#include "trussmap/build_map.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
+#include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/recording_files.hpp"
-#include "trussmap/survey_comparison.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -54,50 +50,38 @@ struct BuildOptions {
 
 constexpr std::size_t kRejectedShown = 10;
 
-/// The map builder's part; an adjustment takes only legs and routes from it.
-RecordingMapOptions map_options(const BuildOptions& options) {
-  RecordingMapOptions result;
-  result.builder.method = options.method == "elastic-printed" ? Method::elastic_printed
-                          : options.method == "gauss-markov"  ? Method::gauss_markov
-                          : options.method == "adjustment"    ? Method::gauss_markov
-                                                              : Method::elastic;
-  result.builder.eta = parse_eta(options.eta);
-  result.builder.eta.hold_first = false;
+Method method_of(const std::string& option) {
+  if (option == "elastic-printed") return Method::elastic_printed;
+  if (option == "gauss-markov") return Method::gauss_markov;
+  if (option == "adjustment") return Method::adjustment;
+  return Method::elastic;
+}
+
+BuildMapOptions map_options(const BuildOptions& options) {
+  BuildMapOptions result;
+  result.method = method_of(options.method);
+  result.eta = parse_eta(options.eta);
+  result.eta.hold_first = false;
   result.min_drive = options.min_drive;
-  if (options.gate && options.method != "adjustment") result.gate = *options.gate;
+  result.gate = options.gate;
   return result;
 }
 
-std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
-  std::map<std::string, SurveyPoint> survey;
-  for (const Recording& recording : recordings) {
-    for (const SurveyPoint& point : recording.survey) survey.try_emplace(point.landmark, point);
-  }
-  std::vector<SurveyPoint> result;
-  result.reserve(survey.size());
-  for (const auto& [name, point] : survey) result.push_back(point);
-  return result;
-}
-
-struct Judged {
-  SurveyComparison map;
-  double rms_dead_reckoning = 0.0;  // m
-};
-
-json survey_json(const Judged& judged) {
+json survey_json(const MapOnSurvey& on_survey) {
+  const SurveyComparison& map = on_survey.comparison;
   json exchanged = json::array();
-  for (const auto& [a, b] : judged.map.exchanged) exchanged.push_back({a, b});
-  return {{"landmarks", judged.map.landmarks},
-          {"rms_m", judged.map.rigid.rms},
-          {"rms_dead_reckoning_m", judged.rms_dead_reckoning},
-          {"rms_similarity_m", judged.map.similarity.rms},
-          {"scale", judged.map.similarity.scale},
-          {"rms_with_contradicting_m", judged.map.rms_all},
-          {"contradicting", judged.map.contradicting},
+  for (const auto& [a, b] : map.exchanged) exchanged.push_back({a, b});
+  return {{"landmarks", map.landmarks},
+          {"rms_m", map.rigid.rms},
+          {"rms_dead_reckoning_m", on_survey.rms_dead_reckoning},
+          {"rms_similarity_m", map.similarity.rms},
+          {"scale", map.similarity.scale},
+          {"rms_with_contradicting_m", map.rms_all},
+          {"contradicting", map.contradicting},
           {"exchanged", exchanged}};
 }
 
-json result_json(const RecordingMap& built, const std::string& method) {
+json result_json(const BuiltMap& built, const std::string& method) {
   json rejected = json::array();
   for (const RejectedSighting& one : built.rejected) {
     rejected.push_back({{"recording", one.recording},
@@ -105,31 +89,33 @@ json result_json(const RecordingMap& built, const std::string& method) {
                         {"landmark", one.landmark},
                         {"misfit_m", one.misfit}});
   }
-  return {{"method", method},
-          {"legs", built.legs},
-          {"landmarks", built.map.landmarks()},
-          {"routes", built.map.routes()},
-          {"first_sight", built.first_sight},
-          {"refinements", built.refinements},
-          {"side_sightings", built.side_sightings},
-          {"rejected", rejected},
-          {"unconfirmed", built.unconfirmed}};
+  json result = {{"method", method},
+                 {"legs", built.legs},
+                 {"landmarks", built.map.landmarks()},
+                 {"routes", built.map.routes()},
+                 {"first_sight", built.first_sight},
+                 {"refinements", built.refinements},
+                 {"side_sightings", built.side_sightings},
+                 {"rejected", rejected},
+                 {"unconfirmed", built.unconfirmed},
+                 {"warnings", built.warnings}};
+  if (built.fit) {
+    result["chi2"] = built.fit->chi2;
+    result["dof"] = built.fit->dof;
+    result["p_value"] = built.fit->p_value;
+    result["iterations"] = built.fit->iterations;
+    result["converged"] = built.fit->converged;
+  }
+  if (built.on_survey) result["survey"] = survey_json(*built.on_survey);
+  return result;
 }
 
-json fit_json(const AdjustedMap& adjusted) {
-  return {{"chi2", adjusted.chi2},
-          {"dof", adjusted.dof},
-          {"p_value", adjusted.p_value},
-          {"iterations", adjusted.iterations},
-          {"converged", adjusted.converged}};
-}
-
-void print_survey(const Judged& judged) {
-  const SurveyComparison& map = judged.map;
+void print_survey(const MapOnSurvey& on_survey) {
+  const SurveyComparison& map = on_survey.comparison;
   fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
              map.landmarks);
   fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the map", map.rigid.rms);
-  fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", judged.rms_dead_reckoning);
+  fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
   fmt::print("  {:<28} {:>8.3f} m  (the map is {:.1f} % too {})\n", "rms with a scale as well",
              map.similarity.rms, 100.0 * std::abs(1.0 / map.similarity.scale - 1.0),
              map.similarity.scale < 1.0 ? "large" : "small");
@@ -147,9 +133,7 @@ void print_survey(const Judged& judged) {
   }
 }
 
-void print_result(const RecordingMap& built, const std::optional<AdjustedMap>& adjusted,
-                  const BuildOptions& options, bool judged_too, const Judged& judged,
-                  const std::vector<std::string>& warnings) {
+void print_result(const BuiltMap& built, const BuildOptions& options) {
   fmt::print("map of {} landmarks and {} routes, method {}\n\n", built.map.landmarks(),
              built.map.routes(), options.method);
   const auto line = [](const char* what, std::size_t number) {
@@ -159,9 +143,9 @@ void print_result(const RecordingMap& built, const std::optional<AdjustedMap>& a
   line("loops closed at first sight", static_cast<std::size_t>(built.first_sight));
   line("known routes driven again", static_cast<std::size_t>(built.refinements));
   line("sightings beside a leg's end", static_cast<std::size_t>(built.side_sightings));
-  if (adjusted) {
+  if (built.fit) {
     fmt::print("  {:<28} {:>8.1f}  of {} degrees of freedom\n", "chi^2 of the adjustment",
-               adjusted->chi2, adjusted->dof);
+               built.fit->chi2, built.fit->dof);
   }
   line("sightings kept out", built.rejected.size());
   for (std::size_t k = 0; k < std::min(built.rejected.size(), kRejectedShown); ++k) {
@@ -176,22 +160,9 @@ void print_result(const RecordingMap& built, const std::optional<AdjustedMap>& a
   for (const std::string& name : built.unconfirmed) {
     fmt::print("  landmark {} was sighted too seldom to be placed\n", name);
   }
-  if (judged_too) print_survey(judged);
-  for (const std::string& warning : warnings) fmt::print("\n{}", warning_text(warning));
+  if (built.on_survey) print_survey(*built.on_survey);
+  for (const std::string& warning : built.warnings) fmt::print("\n{}", warning_text(warning));
   if (!options.out.empty()) fmt::print("\n  map written to {}\n", options.out);
-}
-
-MapPicture picture_of(const RecordingMap& built, const std::vector<SurveyPoint>& survey,
-                      const Judged& judged, const std::string& method) {
-  MapPicture picture;
-  picture.title = "Landmark map, method " + method;
-  picture.map = built.map;
-  picture.before = built.dead_reckoned;
-  if (judged.map.landmarks >= 3) {
-    picture.map_onto_truth = judged.map.rigid;
-    for (const SurveyPoint& point : survey) picture.truth[point.landmark] = {point.x, point.y};
-  }
-  return picture;
 }
 
 void check_usage(const BuildOptions& options) {
@@ -202,66 +173,9 @@ void check_usage(const BuildOptions& options) {
       throw UsageError(folder + " is given twice, expected each session once");
     }
   }
-  if (!options.out.empty()) check_map_format(options.out);
-}
-
-/// Numbers that no wheeled robot has: other units, mostly.
-void doubt_units(const std::vector<Recording>& recordings, const Model& model,
-                 std::vector<std::string>& warnings) {
-  constexpr double kFast = 30.0;  // m/s
-  constexpr double kWide = 10.0;  // m
-  for (const Recording& recording : recordings) {
-    const Drive& drive = recording.drive;
-    double path = 0.0;
-    for (std::size_t row = 0; row < drive.rows(); ++row) {
-      path += std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
-    }
-    const double speed = path / (drive.t.back() - drive.start());
-    if (speed > kFast) {
-      warnings.push_back(
-          fmt::format("{}: the wheels drive at {:.3g} m/s on average; are left and "
-                      "right in metres, t in seconds?",
-                      recording.name, speed));
-    }
+  if (!options.out.empty() && !is_map_file(options.out)) {
+    throw UsageError("cannot write " + options.out + ": expected .graphml, .g2o, .geojson or .dot");
   }
-  if (model.robot.wheelbase > kWide) {
-    warnings.push_back(
-        fmt::format("a wheelbase of {:g} m; is it in metres?", model.robot.wheelbase));
-  }
-}
-
-/// How far the map's routes are from what was measured of them, in standard deviations, in the
-/// middle of all routes. Sound maps have 1 to 5.
-double contradiction(const LandmarkGraph& map) {
-  std::vector<double> distances;
-  for (int k = 0; k < map.routes(); ++k) {
-    const Route& route = map.route(k);
-    const Vector2 off = map.landmark(route.target).position - map.landmark(route.source).position -
-                        route.displacement;
-    distances.push_back(std::sqrt(off.dot(route.covariance.inverse() * off)));
-  }
-  if (distances.empty()) return 0.0;
-  std::nth_element(distances.begin(), distances.begin() + std::ssize(distances) / 2,
-                   distances.end());
-  return distances[distances.size() / 2];
-}
-
-std::vector<std::string> doubts_of(const RecordingMap& built,
-                                   const std::vector<Recording>& recordings, const Model& model,
-                                   const BuildOptions& options) {
-  constexpr double kTorn = 20.0;  // standard deviations
-  std::vector<std::string> warnings;
-  doubt_units(recordings, model, warnings);
-  const double torn = contradiction(built.map);
-  if (torn > kTorn) {
-    warnings.push_back(fmt::format(
-        "the map contradicts its own routes, by {:.0f} standard deviations in the middle; {}", torn,
-        options.method == "elastic-printed"
-            ? "the printed refinement diverges here, use --method elastic"
-            : "wrong units, a wrong wheelbase, exchanged columns or labels, or noise that is "
-              "believed too small"));
-  }
-  return warnings;
 }
 
 void run_build(const BuildOptions& options) {
@@ -274,62 +188,34 @@ void run_build(const BuildOptions& options) {
     recordings.push_back(read_recording(folder));
   }
   const Model model = read_model(options.model, recordings);
-  if (!model.effects.empty()) {
+  progress.next();
+  const BuiltMap built = [&] {
     try {
-      recordings = without_effects(recordings, model);
-    } catch (const std::invalid_argument& error) {
+      return build_map(recordings, model, map_options(options));
+    } catch (const std::invalid_argument& error) {  // an effect that these recordings cannot have
       throw InputError(options.model, 0, error.what());
     }
-  }
-  progress.next();
-  std::optional<AdjustedMap> adjusted;
-  if (at_once) {
-    adjusted = map_by_adjustment(recordings, model, options.gate.value_or(kAdjustmentGate),
-                                 map_options(options));
-  }
-  const RecordingMap built =
-      adjusted ? adjusted->map : map_recordings(recordings, model, map_options(options));
-
-  const std::vector<SurveyPoint> survey = survey_of(recordings);
-  Judged judged;
-  judged.map = compare_with_survey(positions_of(built.map), survey);
-  judged.rms_dead_reckoning = survey_rms(built.dead_reckoned, survey, judged.map.contradicting);
-  const bool judged_too = judged.map.landmarks >= 3;
-  std::vector<std::string> warnings = doubts_of(built, recordings, model, options);
-  if (adjusted)
-    warnings.insert(warnings.end(), adjusted->warnings.begin(), adjusted->warnings.end());
+  }();
 
   Files files;
+  const std::string method = "method " + options.method;
   if (!options.out.empty()) {
-    files.emplace_back(options.out, format_map(built.map, options.out,
-                                               "trussmap build, method " + options.method));
+    files.emplace_back(options.out,
+                       format_map(built.map, options.out, "trussmap build, " + method));
   }
   if (!options.json_file.empty()) {
-    json result = result_json(built, options.method);
-    if (adjusted) result.update(fit_json(*adjusted));
-    if (judged_too) result["survey"] = survey_json(judged);
-    result["warnings"] = warnings;
-    files.emplace_back(options.json_file, result.dump(2) + "\n");
+    files.emplace_back(options.json_file, result_json(built, options.method).dump(2) + "\n");
   }
   if (!options.svg.empty()) {
-    files.emplace_back(options.svg, draw_map(picture_of(built, survey, judged, options.method)));
+    files.emplace_back(options.svg, draw_map(picture_of(built, "Landmark map, " + method)));
   }
   if (options.page.wanted()) {
-    BuiltMap shown;
-    shown.picture = picture_of(built, survey, judged, options.method);
-    shown.method = options.method;
-    shown.survey = judged.map;
-    shown.rms_dead_reckoning = judged.rms_dead_reckoning;
-    shown.legs = built.legs;
-    shown.first_sight = built.first_sight;
-    shown.refinements = built.refinements;
-    shown.rejected = built.rejected.size();
-    shown.warnings = warnings;
-    add_page(files, map_page(shown, subject_of(options.recordings, options.model)), options.page);
+    const std::string subject = subject_of(options.recordings, options.model) + ", " + method;
+    add_page(files, map_page(built, subject), options.page);
   }
   write_files(files);
   progress.end();
-  print_result(built, adjusted, options, judged_too, judged, warnings);
+  print_result(built, options);
 }
 
 }  // namespace

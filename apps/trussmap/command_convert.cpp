@@ -3,8 +3,7 @@
 //
 // trussmap convert: maps between formats, and foreign recordings to recordings.
 #include "commands.hpp"
-#include "map_files.hpp"
-#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -66,15 +65,6 @@ void check_folder(const fs::path& out) {
   }
 }
 
-/// What the file holds may be no landmark map: a pose graph, say.
-LandmarkGraph require_map(const fs::path& file) {
-  try {
-    return read_map(file);
-  } catch (const std::invalid_argument& error) {
-    throw InputError(file.string(), 0, error.what());
-  }
-}
-
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
@@ -87,7 +77,12 @@ void run_convert(const ConvertOptions& options) {
     convert_optiodom(in, out);
     return;
   }
-  const LandmarkGraph map = require_map(in);
+  if (in.extension() != ".graphml" && in.extension() != ".g2o") {
+    throw UsageError("cannot tell what " + in.string() +
+                     " is: expected a map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or "
+                     "an OptiOdom run (..._run-NN.csv, plain or .xz)");
+  }
+  const LandmarkGraph map = read_map(in);
   write_file(out, format_map(map, out, ""));
   fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
              out.string());

@@ -19,6 +19,7 @@
 #include "trussmap/recording.hpp"
 
 #include <limits>
+#include <vector>
 
 namespace trussmap {
 
@@ -62,10 +63,17 @@ struct InitialHeading {
                                               const LandmarkOffset& landmark);
 
 /// The robot drives from time `from` to time `to`. Compass readings up to `readings_used_until`
-/// are passed over: `start` knows them already.
+/// are passed over: `start` knows them already. `slip`: how far it slips to its left in each row of
+/// the drive beside what its wheels show, m; empty: not at all.
 [[nodiscard]] PoseEstimate dead_reckon(
     const PoseEstimate& start, const Drive& drive, double from, double to, const Robot& robot,
-    const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity());
+    const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity(),
+    const std::vector<double>& slip = {});
+
+/// Pose at the end of each row, from the first compass heading (else 0) at the origin.
+[[nodiscard]] std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot,
+                                                   const Noise& noise,
+                                                   const std::vector<double>& slip = {});
 
 /// Position of a landmark that the robot at `pose` sees, with its covariance, both map axes.
 struct PositionEstimate {

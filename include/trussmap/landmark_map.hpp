@@ -3,6 +3,19 @@
 //
 // The relational graph of landmarks and routes: the map as knowledge, before any mechanics.
 //
+//        s, theta, d, C, t                    a route and what its traversals say on average
+//   A o-------------------->o B               landmarks, where they are believed to be
+//
+//   t        number of traversals
+//   s        stretch, running mean of the measured lengths                              m
+//   theta    orientation of the route's own direction, source -> target: running mean of the
+//            measured directions, each unwrapped next to the present mean; not folded   rad
+//   d        running mean of the measured displacement vectors, source -> target        m
+//   C        running mean of the traversals' covariances, map axes                      m^2
+//
+// Golfarelli, Maio & Rizzi (1998), section 3; the paper folds orientations to [0, pi), which here
+// is done for printing and files only (an undirected route has no direction to average).
+//
 // Landmarks are numbered 0, 1, ... in the order they are added and have unique names; routes are
 // numbered likewise, join two different landmarks, and there is at most one between a pair.
 #pragma once
@@ -15,18 +28,6 @@
 #include <vector>
 
 namespace trussmap {
-
-// A route between two landmarks and what its traversals say on average.
-//
-//   t        number of traversals
-//   s        stretch, running mean of the measured lengths                              m
-//   theta    orientation of the route's own direction, source -> target: running mean of the
-//            measured directions, each unwrapped next to the present mean; not folded   rad
-//   d        running mean of the measured displacement vectors, source -> target        m
-//   C        running mean of the traversals' covariances, map axes                      m^2
-//
-// Golfarelli, Maio & Rizzi (1998), section 3; the paper folds orientations to [0, pi), which here
-// is done for printing and files only (an undirected route has no direction to average).
 
 /// One drive along a route: what odometry measured, in map axes.
 struct Traversal {

@@ -1,7 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Pose graphs as text: g2o's format, of which the plane's part, TORO's and iSAM's.
+// Maps and pose graphs as files. The ending of a file's name says what it holds:
+//
+//   .graphml   a map, out and in without loss
+//   .g2o       a map as a pose graph of points, or any pose graph in the plane
+//   .geojson   a map for other people's programs, out only
+//   .dot       a map for Graphviz, out only
+//
+// GraphML: undirected; node id = landmark name; node data x, y [m] and, where known, c_xx c_xy c_yy
+// [m^2]; edge data traversals, stretch [m], orientation [rad] (source to target), dx, dy [m],
+// c_xx c_xy c_yy [m^2] (mean covariance of a traversal, map frame).
+//
+// A map as a pose graph: landmarks are points, the first of them fixed; routes are displacements
+// with information t C^-1 (t traversals of mean covariance C), the Gauss-Markov stiffness. The way
+// back cannot know how many traversals an edge stands for: it makes one of each.
+//
+// g2o's format, of which the plane's part, TORO's and iSAM's; one element a line, in any order,
+// blank lines and what follows a # are skipped:
 //
 //   VERTEX_SE2   id x y theta                                pose                     m, rad
 //   VERTEX_XY    id x y                                      point                    m
@@ -18,9 +34,9 @@
 //                                                            l counts landmarks apart from poses,
 //                                                            and becomes vertex (last pose) + 1 + l
 //
-// One element a line, in any order; blank lines and what follows a # are skipped. A file may have
-// no vertex lines at all: its vertices are then those that its edges name, without estimates. If
-// there are vertex lines, every vertex needs one. Files whose name ends in .xz are decompressed.
+// A file may have no vertex lines at all: its vertices are then those that its edges name, without
+// estimates. If there are vertex lines, every vertex needs one. Names that end in .xz are
+// decompressed.
 #pragma once
 
 #include "trussmap/landmark_map.hpp"
@@ -31,6 +47,41 @@
 #include <string_view>
 
 namespace trussmap {
+
+// Maps, whatever the ending says.
+
+/// Whether the name ends like a map's: .graphml, .g2o, .geojson or .dot.
+[[nodiscard]] bool is_map_file(const std::filesystem::path& file);
+
+/// From .graphml or .g2o. Throws InputError on another ending and on what is no map in the file,
+/// with the line where there is one.
+[[nodiscard]] LandmarkGraph read_map(const std::filesystem::path& file);
+
+/// What a file of this name holds of the map; `comment` (which method made it, say) stands where
+/// the format has room for one. Throws InputError on another ending, or a map that the format
+/// cannot hold.
+[[nodiscard]] std::string format_map(const LandmarkGraph& map, const std::filesystem::path& file,
+                                     const std::string& comment = "");
+
+// Maps, format by format.
+
+/// Throws InputError, with the line where the XML reader knows it: no XML, no GraphML graph, a
+/// directed graph, a landmark twice, a value missing or no number, an edge to an unknown landmark,
+/// two edges between the same landmarks, a count below 1.
+[[nodiscard]] LandmarkGraph read_map_graphml(const std::filesystem::path& file);
+
+/// `comment`, if any, is written as an XML comment.
+[[nodiscard]] std::string format_map_graphml(const LandmarkGraph& map,
+                                             const std::string& comment = "");
+
+/// A FeatureCollection: a Point per landmark, a LineString per route, with their numbers as
+/// properties. Coordinates are metres in the map frame, not degrees.
+[[nodiscard]] std::string format_geojson(const LandmarkGraph& map);
+
+/// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
+[[nodiscard]] std::string format_dot(const LandmarkGraph& map);
+
+// Pose graphs.
 
 /// Throws InputError with file and line: a tag that is not in the table, too few or too many
 /// values, a value that is no finite number, a vertex defined twice or not at all, an edge between
@@ -45,31 +96,5 @@ namespace trussmap {
 
 /// Written whole or not at all. Throws InputError where the path cannot be written.
 void write_g2o(const PoseGraph& graph, const std::string& path);
-
-// ----------------------------------------
-// A map for other people's programs: GeoJSON and Graphviz.
-
-/// A FeatureCollection: a Point per landmark, a LineString per route, with their numbers as
-/// properties. Coordinates are metres in the map frame, not degrees.
-[[nodiscard]] std::string format_geojson(const LandmarkGraph& map);
-
-/// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
-[[nodiscard]] std::string format_dot(const LandmarkGraph& map);
-
-// ----------------------------------------
-// A map as GraphML, out and in without loss.
-//
-//   node id = landmark name; data x, y [m] and, where known, c_xx c_xy c_yy [m^2]
-//   edge data traversals, stretch [m], orientation [rad] (source to target), dx, dy [m],
-//   c_xx c_xy c_yy [m^2] (mean covariance of a traversal, map frame)
-
-/// Throws InputError, with the line where the XML reader knows it: no XML, no GraphML graph, a
-/// directed graph, a landmark twice, a value missing or no number, an edge to an unknown landmark,
-/// two edges between the same landmarks, a count below 1.
-[[nodiscard]] LandmarkGraph read_map_graphml(const std::filesystem::path& file);
-
-/// `comment`, if any, is written as an XML comment (which method made the map, say).
-[[nodiscard]] std::string format_map_graphml(const LandmarkGraph& map,
-                                             const std::string& comment = "");
 
 }  // namespace trussmap

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A pose graph: poses and points in the plane, tied by relative measurements.
+// A pose graph in the plane, and its best fit from any start.
 //
 //   X = (t, theta)   pose of a vertex: position and heading                 m, rad   map frame
 //   p                position of a point                                    m        map frame
@@ -14,7 +14,27 @@
 //   pose i -> point j    e = R_i' (p_j - t_i) - Z     EDGE_SE2_XY: Z in the robot's frame
 //   point i -> point j   e = p_j - p_i - Z            EDGE_POINTXY: Z in the map frame
 //
-// Edges speak of vertices by their place in `vertices`; ids are the user's names for them.
+// adjust() finds the estimates of least chi^2:
+//   1. Several sets of headings are drawn from the measurements alone: linear fits whose whole
+//      turns come from different trees, and the chordal relaxation. Positions given headings are
+//      one linear solve.
+//   2. The best start descends (Levenberg-Marquardt) until the next step would take less than
+//      `tolerance` of chi^2, and takes that step too.
+//   3. Whatever start has other windings than what was found, or lies lower, descends as well, and
+//      if chi^2 is too large for its degrees of freedom so do all others. The best is kept.
+//
+// adjust_robustly() does without wrong loop closures: it minimises sum min(e' Omega e, gate) over
+// the loop closures plus the plain squares of all else, by graduated non-convexity (Yang,
+// Antonante, Tzoumas & Carlone, "Graduated non-convexity for robust spatial perception", 2020),
+// leaves out those that end outside the gate and adjusts the rest as usual. A loop closure is a
+// pose edge between poses that do not follow each other in the list of vertices; odometry and
+// points are believed, and an edge without which the graph would fall apart is kept. The gate takes
+// the information at its word: where it claims too much, right edges fall.
+//
+// What fails: a graph in several parts, a vertex that its measurements leave free. Both are
+// SolveErrors that name vertices; nothing is hidden by damping. Local minima: with heading errors
+// of some 0.3 rad per edge and few loops, no one can say that a lower minimum does not exist;
+// `warnings` says what is suspicious.
 #pragma once
 
 #include "trussmap/gate.hpp"
@@ -29,6 +49,8 @@ namespace trussmap {
 
 enum class VertexKind { pose, point };
 
+/// Edges speak of vertices by their place in PoseGraph::vertices; ids are the user's names for
+/// them.
 struct GraphVertex {
   std::int64_t id = 0;
   VertexKind kind = VertexKind::pose;
@@ -89,23 +111,6 @@ struct PoseGraph {
 /// that are not finite, information that is not semidefinite, fixed vertices without an estimate.
 [[nodiscard]] std::optional<std::string> find_fault(const PoseGraph& graph);
 
-// ----------------------------------------
-// The best fit of a pose graph: the estimates of least chi^2, found from any start.
-//
-//   1. Several sets of headings are drawn from the measurements alone: linear fits whose whole
-//      turns come from different trees, and the chordal relaxation (pose_graph_headings.hpp).
-//      Positions given headings are one linear solve.
-//   2. The best start descends by Gauss-Newton steps; a step that does not pay is damped
-//      (Levenberg-Marquardt), so that chi^2 never rises. It ends when the next step would take
-//      less than `tolerance` of chi^2, and takes that step too.
-//   3. Whatever start has other windings than what was found, or lies lower, descends as well, and
-//      if chi^2 is too large for its degrees of freedom so do all others. The best is kept.
-//
-// What fails: a graph in several parts, a vertex that its measurements leave free. Both are
-// SolveErrors that name vertices; nothing is hidden by damping. Local minima: with heading errors
-// of some 0.3 rad per edge and few loops, no one can say that a lower minimum does not exist;
-// result.warnings says what is suspicious.
-
 enum class StartFrom {
   best,     ///< the file's estimates, if any, and the measurements
   file,     ///< the same, but the file's estimates must be there, and descend in any case
@@ -141,26 +146,10 @@ struct PoseGraphAdjustment {
                                                                 const std::vector<Pose>& estimates,
                                                                 const std::vector<int>& vertices);
 
-// ----------------------------------------
-// The best fit of a pose graph of which some loop closures are wrong.
-//
-//   r^2    e' Omega e of an edge
-//   c^2    the largest r^2 that a right edge should have: `gate`
-//   w      an edge's weight, 0 ... 1
-//
-// Minimises the truncated squares sum min(r^2, c^2) over the loop closures plus the plain squares
-// of all else, by graduated non-convexity (Yang, Antonante, Tzoumas & Carlone, "Graduated
-// non-convexity for robust spatial perception", 2020): first all edges pull nearly alike, then the
-// cost is bent, step by step, into the truncated one. Edges that end outside the gate are left
-// out, the rest is adjusted as usual.
-//
-// A loop closure is a pose edge between poses that do not follow each other in the list of
-// vertices. Odometry and points are believed. An edge without which the graph would fall apart is
-// kept. The gate takes the information at its word: where it claims too much, right edges fall.
-
 struct RobustOptions {
   AdjustmentOptions adjustment;
-  double gate = kPoseGraphGate;  ///< c^2: one right edge in a thousand has more (chi^2, 3 dof)
+  /// Largest e' Omega e that a right edge should have: one in a thousand has more (chi^2, 3 dof).
+  double gate = kPoseGraphGate;
 };
 
 struct RobustAdjustment {

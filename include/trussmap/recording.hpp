@@ -70,6 +70,9 @@ struct TruthRow {
   double heading = 0.0;  ///< rad
 };
 
+/// Shortest leg: two stops that are nearer to each other, m of driven path, end none.
+inline constexpr double kDefaultMinDrive = 0.25;
+
 struct Recording {
   std::string name;  ///< where it came from, for messages
   Drive drive;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/session.hpp"
 
-#include "map/heading_in_map.hpp"
+#include "build_map/heading_in_map.hpp"
 #include "map/heading_reset.hpp"
 #include "trussmap/error.hpp"
 
@@ -30,12 +30,13 @@ double mahalanobis(const Vector2& misfit, const Matrix2& covariance) {
 bool Candidates::confirmed(const std::string& landmark, const PositionEstimate& place) {
   std::vector<PositionEstimate>& places = places_[landmark];
   places.push_back(place);
-  const Matrix2 slack = options_->map_sd * options_->map_sd * Matrix2::Identity();
+  const Matrix2 slack = options_->build.map_sd * options_->build.map_sd * Matrix2::Identity();
   const auto agrees = [&](const PositionEstimate& other) {
     const Matrix2 spread = place.covariance + other.covariance + slack;
     return mahalanobis(place.position - other.position, spread) <= options_->gate;
   };
-  if (std::count_if(places.begin(), places.end(), agrees) < options_->confirmations) return false;
+  if (std::count_if(places.begin(), places.end(), agrees) < options_->build.confirmations)
+    return false;
   places_.erase(landmark);
   return true;
 }
@@ -47,17 +48,17 @@ std::vector<std::string> Candidates::unconfirmed() const {
   return names;
 }
 
-Session::Session(const Recording& recording, const Model& model, const RecordingMapOptions& options,
-                 const Guide& guide, MapBuilder& builder, Candidates& candidates,
-                 RecordingMap& result)
-    : recording_(recording),
-      model_(model),
+Session::Session(const SightedDrive& drive, const LegByLegOptions& options,
+                 const LandmarkPositions& guide, MapBuilder& builder, Candidates& candidates,
+                 BuiltMap& result)
+    : drive_(drive),
+      recording_(drive.recording()),
       options_(options),
       guide_(guide),
       builder_(builder),
       candidates_(candidates),
       result_(result),
-      path_(driven_path(recording.drive)) {}
+      path_(driven_path(drive.drive())) {}
 
 void Session::run() {
   for (const Stop& stop : stops_of(recording_.sightings)) {
@@ -65,8 +66,7 @@ void Session::run() {
       visit(stop);
     } else if (builder_.landmarks() == 0) {
       const Sighting& sighting = recording_.sightings[stop.reference];
-      const InitialHeading first =
-          initial_heading(recording_.drive, stop.t, model_.robot, model_.noise);
+      const InitialHeading first = drive_.heading_at(stop.t);
       readings_used_until_ = first.reading_time;
       begin(stop, sighting, first.heading);
     } else {
@@ -92,11 +92,10 @@ void Session::resume(const Stop& stop) {
     }
   }
   if (nearest == nullptr) return;
-  const InitialHeading first =
-      initial_heading(recording_.drive, stop.t, model_.robot, model_.noise);
+  const InitialHeading first = drive_.heading_at(stop.t);
   std::optional<HeadingEstimate> heading = first.heading;
   if (!recording_.drive.has_compass()) {
-    heading = heading_in_map(recording_, *nearest, model_, options_.map_sd,
+    heading = heading_in_map(drive_, *nearest, options_.build.map_sd,
                              [this](const std::string& name) { return believed(name); });
   }
   if (!heading) return;
@@ -105,11 +104,8 @@ void Session::resume(const Stop& stop) {
 }
 
 LandmarkOffset Session::offset_of(const Sighting& sighting) const {
-  Noise noise = model_.noise;
-  if (!recording_.drive.has_compass()) {
-    noise.bearing = std::hypot(noise.bearing, options_.bearing_slack);
-  }
-  return landmark_offset(sighting, noise);
+  return drive_.offset_of(sighting,
+                          recording_.drive.has_compass() ? 0.0 : options_.build.bearing_slack);
 }
 
 /// Where a landmark is thought to be: by the earlier look, else by the map so far.
@@ -130,8 +126,7 @@ void Session::begin(const Stop& stop, const Sighting& at, const HeadingEstimate&
 }
 
 void Session::visit(const Stop& stop) {
-  pose_ = dead_reckon(pose_, recording_.drive, time_, stop.t, model_.robot, model_.noise,
-                      readings_used_until_);
+  pose_ = drive_.reckon(pose_, time_, stop.t, readings_used_until_);
   time_ = stop.t;
   std::vector<Accepted> accepted;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
@@ -142,7 +137,7 @@ void Session::visit(const Stop& stop) {
     return a.offset.offset_robot.norm() < b.offset.offset_robot.norm();
   });
   if (accepted.empty() || accepted.front().sighting->landmark == reference_->landmark) return;
-  if (path_at(recording_.drive, path_, stop.t) - leg_start_ < options_.min_drive) return;
+  if (path_at(recording_.drive, path_, stop.t) - leg_start_ < options_.build.min_drive) return;
   arrive(stop, accepted.front());
   accepted.erase(accepted.begin());
   observe(accepted);
@@ -161,7 +156,8 @@ void Session::consider(const Sighting& sighting, std::vector<Accepted>& accepted
     return;
   }
   const Vector2 misfit = place.position - *known;
-  const Matrix2 spread = place.covariance + options_.map_sd * options_.map_sd * Matrix2::Identity();
+  const Matrix2 spread =
+      place.covariance + options_.build.map_sd * options_.build.map_sd * Matrix2::Identity();
   if (mahalanobis(misfit, spread) <= options_.gate) {
     accepted.push_back({&sighting, offset});
   } else {
@@ -196,7 +192,7 @@ HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimat
   if (in_map.squaredNorm() <= 0.0) return reckoned;
   const double of_traversal =
       std::max(direction_variance(place.position, place.covariance) - start_heading_variance_, 0.0);
-  double of_map = options_.map_sd * options_.map_sd / in_map.squaredNorm();
+  double of_map = options_.build.map_sd * options_.build.map_sd / in_map.squaredNorm();
   if (guide_.empty()) {
     const auto known = builder_.find(at.sighting->landmark);
     if (const auto route = builder_.route_between(builder_.here(), *known)) {

@@ -4,8 +4,9 @@
 // One recording on its way into the map.
 #pragma once
 
-#include "build_map/recording_map.hpp"
-#include "trussmap/dead_reckoning.hpp"
+#include "build_map/leg_by_leg.hpp"
+#include "recording/legs.hpp"
+#include "trussmap/map_builder.hpp"
 
 #include <limits>
 #include <map>
@@ -15,13 +16,10 @@
 
 namespace trussmap {
 
-/// Where an earlier look at the recordings put the landmarks.
-using Guide = std::map<std::string, Vector2>;
-
 /// Places at which a landmark that is not in the map was sighted.
 class Candidates {
  public:
-  explicit Candidates(const RecordingMapOptions& options) : options_(&options) {}
+  explicit Candidates(const LegByLegOptions& options) : options_(&options) {}
 
   /// Adds a sighting; true if enough of them, this one included, agree.
   bool confirmed(const std::string& landmark, const PositionEstimate& place);
@@ -29,14 +27,15 @@ class Candidates {
   [[nodiscard]] std::vector<std::string> unconfirmed() const;
 
  private:
-  const RecordingMapOptions* options_;
+  const LegByLegOptions* options_;
   std::map<std::string, std::vector<PositionEstimate>> places_;
 };
 
 class Session {
  public:
-  Session(const Recording& recording, const Model& model, const RecordingMapOptions& options,
-          const Guide& guide, MapBuilder& builder, Candidates& candidates, RecordingMap& result);
+  /// `guide`: where an earlier look at the recordings put the landmarks. Counts go to `result`.
+  Session(const SightedDrive& drive, const LegByLegOptions& options, const LandmarkPositions& guide,
+          MapBuilder& builder, Candidates& candidates, BuiltMap& result);
 
   /// Hands every leg to the builder.
   void run();
@@ -62,13 +61,13 @@ class Session {
   [[nodiscard]] HeadingEstimate heading_after(const Accepted& at,
                                               const PositionEstimate& place) const;
 
+  const SightedDrive& drive_;
   const Recording& recording_;
-  const Model& model_;
-  const RecordingMapOptions& options_;
-  const Guide& guide_;
+  const LegByLegOptions& options_;
+  const LandmarkPositions& guide_;
   MapBuilder& builder_;
   Candidates& candidates_;
-  RecordingMap& result_;
+  BuiltMap& result_;
   std::vector<double> path_;
   const Sighting* reference_ = nullptr;  // where the present leg began
   PoseEstimate pose_;                    // from that landmark, map axes

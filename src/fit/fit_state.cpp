@@ -22,8 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Rounds of fitting and looking at the path again.
 class Fitter {
  public:
-  Fitter(const std::vector<Recording>& recordings, const Model& model,
-         const FitterOptions& options)
+  Fitter(const std::vector<Recording>& recordings, const Model& model, const FitterOptions& options)
       : recorded_(recordings), options_(options) {
     fit_.model = model;
     for (Effect& effect : fit_.model.effects) {
@@ -201,9 +200,7 @@ class Fitter {
   }
 
   /// The one added last gives way: the others may be determined without it.
-  void give_way(int coefficient) {
-    hold(coefficient, NotFitted::undetermined);
-  }
+  void give_way(int coefficient) { hold(coefficient, NotFitted::undetermined); }
 
   void adjust_once() {
     RecordingAdjustmentOptions how;
@@ -239,10 +236,11 @@ class Fitter {
     const std::vector<SessionPath> before = std::move(fit_.paths);
     if (!fit_.model.effects.empty()) lay_paths();
     // The residuals of a misfit are no estimate of noise.
-    const bool noise = fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
-    offset_change_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
-                                offsets_of(fit_), state_)
-                  : 0.0;
+    const bool noise = options_.relinearise &&
+                       fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
+    offset_change_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model,
+                                         fit_.columns.border, offsets_of(fit_), state_)
+                           : 0.0;
     moved_ = 0.0;
     for (std::size_t s = 0; s < fit_.paths.size(); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
@@ -272,8 +270,7 @@ class Fitter {
       const double uncertainty =
           std::sqrt(covariance(at, at)) * one.largest / facts_of(effect.channel).prior_sd;
       if (share >= kLeastShare && uncertainty <= kLargestUncertainty) continue;
-      hold(unknown[k],
-           uncertainty > kLargestUncertainty ? NotFitted::uncertain : NotFitted::faint,
+      hold(unknown[k], uncertainty > kLargestUncertainty ? NotFitted::uncertain : NotFitted::faint,
            uncertainty);
       return true;
     }
@@ -316,12 +313,12 @@ class Fitter {
   FitterOptions options_;
   FitState fit_;
   RecordingState state_;
-  std::vector<Effect> given_;                      ///< with the coefficients at first
+  std::vector<Effect> given_;  ///< with the coefficients at first
   /// Per effect and place; nothing where fitted.
   std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted_;
-  double change_ = 0.0;                            ///< of the coefficients, in what is negligible
-  double offset_change_ = 0.0;                     ///< of the linearisation offsets, in sds
-  double moved_ = 0.0;                             ///< of the path, m and rad
+  double change_ = 0.0;         ///< of the coefficients, in what is negligible
+  double offset_change_ = 0.0;  ///< of the linearisation offsets, in sds
+  double moved_ = 0.0;          ///< of the path, m and rad
 };
 
 }  // namespace
@@ -345,7 +342,7 @@ Eigen::VectorXd offsets_of(const FitState& fit) {
 }
 
 FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
-                   const FitterOptions& options) {
+                        const FitterOptions& options) {
   return Fitter(recordings, model, options).run();
 }
 

@@ -30,6 +30,9 @@ struct FitterOptions {
   /// What is left out is given in the recordings' own times; delays move it with its sightings.
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
+  /// Segments linearised at the noise that the fit believes (segment_noise.hpp), else along the
+  /// path as recorded.
+  bool relinearise = true;
   int max_rounds = 30;
   double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
   /// Start from this fit of the same recordings (to more or fewer of their measurements).

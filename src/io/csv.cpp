@@ -190,8 +190,17 @@ double CsvReader::number(int column) const {
   return value;
 }
 
-double CsvReader::number_or_absent(int column) const {
-  return field(column).empty() ? kAbsent : number(column);
+double CsvReader::number(int column, double largest) const {
+  const double value = number(column);
+  if (std::abs(value) > largest) {
+    fail("column " + columns_[idx(column)] + " is " + shown(field(column)) +
+         ", expected a number of at most " + csv_number(largest) + " in size");
+  }
+  return value;
+}
+
+double CsvReader::number_or_absent(int column, double largest) const {
+  return field(column).empty() ? kAbsent : number(column, largest);
 }
 
 void CsvReader::fail(const std::string& what) const {

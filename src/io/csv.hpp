@@ -42,8 +42,11 @@ class CsvReader {
   /// The field as a finite number. Throws InputError: empty, text, NaN, infinite, out of range.
   [[nodiscard]] double number(int column) const;
 
+  /// The same, and of a size that is `largest` at most.
+  [[nodiscard]] double number(int column, double largest) const;
+
   /// The same, NaN where the field is empty.
-  [[nodiscard]] double number_or_absent(int column) const;
+  [[nodiscard]] double number_or_absent(int column, double largest) const;
 
   /// Throws InputError for the present row: `file:line: what`.
   [[noreturn]] void fail(const std::string& what) const;

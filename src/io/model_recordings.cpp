@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "fit/effect_columns.hpp"
-#include "odometry/effect_correction.hpp"
+#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 
@@ -14,7 +14,7 @@ Model read_model(const std::filesystem::path& file, const std::vector<Recording>
   if (model.effects.empty()) return model;
   std::vector<SessionPath> paths;
   for (const Recording& recording : recordings) {
-    paths.push_back({Pose(), row_path(recording.drive, model)});
+    paths.push_back({Pose(), dead_reckoned_path(recording.drive, model.robot, model.noise)});
   }
   const ShapeContext context(recordings, model.robot, paths);
   // One effect after the other, so that the one at fault is known by its line.

@@ -34,6 +34,15 @@ bool is_reserved(std::string_view name) {
          std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
 }
 
+// Beyond all that robots do and clocks show; what is larger is a slip of the pen or another unit,
+// and sums of its squares would overflow.
+constexpr double kLargestTime = 1e12;       // s: Unix time in nanoseconds is more
+constexpr double kLargestTravel = 1e6;      // m in a row
+constexpr double kLargestRange = 1e6;       // m
+constexpr double kLargestAngle = 1e9;       // rad: turns add up
+constexpr double kLargestPosition = 1e9;    // m
+constexpr double kLargestCovariate = 1e50;  // in whatever unit
+
 bool is_name(std::string_view text) {
   const auto word = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -95,14 +104,14 @@ Drive read_drive(const fs::path& file) {
     covariate_columns.push_back(column);
   }
   while (csv.next()) {
-    const double now = csv.number(t);
+    const double now = csv.number(t, kLargestTime);
     if (!drive.t.empty()) require_forward(csv, drive.t.back(), now, false);
     drive.t.push_back(now);
-    drive.left.push_back(csv.number(left));
-    drive.right.push_back(csv.number(right));
-    if (heading >= 0) drive.heading.push_back(csv.number_or_absent(heading));
+    drive.left.push_back(csv.number(left, kLargestTravel));
+    drive.right.push_back(csv.number(right, kLargestTravel));
+    if (heading >= 0) drive.heading.push_back(csv.number_or_absent(heading, kLargestAngle));
     for (std::size_t k = 0; k < covariate_columns.size(); ++k) {
-      drive.covariates[k].values.push_back(csv.number(covariate_columns[k]));
+      drive.covariates[k].values.push_back(csv.number(covariate_columns[k], kLargestCovariate));
     }
   }
   if (drive.rows() < 2) {
@@ -131,11 +140,11 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
-    sighting.t = csv.number(t);
+    sighting.t = csv.number(t, kLargestTime);
     sighting.landmark = landmark_name(csv, landmark);
     if (range >= 0) {
-      sighting.range = csv.number_or_absent(range);
-      sighting.bearing = csv.number_or_absent(bearing);
+      sighting.range = csv.number_or_absent(range, kLargestRange);
+      sighting.bearing = csv.number_or_absent(bearing, kLargestAngle);
     }
     if (std::isnan(sighting.range) != std::isnan(sighting.bearing)) {
       csv.fail(std::isnan(sighting.range) ? "a bearing without a range, expected both or neither"
@@ -171,9 +180,9 @@ std::vector<SurveyPoint> read_survey(const fs::path& file) {
   while (csv.next()) {
     SurveyPoint point;
     point.landmark = landmark_name(csv, landmark);
-    point.x = csv.number(x);
-    point.y = csv.number(y);
-    if (sd >= 0) point.sd = csv.number_or_absent(sd);
+    point.x = csv.number(x, kLargestPosition);
+    point.y = csv.number(y, kLargestPosition);
+    if (sd >= 0) point.sd = csv.number_or_absent(sd, kLargestPosition);
     if (point.sd <= 0.0) csv.fail("sd is " + csv_number(point.sd) + ", expected more than 0");
     if (!names.insert(point.landmark).second) {
       csv.fail("landmark " + point.landmark + " is surveyed twice, expected each once");
@@ -196,7 +205,8 @@ std::vector<TruthRow> read_truth(const fs::path& file) {
   refuse_other_columns(csv, {"t", "x", "y", "heading"});
   std::vector<TruthRow> truth;
   while (csv.next()) {
-    const TruthRow row{csv.number(t), csv.number(x), csv.number(y), csv.number(heading)};
+    const TruthRow row{csv.number(t, kLargestTime), csv.number(x, kLargestPosition),
+                       csv.number(y, kLargestPosition), csv.number(heading, kLargestAngle)};
     if (!truth.empty()) require_forward(csv, truth.back().t, row.t, false);
     truth.push_back(row);
   }

@@ -15,6 +15,18 @@ PoseEstimate moved(const PoseEstimate& start, const Pose& displacement, const Ma
   return {end.displacement, end.covariance};
 }
 
+/// What wheels show, and a slip to the left besides that is spread evenly along the same arc.
+Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
+  Pose end = arc_displacement(travel, wheelbase);
+  if (slip == 0.0) return end;
+  const double swing = 0.5 * (travel.right - travel.left);
+  const Vector2 aside =
+      quarter_turn(arc_displacement({slip - swing, slip + swing}, wheelbase).position());
+  end.x += aside.x();
+  end.y += aside.y();
+  return end;
+}
+
 void correct_heading(PoseEstimate& estimate, double reading, double variance) {
   const double innovation = wrap_angle(reading - estimate.pose.heading);
   const double total = estimate.covariance(2, 2) + variance;
@@ -81,14 +93,19 @@ PoseEstimate pose_from_landmark(const HeadingEstimate& heading, const LandmarkOf
 }
 
 PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from, double to,
-                         const Robot& robot, const Noise& noise, double readings_used_until) {
+                         const Robot& robot, const Noise& noise, double readings_used_until,
+                         const std::vector<double>& slip) {
   const std::vector<DriveRow> rows = rows_between(drive, from, to);
+  const auto displacement = [&](const DriveRow& row) {
+    return displacement_of(travel_of(drive, row), slip.empty() ? 0.0 : row.part * slip[row.row],
+                           robot.wheelbase);
+  };
   PoseEstimate estimate = start;
   if (drive.has_compass()) {
     for (const DriveRow& row : rows) {
       const WheelTravel travel = travel_of(drive, row);
-      estimate = moved(estimate, arc_displacement(travel, robot.wheelbase),
-                       arc_covariance(travel, row.duration, robot, noise));
+      estimate =
+          moved(estimate, displacement(row), arc_covariance(travel, row.duration, robot, noise));
       const double reading = drive.heading[row.row];
       if (row.ends && !std::isnan(reading) && drive.t[row.row] > readings_used_until) {
         correct_heading(estimate, reading, noise.compass * noise.compass);
@@ -101,11 +118,26 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
                      arc_covariance(arc.travel, arc.duration, robot, noise));
   }
   Pose exact = start.pose;
-  for (const DriveRow& row : rows) {
-    exact = compose(exact, arc_displacement(travel_of(drive, row), robot.wheelbase));
-  }
+  for (const DriveRow& row : rows) exact = compose(exact, displacement(row));
   estimate.pose = exact;
   return estimate;
+}
+
+std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot, const Noise& noise,
+                                     const std::vector<double>& slip) {
+  const InitialHeading first = initial_heading(drive, drive.start(), robot, noise);
+  PoseEstimate at;
+  at.pose.heading = first.heading.heading;
+  at.covariance(2, 2) = first.heading.variance;
+  std::vector<Pose> path;
+  path.reserve(drive.rows());
+  double before = drive.start();
+  for (const double t : drive.t) {
+    at = dead_reckon(at, drive, before, t, robot, noise, first.reading_time, slip);
+    before = t;
+    path.push_back(at.pose);
+  }
+  return path;
 }
 
 PositionEstimate landmark_from_pose(const PoseEstimate& pose, const LandmarkOffset& landmark) {

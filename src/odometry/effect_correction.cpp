@@ -16,22 +16,6 @@ Pose start_pose(const Drive& drive, const Model& model) {
 
 }  // namespace
 
-std::vector<Pose> row_path(const Drive& drive, const Model& model) {
-  const InitialHeading first = initial_heading(drive, drive.start(), model.robot, model.noise);
-  PoseEstimate at;
-  at.pose.heading = first.heading.heading;
-  at.covariance(2, 2) = first.heading.variance;
-  std::vector<Pose> path;
-  path.reserve(drive.rows());
-  double before = drive.start();
-  for (const double t : drive.t) {
-    at = dead_reckon(at, drive, before, t, model.robot, model.noise, first.reading_time);
-    before = t;
-    path.push_back(at.pose);
-  }
-  return path;
-}
-
 std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
                                        const Model& model) {
   std::vector<Recording> result;
@@ -39,7 +23,7 @@ std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
     const int session = static_cast<int>(result.size());
     Recording corrected = recording;
     for (int pass = 0; pass < 2; ++pass) {
-      const std::vector<Pose> path = row_path(corrected.drive, model);
+      const std::vector<Pose> path = dead_reckoned_path(corrected.drive, model.robot, model.noise);
       corrected =
           corrected_recording(recording, model,
                               row_variables(recording.drive, model.robot.wheelbase,

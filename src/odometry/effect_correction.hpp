@@ -11,10 +11,6 @@
 
 namespace trussmap {
 
-/// Dead-reckoned pose at the end of each row, from the first compass heading (else 0) at the
-/// origin.
-[[nodiscard]] std::vector<Pose> row_path(const Drive& drive, const Model& model);
-
 /// Each recording as corrected_recording.hpp makes it. Shapes that speak of heading, x or y see the
 /// dead-reckoned path of the corrected recording itself, which two passes give. Throws
 /// std::invalid_argument as corrected_recording does.

@@ -110,6 +110,20 @@ constexpr const char* kMapStyle =
 
 }  // namespace
 
+MapPicture picture_of(const BuiltMap& built, const std::string& title) {
+  MapPicture picture;
+  picture.title = title;
+  picture.map = built.map;
+  picture.before = built.dead_reckoned;
+  if (built.on_survey) {
+    picture.map_onto_truth = built.on_survey->comparison.rigid;
+    for (const SurveyPoint& point : built.on_survey->points) {
+      picture.truth[point.landmark] = {point.x, point.y};
+    }
+  }
+  return picture;
+}
+
 std::string draw_map(const MapPicture& picture) {
   const Alignment& lay = picture.map_onto_truth;
   const auto after = [&](int k) { return lay.apply(picture.map.landmark(k).position); };

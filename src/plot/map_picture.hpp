@@ -7,10 +7,10 @@
 #pragma once
 
 #include "trussmap/alignment.hpp"
+#include "trussmap/build_map.hpp"
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/survey_comparison.hpp"
 
-#include <map>
 #include <string>
 
 namespace trussmap {
@@ -23,6 +23,9 @@ struct MapPicture {
   Alignment map_onto_truth;  ///< laid over map and before alike
   bool names = true;         ///< write the landmarks' names beside them
 };
+
+/// The map before and after, laid over its survey where there is one.
+[[nodiscard]] MapPicture picture_of(const BuiltMap& built, const std::string& title);
 
 /// The picture as SVG text; names are escaped. 800 pixels wide.
 [[nodiscard]] std::string draw_map(const MapPicture& picture);

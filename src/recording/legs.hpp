@@ -18,8 +18,6 @@
 
 namespace trussmap {
 
-inline constexpr double kDefaultMinDrive = 0.25;  // m
-
 struct Stop {
   double t = 0.0;         ///< s
   std::size_t first = 0;  ///< its sightings are first ... first + count - 1

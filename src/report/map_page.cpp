@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "report/map_page.hpp"
-
 #include "plot/layers.hpp"
+#include "plot/map_picture.hpp"
+#include "report/page.hpp"
+#include "trussmap/build_map.hpp"
+#include "trussmap/pages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +20,13 @@ constexpr std::size_t kMostNames = 60;
 constexpr std::size_t kMostRows = 60;
 constexpr double kLoud = 4.0;  // standard deviations at which a bar has the strongest colour
 
-bool surveyed(const BuiltMap& built) {
-  return built.survey.landmarks >= 3;
-}
+/// A map as it is drawn.
+struct Drawn {
+  const BuiltMap& built;
+  MapPicture picture;
+
+  [[nodiscard]] bool surveyed() const { return built.on_survey.has_value(); }
+};
 
 /// What is wrong between a route's ends in the map and its measurements: along it, and in all.
 struct Strain {
@@ -38,8 +44,8 @@ Strain strain_of(const LandmarkGraph& map, const Route& route) {
   return strain;
 }
 
-ChartLayer before_layer(const BuiltMap& built) {
-  const MapPicture& picture = built.picture;
+ChartLayer before_layer(const Drawn& drawn) {
+  const MapPicture& picture = drawn.picture;
   ChartLayer layer{LayerKind::net, "dead reckoning", {{"x [m]"}, {"y [m]"}}, "faint"};
   for (int k = 0; k < picture.map.routes(); ++k) {
     const Route& route = picture.map.route(k);
@@ -55,7 +61,7 @@ ChartLayer before_layer(const BuiltMap& built) {
   return layer;
 }
 
-ChartLayer bar_layer(const BuiltMap& built) {
+ChartLayer bar_layer(const Drawn& drawn) {
   ChartLayer layer{LayerKind::segments,
                    "",
                    {{""},
@@ -69,7 +75,7 @@ ChartLayer bar_layer(const BuiltMap& built) {
                     {"stretched by [mm]"},
                     {"in standard deviations"}}};
   layer.key = {"shorter than measured", "as measured", "longer than measured"};
-  const MapPicture& picture = built.picture;
+  const MapPicture& picture = drawn.picture;
   const auto count = static_cast<std::size_t>(picture.map.routes());
   for (const std::size_t k : thinned(count, kMostBars)) {
     const Route& route = picture.map.route(static_cast<int>(k));
@@ -91,8 +97,8 @@ ChartLayer bar_layer(const BuiltMap& built) {
   return layer;
 }
 
-void add_landmarks(Chart& chart, const BuiltMap& built) {
-  const MapPicture& picture = built.picture;
+void add_landmarks(Chart& chart, const Drawn& drawn) {
+  const MapPicture& picture = drawn.picture;
   ChartLayer dots{LayerKind::dots,
                   "landmark",
                   {{"x [m]"}, {"y [m]"}, {"landmark"}, {"off the survey by [m]"}},
@@ -134,7 +140,7 @@ void add_landmarks(Chart& chart, const BuiltMap& built) {
   if (few) chart.layers.push_back(std::move(names));
 }
 
-Chart map_chart(const BuiltMap& built) {
+Chart map_chart(const Drawn& drawn) {
   Chart chart;
   chart.id = "map";
   chart.title = "The map, before and after";
@@ -142,18 +148,18 @@ Chart map_chart(const BuiltMap& built) {
       "Faint: the routes between landmarks as dead reckoning has them. Coloured: the map. A bar "
       "that is longer or shorter than its measurements gives way to the other routes; one of four "
       "standard deviations has the strongest colour." +
-      std::string(surveyed(built) ? " Green: where the survey has the landmarks; the map is laid "
-                                    "over it by rotation and translation."
-                                  : "");
+      std::string(drawn.surveyed() ? " Green: where the survey has the landmarks; the map is laid "
+                                     "over it by rotation and translation."
+                                   : "");
   chart.x.title = "x [m]";
   chart.y.title = "y [m]";
   chart.equal_aspect = true;
   chart.height = 520.0;
-  ChartLayer before = before_layer(built);
+  ChartLayer before = before_layer(drawn);
   if (!before.columns[0].numbers.empty()) chart.layers.push_back(std::move(before));
-  ChartLayer bars = bar_layer(built);
+  ChartLayer bars = bar_layer(drawn);
   if (!bars.shade.empty()) chart.layers.push_back(std::move(bars));
-  add_landmarks(chart, built);
+  add_landmarks(chart, drawn);
   return chart;
 }
 
@@ -164,16 +170,17 @@ struct SurveyErrors {
   std::vector<double> before;  // m
 };
 
-SurveyErrors survey_errors(const BuiltMap& built) {
-  const MapPicture& picture = built.picture;
+SurveyErrors survey_errors(const Drawn& drawn) {
+  const MapPicture& picture = drawn.picture;
   SurveyErrors errors;
+  if (!drawn.surveyed()) return errors;
+  const std::vector<std::string>& odd = drawn.built.on_survey->comparison.contradicting;
   std::vector<Vector2> reckoned;
   std::vector<Vector2> truth;
   for (const auto& [name, at] : picture.truth) {
     const std::optional<int> landmark = picture.map.find(name);
     const auto before = picture.before.find(name);
     if (!landmark || before == picture.before.end()) continue;
-    const std::vector<std::string>& odd = built.survey.contradicting;
     if (std::find(odd.begin(), odd.end(), name) != odd.end()) continue;
     errors.names.push_back(name);
     errors.map.push_back(
@@ -222,45 +229,49 @@ PageTable survey_table(const SurveyErrors& errors) {
 }
 
 std::string verdict(const BuiltMap& built) {
-  const std::string size = fmt::format("A map of {} landmarks and {} routes",
-                                       built.picture.map.landmarks(), built.picture.map.routes());
-  if (!surveyed(built)) return size + ", from " + std::to_string(built.legs) + " legs.";
+  const std::string size =
+      fmt::format("A map of {} landmarks and {} routes", built.map.landmarks(), built.map.routes());
+  if (!built.on_survey) return size + ", from " + std::to_string(built.legs) + " legs.";
   return fmt::format("{}, {:.2g} m off the survey (rms); dead reckoning alone is {:.2g} m off.",
-                     size, built.survey.rigid.rms, built.rms_dead_reckoning);
+                     size, built.on_survey->comparison.rigid.rms,
+                     built.on_survey->rms_dead_reckoning);
 }
 
 }  // namespace
 
 Page map_page(const BuiltMap& built, const std::string& subject) {
+  const Drawn drawn{built, picture_of(built, "")};
   PageContent page;
   page.command = "build";
-  page.subject = subject + ", method " + built.method;
+  page.subject = subject;
   page.verdict = verdict(built);
-  if (surveyed(built)) {
-    const bool better = built.survey.rigid.rms <= built.rms_dead_reckoning;
-    page.tone = better ? Tone::good : Tone::bad;
+  if (built.on_survey) {
+    const SurveyComparison& survey = built.on_survey->comparison;
+    const double reckoned = built.on_survey->rms_dead_reckoning;
+    page.tone = survey.rigid.rms <= reckoned ? Tone::good : Tone::bad;
     page.facts.push_back(
-        {fmt::format("{:.3f} m", built.survey.rigid.rms), "map off the survey (rms)", page.tone});
+        {fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)", page.tone});
     page.facts.push_back(
-        {fmt::format("{:.3f} m", built.rms_dead_reckoning), "dead reckoning off the survey (rms)"});
-    page.facts.push_back(
-        {fmt::format("{:+.1f} %", 100.0 * (1.0 / built.survey.similarity.scale - 1.0)),
-         "map too large by"});
+        {fmt::format("{:.3f} m", reckoned), "dead reckoning off the survey (rms)"});
+    page.facts.push_back({fmt::format("{:+.1f} %", 100.0 * (1.0 / survey.similarity.scale - 1.0)),
+                          "map too large by"});
   }
   page.facts.push_back({std::to_string(built.legs), "legs"});
   page.facts.push_back({std::to_string(built.first_sight), "loops closed at first sight"});
   page.facts.push_back({std::to_string(built.refinements), "known routes driven again"});
-  page.facts.push_back({std::to_string(built.rejected), "sightings kept out",
-                        built.rejected > 0 ? Tone::bad : Tone::neutral});
+  page.facts.push_back({std::to_string(built.rejected.size()), "sightings kept out",
+                        built.rejected.empty() ? Tone::neutral : Tone::bad});
   page.notes = built.warnings;
-  for (const std::string& name : built.survey.contradicting) {
-    page.notes.push_back("Landmark " + name + " contradicts the survey and does not count.");
+  if (built.on_survey) {
+    for (const std::string& name : built.on_survey->comparison.contradicting) {
+      page.notes.push_back("Landmark " + name + " contradicts the survey and does not count.");
+    }
   }
-  ChartRow charts{map_chart(built)};
-  const SurveyErrors errors = survey_errors(built);
-  if (surveyed(built)) charts.push_back(survey_chart(errors));
+  ChartRow charts{map_chart(drawn)};
+  const SurveyErrors errors = survey_errors(drawn);
+  if (drawn.surveyed()) charts.push_back(survey_chart(errors));
   page.sections.push_back({"The map", {std::move(charts)}});
-  if (surveyed(built)) page.sections.push_back({"Against the survey", {survey_table(errors)}});
+  if (drawn.surveyed()) page.sections.push_back({"Against the survey", {survey_table(errors)}});
   return page;
 }
 

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 //
 // Maps of real robots (UTIAS MRCLAM sets 6, 1 and 4, five robots each) against the survey.
-#include "build_map/recording_map.hpp"
-#include "estimation/recording_adjustment.hpp"
-#include "estimation/recording_start.hpp"
 #include "shared_data.hpp"
+#include "trussmap/build_map.hpp"
+#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,69 +19,30 @@
 namespace trussmap {
 namespace {
 
-struct Result {
-  std::string robot;
-  SurveyComparison survey;
-  double rms_dead_reckoning = 0.0;
-};
-
 MrclamRecording robot(int set, int number) {
   return read_mrclam(testing::shared("data/mrclam/MRCLAM_Dataset" + std::to_string(set) + "/Robot" +
                                      std::to_string(number)));
 }
 
-std::vector<Result> map_all_robots() {
-  std::vector<Result> results;
-  for (const int set : {6, 1, 4}) {
-    for (int number = 1; number <= 5; ++number) {
-      const MrclamRecording read = robot(set, number);
-      const RecordingMap built = map_recordings({read.recording}, read.model);
-      Result result;
-      result.robot = std::to_string(set) + "/" + std::to_string(number);
-      result.survey = compare_with_survey(positions_of(built.map), read.recording.survey);
-      result.rms_dead_reckoning =
-          survey_rms(built.dead_reckoned, read.recording.survey, result.survey.contradicting);
-      results.push_back(result);
-    }
+MapOnSurvey mapped(const std::vector<Recording>& recordings, const Model& model, Method method) {
+  const BuiltMap built = build_map(recordings, model, {.method = method});
+  EXPECT_TRUE(built.on_survey);
+  if (built.fit) {
+    EXPECT_TRUE(built.fit->converged);
+    std::size_t sightings = 0;
+    for (const Recording& one : recordings) sightings += one.sightings.size();
+    EXPECT_LE(built.rejected.size(), sightings / 100);  // misread labels are few
   }
-  return results;
+  return built.on_survey.value_or(MapOnSurvey());
 }
 
-TEST(SlowMrclam, TheElasticMapBeatsDeadReckoningForEveryRobot) {
-  TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  std::vector<double> ratios;
-  for (const Result& result : map_all_robots()) {
-    const double ratio = result.rms_dead_reckoning / result.survey.rigid.rms;
-    EXPECT_LE(result.survey.rigid.rms, 0.45) << result.robot;
-    EXPECT_GE(ratio, 2.0) << result.robot;
-    ratios.push_back(ratio);
-    // The survey of set 1 has two labels exchanged, those of the others none.
-    const bool exchanged = result.robot.front() == '1';
-    EXPECT_EQ(result.survey.contradicting,
-              exchanged ? (std::vector<std::string>{"11", "17"}) : std::vector<std::string>{})
-        << result.robot;
-    EXPECT_EQ(result.survey.exchanged.size(), exchanged ? 1U : 0U) << result.robot;
+/// How far from its landmark one sighting points by the model's noise, m (rms).
+double spread_of_a_sighting(const MrclamRecording& read) {
+  double sum = 0.0;
+  for (const Sighting& one : read.recording.sightings) {
+    sum += landmark_offset(one, read.model.noise).covariance_robot.trace();
   }
-  std::sort(ratios.begin(), ratios.end());
-  EXPECT_GE(ratios[ratios.size() / 2], 5.0);
-}
-
-/// What build's method adjustment does: gate of 4 standard deviations, survey and truth not used.
-SurveyComparison adjusted_against_survey(const std::vector<Recording>& recordings,
-                                         const Model& model) {
-  ProblemOptions measured;
-  measured.survey = measured.truth = false;
-  const RecordingProblem problem = make_problem(recordings, model, measured);
-  RecordingAdjustmentOptions robust;
-  robust.gate = 16.0;
-  const RecordingAdjustment fit = adjust(problem, {}, robust);
-  EXPECT_TRUE(fit.converged);
-  EXPECT_LE(fit.left_out.size(), 31U);  // misread labels, of some thousand sightings
-  LandmarkPositions positions;
-  for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
-    positions[problem.landmarks[k]] = fit.state.landmarks[k];
-  }
-  return compare_with_survey(positions, recordings.front().survey);
+  return std::sqrt(sum / static_cast<double>(read.recording.sightings.size()));
 }
 
 double median(std::vector<double> values) {
@@ -88,35 +50,43 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(SlowMrclam, TheAdjustedMapIsRightForEveryRobot) {
+/// Beside dead reckoning, as in the paper: Golfarelli, Maio & Rizzi report position errors of 20 to
+/// 30 % of it in the first ten tours, below 10 % later. No robot's map may have more than half;
+/// half of the robots no more than what the paper has in its first tours (elastic) and later
+/// (adjustment), which has all of the drive to look at. And a landmark that was sighted hundreds of
+/// times must be placed better than by one sighting: but for the map's scale, on which wheels and
+/// camera disagree.
+TEST(SlowMrclam, MapsBeatDeadReckoningForEveryRobot) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
-  std::vector<double> rigid;
-  std::vector<double> similarity;
+  std::vector<double> elastic_share;
+  std::vector<double> adjusted_share;
   for (const int set : {6, 1, 4}) {
     for (int number = 1; number <= 5; ++number) {
-      const MrclamRecording read = robot(set, number);
-      const SurveyComparison survey = adjusted_against_survey({read.recording}, read.model);
-      const RecordingProblem problem = make_problem({read.recording}, read.model, {false, false});
-      LandmarkPositions reckoned;
-      const RecordingState dead = dead_reckoned(problem);
-      for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
-        reckoned[problem.landmarks[k]] = dead.landmarks[k];
-      }
-      const double rms = survey_rms(reckoned, read.recording.survey, survey.contradicting);
       const std::string name = std::to_string(set) + "/" + std::to_string(number);
-      EXPECT_LE(survey.rigid.rms, 0.16) << name;
-      EXPECT_LE(survey.similarity.rms, 0.12) << name;
-      EXPECT_GE(rms, 5.0 * survey.rigid.rms) << name;
-      EXPECT_EQ(survey.contradicting.size(), set == 1 ? 2U : 0U) << name;
-      rigid.push_back(survey.rigid.rms);
-      similarity.push_back(survey.similarity.rms);
+      const MrclamRecording read = robot(set, number);
+      const MapOnSurvey elastic = mapped({read.recording}, read.model, Method::elastic);
+      const MapOnSurvey adjusted = mapped({read.recording}, read.model, Method::adjustment);
+      elastic_share.push_back(elastic.comparison.rigid.rms / elastic.rms_dead_reckoning);
+      adjusted_share.push_back(adjusted.comparison.rigid.rms / adjusted.rms_dead_reckoning);
+      EXPECT_LE(elastic_share.back(), 0.5) << name;
+      EXPECT_LE(adjusted.comparison.rigid.rms, elastic.comparison.rigid.rms) << name;
+      EXPECT_LE(adjusted.comparison.similarity.rms, spread_of_a_sighting(read)) << name;
+      // The survey of set 1 has two labels exchanged, those of the others none.
+      const bool exchanged = set == 1;
+      for (const MapOnSurvey& one : {elastic, adjusted}) {
+        EXPECT_EQ(one.comparison.contradicting,
+                  exchanged ? (std::vector<std::string>{"11", "17"}) : std::vector<std::string>{})
+            << name;
+        EXPECT_EQ(one.comparison.exchanged.size(), exchanged ? 1U : 0U) << name;
+      }
     }
   }
-  EXPECT_LE(median(rigid), 0.11);
-  EXPECT_LE(median(similarity), 0.045);
+  EXPECT_LE(median(elastic_share), 0.3);
+  EXPECT_LE(median(adjusted_share), 0.1);
 }
 
-/// Each robot starts at a place and in a direction of its own, without a compass.
+/// Each robot starts at a place and in a direction of its own, without a compass: five together are
+/// no worse than the worst of them alone.
 TEST(SlowMrclam, FiveRobotsMakeOneMap) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
   for (const int set : {6, 1, 4}) {
@@ -127,12 +97,14 @@ TEST(SlowMrclam, FiveRobotsMakeOneMap) {
       recordings.push_back(std::move(read.recording));
       model = read.model;
     }
-    const RecordingMap built = map_recordings(recordings, model);
-    const SurveyComparison survey =
-        compare_with_survey(positions_of(built.map), recordings.front().survey);
-    EXPECT_LE(survey.rigid.rms, 0.3) << set;
-    EXPECT_EQ(survey.contradicting.size(), set == 1 ? 2U : 0U) << set;
-    EXPECT_LE(adjusted_against_survey(recordings, model).rigid.rms, 0.11) << set;
+    for (const Method method : {Method::elastic, Method::adjustment}) {
+      double worst = 0.0;
+      for (const Recording& one : recordings) {
+        worst = std::max(worst, mapped({one}, model, method).comparison.rigid.rms);
+      }
+      EXPECT_LE(mapped(recordings, model, method).comparison.rigid.rms, worst)
+          << set << ", " << name_of(method);
+    }
   }
 }
 
@@ -156,12 +128,12 @@ TEST(Mrclam, ConvertsAndCountsWhatItLeavesOut) {
 TEST(Mrclam, WithoutTheGateMisreadLabelsSpoilAMap) {
   TRUSSMAP_NEEDS_SHARED("data/mrclam");
   const MrclamRecording read = robot(4, 5);
-  RecordingMapOptions open;
+  BuildMapOptions open;
   open.gate = 1e9;
   open.confirmations = 1;
-  const auto rms = [&](const RecordingMapOptions& options) {
-    return survey_rms(positions_of(map_recordings({read.recording}, read.model, options).map),
-                      read.recording.survey, {});
+  const auto rms = [&](const BuildMapOptions& options) {
+    const BuiltMap built = build_map({read.recording}, read.model, options);
+    return survey_rms(positions_of(built.map), read.recording.survey, {});
   };
   EXPECT_GT(rms(open), 1.5 * rms({}));
 }

@@ -93,6 +93,13 @@ const Spoilt kSpoilt[] = {
      "drive.csv:2: column right is \"nan\", expected a finite number"},
     {"Infinity", "drive.csv", "t,left,right\n0.1,0,-inf\n",
      "drive.csv:2: column right is \"-inf\", expected a finite number"},
+    {"TravelThatOverflows", "drive.csv", "t,left,right\n0.1,0,0\n0.2,1e308,0\n",
+     "drive.csv:3: column left is \"1e308\", expected a number of at most 1e+06 in size"},
+    {"TimeInNanoseconds", "drive.csv", "t,left,right\n1700000000000000000,0,0\n",
+     "drive.csv:2: column t is \"1700000000000000000\", expected a number of at most 1e+12 in "
+     "size"},
+    {"FarAwaySurvey", "survey.csv", "landmark,x,y\nA,0,-1e10\n",
+     "survey.csv:2: column y is \"-1e10\", expected a number of at most 1e+09 in size"},
     {"OutOfRange", "drive.csv", "t,left,right\n0.1,0,1e999\n",
      "drive.csv:2: column right is \"1e999\", expected a number within double's range"},
     {"EmptyField", "drive.csv", "t,left,right\n0.1,,0\n",

@@ -4,9 +4,9 @@
 // Maps from recordings of a robot with known faults, built with and without the model of them.
 #include "odometry/effect_correction.hpp"
 
-#include "build_map/recording_map.hpp"
 #include "shared_data.hpp"
 #include "simulation/wheeled_robot.hpp"
+#include "trussmap/build_map.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
@@ -32,7 +32,7 @@ Recording drive_about(bool compass) {
 }
 
 double error_of(const std::vector<Recording>& recordings) {
-  const RecordingMap built = map_recordings(recordings, Model{});
+  const BuiltMap built = build_map(recordings, Model{});
   return compare_with_survey(positions_of(built.map), recordings.front().survey).rigid.rms;
 }
 

@@ -4,8 +4,8 @@
 // Pages of recordings of any size, made up: for their size and speed.
 #pragma once
 
-#include "report/map_page.hpp"
 #include "report/page.hpp"
+#include "trussmap/build_map.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/pages.hpp"
 
@@ -143,17 +143,18 @@ inline Page large_discovery_page(int legs) {
 inline Page large_map_page(int legs) {
   BuiltMap built;
   const ModelEvidence model = large_model(legs);
+  built.on_survey.emplace();
   for (const FittedLandmark& one : model.map.landmarks) {
-    built.picture.map.add_landmark(one.name, one.position);
-    built.picture.before[one.name] = one.position + Vector2(1.0, 0.1 * one.position.x());
-    built.picture.truth[one.name] = one.position;
+    built.map.add_landmark(one.name, one.position);
+    built.dead_reckoned[one.name] = one.position + Vector2(1.0, 0.1 * one.position.x());
+    built.on_survey->points.push_back({one.name, one.position.x(), one.position.y(), kAbsent});
   }
   for (const RouteMisfit& one : model.comparison.routes) {
-    built.picture.map.add_route(*built.picture.map.find(one.from), *built.picture.map.find(one.to));
+    built.map.add_route(*built.map.find(one.from), *built.map.find(one.to));
   }
-  built.method = "elastic";
   built.legs = legs;
-  built.survey = compare_with_survey(positions_of(built.picture.map), {});
+  built.on_survey->comparison =
+      compare_with_survey(positions_of(built.map), built.on_survey->points);
   return map_page(built, "a large recording");
 }
 

@@ -9,9 +9,7 @@
 // outvoted.
 #pragma once
 
-#include "recording/legs.hpp"
-#include "trussmap/dead_reckoning.hpp"
-#include "trussmap/model.hpp"
+#include "build_map/sighted_drive.hpp"
 
 #include <functional>
 #include <optional>
@@ -25,9 +23,8 @@ using Believed = std::function<std::optional<Vector2>(const std::string&)>;
 /// Heading in the map at the time of `start`, a sighting of a landmark of the map. None if no
 /// other landmark of the map is sighted while the reckoning is still good for a direction, or if
 /// most of these sightings contradict one another. `map_sd`: how wrong the map may be, m.
-[[nodiscard]] std::optional<HeadingEstimate> heading_in_map(const Recording& recording,
-                                                            const Sighting& start,
-                                                            const Model& model, double map_sd,
+[[nodiscard]] std::optional<HeadingEstimate> heading_in_map(const SightedDrive& drive,
+                                                            const Sighting& start, double map_sd,
                                                             const Believed& believed);
 
 }  // namespace trussmap

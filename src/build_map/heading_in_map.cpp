@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "map/heading_in_map.hpp"
+#include "build_map/heading_in_map.hpp"
 
 #include "map/heading_reset.hpp"
 
@@ -20,21 +20,21 @@ bool agree(const HeadingEstimate& a, const HeadingEstimate& b) {
 }
 
 /// What each sighting of another landmark of the map says of the heading at the start.
-std::vector<HeadingEstimate> opinions(const Recording& recording, const Sighting& start,
-                                      const Model& model, double map_sd, const Believed& believed) {
+std::vector<HeadingEstimate> opinions(const SightedDrive& drive, const Sighting& start,
+                                      double map_sd, const Believed& believed) {
   std::vector<HeadingEstimate> said;
   const Vector2 origin = *believed(start.landmark);
-  PoseEstimate pose = pose_from_landmark({0.0, 0.0}, landmark_offset(start, model.noise));
+  PoseEstimate pose = pose_from_landmark({0.0, 0.0}, drive.offset_of(start));
   double time = start.t;
-  for (const Sighting& sighting : recording.sightings) {
+  for (const Sighting& sighting : drive.recording().sightings) {
     if (sighting.t < start.t || sighting.landmark == start.landmark) continue;
     const std::optional<Vector2> there = believed(sighting.landmark);
     if (!there || *there == origin) continue;
-    pose = dead_reckon(pose, recording.drive, time, sighting.t, model.robot, model.noise);
+    pose = drive.reckon(pose, time, sighting.t);
     time = sighting.t;
     if (pose.covariance(2, 2) > kLostHeading * kLostHeading) break;
     const Vector2 in_map = *there - origin;
-    const PositionEstimate place = landmark_from_pose(pose, landmark_offset(sighting, model.noise));
+    const PositionEstimate place = landmark_from_pose(pose, drive.offset_of(sighting));
     if (place.position.squaredNorm() <= 0.0) continue;
     said.push_back({direction(in_map) - direction(place.position),
                     direction_variance(place.position, place.covariance) +
@@ -46,10 +46,9 @@ std::vector<HeadingEstimate> opinions(const Recording& recording, const Sighting
 
 }  // namespace
 
-std::optional<HeadingEstimate> heading_in_map(const Recording& recording, const Sighting& start,
-                                              const Model& model, double map_sd,
-                                              const Believed& believed) {
-  const std::vector<HeadingEstimate> said = opinions(recording, start, model, map_sd, believed);
+std::optional<HeadingEstimate> heading_in_map(const SightedDrive& drive, const Sighting& start,
+                                              double map_sd, const Believed& believed) {
+  const std::vector<HeadingEstimate> said = opinions(drive, start, map_sd, believed);
   const HeadingEstimate* best = nullptr;
   std::ptrdiff_t most = 0;
   for (const HeadingEstimate& one : said) {

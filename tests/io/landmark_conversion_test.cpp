@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "pose_graph/landmark_conversion.hpp"
+#include "io/landmark_conversion.hpp"
 
 #include "geometry/index.hpp"
-#include "trussmap/truss.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

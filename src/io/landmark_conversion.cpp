@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "pose_graph/landmark_conversion.hpp"
+#include "io/landmark_conversion.hpp"
 
 #include "geometry/index.hpp"
 #include "trussmap/stiffness_law.hpp"
@@ -69,7 +69,8 @@ PoseGraph to_pose_graph(const LandmarkGraph& map) {
 LandmarkGraph to_landmark_graph(const PoseGraph& graph) {
   if (count_poses(graph) > 0) {
     throw std::invalid_argument(
-        "the graph has poses, a landmark map is made of points and displacements alone");
+        "is a graph of poses, expected a map: points (VERTEX_XY) and displacements (EDGE_POINTXY) "
+        "alone");
   }
   LandmarkGraph map;
   for (const GraphVertex& vertex : graph.vertices) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Maps from simulated recordings: what further sessions add, and what ties them to the map.
-#include "build_map/recording_map.hpp"
+#include "trussmap/build_map.hpp"
 
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/error.hpp"
@@ -54,7 +54,7 @@ Recording up_to_sighting(Recording whole, std::size_t last) {
   return whole;
 }
 
-double error_of(const RecordingMap& result, const Recording& surveyed) {
+double error_of(const BuiltMap& result, const Recording& surveyed) {
   return compare_with_survey(positions_of(result.map), surveyed.survey).rigid.rms;
 }
 
@@ -69,8 +69,8 @@ TEST_P(Sessions, AnInterruptedDriveGivesAsGoodAMap) {
     const Recording whole = drive_about(GetParam(), seed);
     for (const std::size_t cut : {30U, 41U}) {  // the first tour has 32 legs
       const Recording again = from_sighting(whole, cut);
-      whole_sum += error_of(map_recordings({whole}, Model{}), whole);
-      parts_sum += error_of(map_recordings({up_to_sighting(whole, cut), again}, Model{}), whole);
+      whole_sum += error_of(build_map({whole}, Model{}), whole);
+      parts_sum += error_of(build_map({up_to_sighting(whole, cut), again}, Model{}), whole);
     }
   }
   EXPECT_LE(parts_sum, 1.3 * whole_sum);
@@ -80,21 +80,21 @@ TEST_P(Sessions, AnInterruptedDriveGivesAsGoodAMap) {
 INSTANTIATE_TEST_SUITE_P(Compass, Sessions, ::testing::Values(false, true));
 
 /// A robot that starts where no landmark of the map is begins at the first one it meets.
-TEST(RecordingMap, ASessionThatStartsElsewhereJoinsWhereItMeetsTheMap) {
+TEST(BuildMap, ASessionThatStartsElsewhereJoinsWhereItMeetsTheMap) {
   const Recording whole = drive_about(false, 7);
   Recording elsewhere = from_sighting(whole, 20);
   elsewhere.sightings.front().landmark = "never seen before";
-  const RecordingMap joined = map_recordings({up_to_sighting(whole, 32), elsewhere}, Model{});
+  const BuiltMap joined = build_map({up_to_sighting(whole, 32), elsewhere}, Model{});
   EXPECT_LE(error_of(joined, whole), 0.2);
 }
 
-TEST(RecordingMap, ASessionThatMeetsNothingOfTheMapIsTiedToNothing) {
+TEST(BuildMap, ASessionThatMeetsNothingOfTheMapIsTiedToNothing) {
   const Recording whole = drive_about(false, 8);
   Recording foreign = whole;
   foreign.name = "abroad";
   for (Sighting& sighting : foreign.sightings) sighting.landmark += " abroad";
   try {
-    (void)map_recordings({whole, foreign}, Model{});
+    (void)build_map({whole, foreign}, Model{});
     FAIL();
   } catch (const SolveError& error) {
     EXPECT_NE(std::string(error.what()).find("abroad is tied to nothing"), std::string::npos)
@@ -103,20 +103,20 @@ TEST(RecordingMap, ASessionThatMeetsNothingOfTheMapIsTiedToNothing) {
 }
 
 /// Where one session has a compass the map's +x axis is the compass's, whoever comes first.
-TEST(RecordingMap, TheCompassGivesTheDirection) {
+TEST(BuildMap, TheCompassGivesTheDirection) {
   Recording with = drive_about(true, 9);
   for (double& reading : with.drive.heading) reading += 1.0;  // the mesh lies askew to its north
   const Recording without = drive_about(false, 10);
-  const RecordingMap result = map_recordings({without, with}, Model{});
+  const BuiltMap result = build_map({without, with}, Model{});
   const Alignment laid = compare_with_survey(positions_of(result.map), with.survey).rigid;
   EXPECT_NEAR(laid.angle, -1.0, 0.05);
 }
 
-TEST(RecordingMap, RefusesARecordingWithoutSightings) {
+TEST(BuildMap, RefusesARecordingWithoutSightings) {
   Recording nothing = drive_about(true, 11);
   nothing.sightings.clear();
-  EXPECT_THROW((void)map_recordings({nothing}, Model{}), InputError);
-  EXPECT_THROW((void)map_recordings({}, Model{}), std::invalid_argument);
+  EXPECT_THROW((void)build_map({nothing}, Model{}), InputError);
+  EXPECT_THROW((void)build_map({}, Model{}), std::invalid_argument);
 }
 
 }  // namespace

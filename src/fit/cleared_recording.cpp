@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/cleared_recording.hpp"
+
+#include "estimation/measurement_rows.hpp"
+#include "fit/effect_columns.hpp"
+#include "trussmap/dead_reckoning.hpp"
+
+#include <algorithm>
+
+namespace trussmap {
+namespace {
+
+constexpr int kPasses = 2;
+
+ClearedRecording as_recorded(const Recording& recording) {
+  ClearedRecording result;
+  result.recording = recording;
+  result.sensor.assign(recording.sightings.size(), Vector2::Zero());
+  return result;
+}
+
+SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
+  const Drive& drive = one.recording.drive;
+  SessionPath path;
+  path.start.heading =
+      initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
+  path.ends = dead_reckoned_path(drive, model.robot, model.noise, one.slip);
+  return path;
+}
+
+/// Sum of the effects' patterns for one row of a drive.
+DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offsets,
+                    std::size_t session, std::size_t row) {
+  DrivePattern sum;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    const auto& drives = border[k].drives;
+    if (drives.empty() || drives[session].empty()) continue;
+    const double a = offsets[static_cast<Eigen::Index>(k)];
+    const DrivePattern& unit = drives[session][row];
+    sum.advance += a * unit.advance;
+    sum.slip += a * unit.slip;
+    sum.turn += a * unit.turn;
+    sum.compass += a * unit.compass;
+  }
+  return sum;
+}
+
+void clear_drive(const Recording& recorded, const EffectParameters& border,
+                 const Eigen::VectorXd& offsets, std::size_t session, double wheelbase,
+                 ClearedRecording& result) {
+  const Drive& drive = recorded.drive;
+  Drive& clear = result.recording.drive;
+  result.slip.assign(drive.rows(), 0.0);
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const DrivePattern more = sum_at(border, offsets, session, row);
+    clear.left[row] = drive.left[row] + more.advance - 0.5 * wheelbase * more.turn;
+    clear.right[row] = drive.right[row] + more.advance + 0.5 * wheelbase * more.turn;
+    result.slip[row] = more.slip;
+    if (drive.has_compass()) clear.heading[row] = drive.heading[row] - more.compass;
+  }
+  const bool slips =
+      std::any_of(result.slip.begin(), result.slip.end(), [](double slip) { return slip != 0.0; });
+  if (!slips) result.slip.clear();
+}
+
+void clear_sightings(const Recording& recorded, const EffectParameters& border,
+                     const Eigen::VectorXd& offsets, int session, ClearedRecording& result) {
+  for (std::size_t k = 0; k < recorded.sightings.size(); ++k) {
+    Measurement one;
+    one.kind = MeasurementKind::view;
+    one.session = session;
+    one.source = k;
+    const ViewPattern view = view_of(border, offsets, one);
+    const Sighting& seen = recorded.sightings[k];
+    Sighting& clear = result.recording.sightings[k];
+    result.sensor[k] = {view.ahead, view.left};
+    if (seen.standing()) continue;
+    // Noise may have left a range shorter than its offset.
+    clear.range = std::max((seen.range - view.range) / (1.0 + view.range_scale), 0.0);
+    clear.bearing = wrap_angle(seen.bearing - view.bearing + view.heading);
+  }
+}
+
+}  // namespace
+
+std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
+                                      const Model& model) {
+  std::vector<ClearedRecording> result;
+  if (model.effects.empty()) {
+    for (const Recording& recording : recordings) result.push_back(as_recorded(recording));
+    return result;
+  }
+  std::vector<Effect> effects = model.effects;
+  for (Effect& effect : effects) {
+    effect.coefficients = coefficients_of(effect, recordings.size());
+  }
+  const std::vector<Recording> timed = retimed(recordings, effects, model.robot);
+  for (const Recording& recording : timed) result.push_back(as_recorded(recording));
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<SessionPath> paths;
+    for (const ClearedRecording& one : result) paths.push_back(reckoned_path(one, model));
+    const ShapeContext context(timed, model.robot, paths);
+    const EffectColumns columns = effect_columns(effects, context);
+    Eigen::VectorXd offsets(static_cast<Eigen::Index>(columns.border.size()));
+    for (std::size_t k = 0; k < columns.border.size(); ++k) {
+      const Coefficient& one = columns.coefficients[k];
+      offsets[static_cast<Eigen::Index>(k)] =
+          effects[one.effect].coefficients[one.place] - columns.border[k].reference;
+    }
+    for (std::size_t s = 0; s < timed.size(); ++s) {
+      clear_drive(timed[s], columns.border, offsets, s, model.robot.wheelbase, result[s]);
+      clear_sightings(timed[s], columns.border, offsets, static_cast<int>(s), result[s]);
+    }
+  }
+  for (std::size_t s = 0; s < timed.size(); ++s) {
+    result[s].recording.truth = recordings[s].truth;
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Maps from recordings of a robot with a fault: whoever knows the fault must get the sound robot's
+// map, by every method. The simulator turns the physics round in formulas of its own.
+#include "simulation/tours.hpp"
+#include "simulation/wheeled_robot.hpp"
+#include "trussmap/build_map.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+constexpr Method kMethods[] = {Method::elastic, Method::elastic_printed, Method::gauss_markov,
+                               Method::adjustment};
+
+struct Fault {
+  std::string name;  // of the catalogue
+  std::vector<double> coefficients;
+  bool range_sensor;
+  bool compass;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << fault.name << (fault.range_sensor ? ", range sensor" : "")
+       << (fault.compass ? ", compass" : "");
+}
+
+Effect effect_of(const Fault& fault) {
+  Effect effect;
+  effect.name = fault.name;
+  effect.coefficients = fault.coefficients;
+  return resolved(effect);
+}
+
+/// Two tours of a mesh, every landmark sighted in passing; without noise unless wanted.
+Recording drive_about(const Fault& fault, bool noise, std::uint64_t seed) {
+  const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
+  std::mt19937_64 random(seed);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
+  WheeledRobot robot;
+  robot.range_sensor = fault.range_sensor;
+  robot.compass = fault.compass;
+  DrivingStyle style;
+  style.overrun = 0.4;
+  if (!noise) {
+    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    style.standing = 0.0;
+  }
+  Recording recording =
+      simulate_drive(mesh, tours.walk, style, robot, seed, {{effect_of(fault)}}).recording;
+  recording.survey = survey(mesh, 1e-9, seed);
+  return recording;
+}
+
+double error_of(const Recording& recording, const Model& model, Method method) {
+  const BuiltMap built = build_map({recording}, model, {.method = method});
+  EXPECT_TRUE(built.on_survey);
+  return built.on_survey ? built.on_survey->comparison.rigid.rms : 1e9;
+}
+
+Model knowing(const Fault& fault) {
+  Model model;
+  model.effects.push_back(effect_of(fault));
+  return model;
+}
+
+class MapUnderEffects : public ::testing::TestWithParam<Fault> {};
+
+/// Rounding, and rows that a delayed sighting cuts: the simulator's stops lie on rows.
+TEST_P(MapUnderEffects, WithoutNoiseTheModelGivesTheExactMapByEveryMethod) {
+  const Recording recording = drive_about(GetParam(), false, 3);
+  for (const Method method : kMethods) {
+    EXPECT_LE(error_of(recording, knowing(GetParam()), method), 2e-3) << name_of(method);
+    EXPECT_GE(error_of(recording, Model{}, method), 0.01) << name_of(method);
+  }
+}
+
+/// Mean over the seeds 1 to 3.
+TEST_P(MapUnderEffects, WithNoiseTheModelMakesTheMapBetterByEveryMethod) {
+  for (const Method method : kMethods) {
+    double ignored = 0.0;
+    double known = 0.0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const Recording recording = drive_about(GetParam(), true, seed);
+      ignored += error_of(recording, Model{}, method);
+      known += error_of(recording, knowing(GetParam()), method);
+    }
+    EXPECT_LT(known, 0.8 * ignored) << name_of(method);
+  }
+}
+
+std::string name(const ::testing::TestParamInfo<Fault>& info) {
+  std::string result;
+  for (const char c : info.param.name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) result += c;
+  }
+  return result + (info.param.range_sensor ? "WithRangeSensor" : "") +
+         (info.param.compass ? "WithCompass" : "");
+}
+
+// Those that no column of a recording can say, and one of each other kind.
+INSTANTIATE_TEST_SUITE_P(Faults, MapUnderEffects,
+                         ::testing::Values(Fault{"sighting delay", {0.4}, false, true},
+                                           Fault{"sighting delay", {0.4}, true, false},
+                                           Fault{"lever arm", {0.3}, false, true},
+                                           Fault{"lever arm to the left", {0.3}, true, true},
+                                           Fault{"constant creep", {0.05}, false, true},
+                                           Fault{"constant creep", {0.05}, false, false},
+                                           Fault{"hard iron", {0.2, 0.1}, false, true},
+                                           Fault{"wheelbase", {-0.03}, false, false},
+                                           Fault{"range bias", {0.4}, true, true},
+                                           Fault{"bearing offset", {0.2}, true, true}),
+                         name);
+
+/// Several at once act side by side, not one on the other's result.
+TEST(MapUnderEffectsTogether, SeveralActSideBySide) {
+  Model model;
+  model.effects.push_back(effect_of({"wheelbase", {-0.1}, false, false}));
+  model.effects.push_back(effect_of({"wheel diameter ratio", {0.04}, false, false}));
+  model.effects.push_back(effect_of({"sighting delay", {0.3}, false, false}));
+  const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
+  std::mt19937_64 random(4);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
+  WheeledRobot robot;
+  robot.compass = false;
+  robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  DrivingStyle style;
+  style.overrun = 0.4;
+  style.standing = 0.0;
+  Recording recording =
+      simulate_drive(mesh, tours.walk, style, robot, 4, {model.effects}).recording;
+  recording.survey = survey(mesh, 1e-9, 4);
+  for (const Method method : kMethods) {
+    EXPECT_LE(error_of(recording, model, method), 2e-3) << name_of(method);
+  }
+}
+
+}  // namespace
+}  // namespace trussmap
