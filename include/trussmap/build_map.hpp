@@ -17,11 +17,9 @@
 // the first): the first landmark lies at the origin and the first heading points as its compass
 // says.
 //
-// Gate: a sighting whose landmark would lie too far from where the map has it is kept out and
-// named, in standard deviations: leg by leg 8, of the reckoning since the last leg's end, of the
-// sighting and of the map (`map_sd`) together; in an adjustment 4, of the sighting alone, at the
-// best fit of the others. A landmark that is only seen from afar enters the map when
-// `confirmations` sightings agree on where it is: one misread label cannot place it.
+// Gate: a sighting whose landmark would lie too far from where the map has it is kept out and named
+// (gate.hpp). A landmark that is only seen from afar enters the map when `confirmations` sightings
+// agree on where it is: one misread label cannot place it.
 //
 // Without a compass the heading is taken from the map on every leg between landmarks that it knows.
 // While the map is young that carries its errors along; therefore the recordings are gone through
@@ -46,8 +44,9 @@ struct BuildMapOptions {
   Method method = Method::elastic;
   Eta eta{.hold_first = false};         ///< of the elastic methods
   double min_drive = kDefaultMinDrive;  ///< m of driven path: a shorter drive is no leg
-  std::optional<double> gate = {};      ///< standard deviations; infinity: none; absent: as above
-  int looks = 2;                        ///< without a compass
+  std::optional<double> gate =
+      {};                 ///< standard deviations; infinity: none; absent: the method's own
+  int looks = 2;          ///< without a compass
   int settle = 5;         ///< rounds in which an elastic map comes to rest (MapBuilder::settle)
   int confirmations = 3;  ///< of a landmark that is only seen from afar
   double map_sd = 0.3;    ///< m per coordinate: how wrong the map may be while it is built

@@ -5,11 +5,11 @@
 #include "estimation/measurement_rows.hpp"
 #include "estimation/recording_robust.hpp"
 #include "fit/fit_state.hpp"
+#include "text/number_text.hpp"
+#include "trussmap/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -61,8 +61,8 @@ std::vector<std::string> doubts(const RecordingAdjustment& fit, const RecordingP
   constexpr double kImplausible = 1e-6;
   std::vector<std::string> result;
   if (!fit.converged) {
-    result.push_back(fmt::format(
-        "no minimum was reached in {} iterations: the map is not the best one", fit.iterations));
+    result.push_back(joined("no minimum was reached in ", fit.iterations,
+                            " iterations: the map is not the best one"));
   }
   const auto sightings =
       std::count_if(problem.measurements.begin(), problem.measurements.end(),
@@ -70,15 +70,14 @@ std::vector<std::string> doubts(const RecordingAdjustment& fit, const RecordingP
   const double share =
       static_cast<double>(fit.left_out.size()) / static_cast<double>(std::max(sightings, 1L));
   if (share > kMany) {
-    result.push_back(fmt::format(
-        "{:.0f} % of the sightings contradict the rest and were kept out: that many are seldom "
-        "wrong; is the model's noise too small, or its robot another one?",
-        100.0 * share));
+    result.push_back(
+        fixed_text(100.0 * share, 0) +
+        " % of the sightings contradict the rest and were kept out: that many are seldom wrong; is "
+        "the model's noise too small, or its robot another one?");
   } else if (fit.p_value < kImplausible) {
-    result.push_back(fmt::format(
-        "chi^2 = {:.1f} is too large for {} degrees of freedom: the model's noise is too small or "
-        "an effect is missing; the map's covariances are too small as well",
-        fit.chi2, fit.dof));
+    result.push_back(joined("chi^2 = ", fixed_text(fit.chi2, 1), " is too large for ", fit.dof,
+                            " degrees of freedom: the model's noise is too small or an effect is "
+                            "missing; the map's covariances are too small as well"));
   }
   return result;
 }

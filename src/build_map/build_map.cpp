@@ -6,6 +6,7 @@
 #include "build_map/leg_by_leg.hpp"
 #include "build_map/map_doubts.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/gate.hpp"
 
 #include <map>
 #include <stdexcept>

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/map_doubts.hpp"
 
+#include "text/number_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -23,15 +24,13 @@ void doubt_units(const std::vector<Recording>& recordings, const Model& model,
     }
     const double speed = path / (drive.t.back() - drive.start());
     if (speed > kFast) {
-      warnings.push_back(
-          fmt::format("{}: the wheels drive at {:.3g} m/s on average; are left and "
-                      "right in metres, t in seconds?",
-                      recording.name, speed));
+      warnings.push_back(recording.name + ": the wheels drive at " + short_text(speed, 3) +
+                         " m/s on average; are left and right in metres, t in seconds?");
     }
   }
   if (model.robot.wheelbase > kWide) {
-    warnings.push_back(
-        fmt::format("a wheelbase of {:g} m; is it in metres?", model.robot.wheelbase));
+    warnings.push_back("a wheelbase of " + short_text(model.robot.wheelbase) +
+                       " m; is it in metres?");
   }
 }
 
@@ -60,12 +59,12 @@ std::vector<std::string> doubts_of(const BuiltMap& built, const std::vector<Reco
   doubt_units(recordings, model, warnings);
   const double torn = contradiction(built.map);
   if (torn > kTorn) {
-    warnings.push_back(fmt::format(
-        "the map contradicts its own routes, by {:.0f} standard deviations in the middle; {}", torn,
-        built.method == Method::elastic_printed
-            ? "the printed refinement diverges here, use the method elastic"
-            : "wrong units, a wrong wheelbase, exchanged columns or labels, or noise that is "
-              "believed too small"));
+    warnings.push_back("the map contradicts its own routes, by " + fixed_text(torn, 0) +
+                       " standard deviations in the middle; " +
+                       (built.method == Method::elastic_printed
+                            ? "the printed refinement diverges here, use the method elastic"
+                            : "wrong units, a wrong wheelbase, exchanged columns or labels, or "
+                              "noise that is believed too small"));
   }
   return warnings;
 }

@@ -6,12 +6,11 @@
 #include "estimation/recording_robust.hpp"
 #include "estimation/recording_start.hpp"
 #include "statistics/distributions.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -21,7 +20,7 @@ std::string name_of(const RecordingProblem& problem, int node) {
   const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
   const std::string session =
       problem.sessions.size() > 1 ? " of " + problem.sessions[idx(pose.session)] : std::string();
-  return fmt::format("the robot at t = {:.3f} s{}", pose.t, session);
+  return "the robot at t = " + fixed_text(pose.t, 3) + " s" + session;
 }
 
 /// Landmarks first: they are what the user knows by name.
@@ -33,7 +32,7 @@ std::string name_of(const RecordingProblem& problem, int node) {
   for (std::size_t k = 0; k < std::min(nodes.size(), kNodesNamed); ++k) {
     names += (k == 0 ? "" : k + 1 == nodes.size() ? " and " : ", ") + name_of(problem, nodes[k]);
   }
-  if (nodes.size() > kNodesNamed) names += fmt::format(" and {} more", nodes.size() - kNodesNamed);
+  if (nodes.size() > kNodesNamed) names += joined(" and ", nodes.size() - kNodesNamed, " more");
   throw SolveError(names +
                    " can still move without changing any measurement; sight more landmarks from "
                    "there, or survey one");
@@ -76,17 +75,17 @@ Eigen::VectorXd initial(const RecordingAdjustmentOptions& options, Eigen::Index 
 void add_warnings(RecordingAdjustment& result) {
   constexpr double kImplausible = 1e-6;
   if (!result.converged) {
-    result.warnings.push_back(fmt::format(
-        "no minimum was reached in {} iterations: the map is not the best one", result.iterations));
+    result.warnings.push_back(joined("no minimum was reached in ", result.iterations,
+                                     " iterations: the map is not the best one"));
   }
   if (result.p_value < kImplausible) {
-    result.warnings.push_back(fmt::format(
-        "chi^2 = {:.1f} is too large for {} degrees of freedom: the model's noise is too small, "
-        "an effect is missing, or sightings are wrong",
-        result.chi2, result.dof));
+    result.warnings.push_back(joined("chi^2 = ", fixed_text(result.chi2, 1), " is too large for ",
+                                     result.dof,
+                                     " degrees of freedom: the model's noise is too small, "
+                                     "an effect is missing, or sightings are wrong"));
   }
   if (!result.left_out.empty()) {
-    result.warnings.push_back(fmt::format("{} sightings were left out", result.left_out.size()));
+    result.warnings.push_back(joined(result.left_out.size(), " sightings were left out"));
   }
 }
 

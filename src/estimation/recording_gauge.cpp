@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <set>
 
-#include <fmt/format.h>
-
 namespace trussmap {
 namespace {
 
@@ -22,9 +20,9 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
   const bool absolute =
       std::any_of(problem.measurements.begin(), problem.measurements.end(), in_map);
   const std::string& session = problem.sessions[idx(problem.poses[idx(untied[0])].session)];
-  throw SolveError(fmt::format("{} {}: no landmark ties it to {}", session,
-                               absolute ? "floats" : "stands apart",
-                               absolute ? "the survey or the truth" : problem.sessions.front()));
+  throw SolveError(session + (absolute ? " floats" : " stands apart") +
+                   ": no landmark ties it to " +
+                   (absolute ? "the survey or the truth" : problem.sessions.front()));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "estimation/recording_problem.hpp"
 
 #include "estimation/motion_changes.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -263,27 +263,27 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
 }
 
 std::string describe(const RecordingProblem& problem, const Measurement& measurement) {
-  const auto pose = [&](int node) -> const PoseNode& {
-    return problem.poses[idx(node - problem.landmark_count())];
+  const auto time = [&](int node) {
+    return fixed_text(problem.poses[idx(node - problem.landmark_count())].t, 3);
   };
   const std::string session = problem.sessions.size() > 1 && measurement.session >= 0
                                   ? " of " + problem.sessions[idx(measurement.session)]
                                   : std::string();
   switch (measurement.kind) {
     case MeasurementKind::segment:
-      return fmt::format("drive from t = {:.3f} s to {:.3f} s{}", pose(measurement.from).t,
-                         pose(measurement.to).t, session);
+      return "drive from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
+             session;
     case MeasurementKind::standing:
-      return fmt::format("standing on landmark {} at t = {:.3f} s{}",
-                         problem.landmarks[idx(measurement.to)], pose(measurement.from).t, session);
+      return "standing on landmark " + problem.landmarks[idx(measurement.to)] +
+             " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::view:
     case MeasurementKind::cartesian_view:
-      return fmt::format("sight of landmark {} at t = {:.3f} s{}",
-                         problem.landmarks[idx(measurement.to)], pose(measurement.from).t, session);
+      return "sight of landmark " + problem.landmarks[idx(measurement.to)] +
+             " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::survey:
-      return fmt::format("survey of landmark {}", problem.landmarks[idx(measurement.from)]);
+      return "survey of landmark " + problem.landmarks[idx(measurement.from)];
     case MeasurementKind::truth:
-      return fmt::format("truth at t = {:.3f} s{}", pose(measurement.from).t, session);
+      return "truth at t = " + time(measurement.from) + " s" + session;
   }
   return "measurement";
 }

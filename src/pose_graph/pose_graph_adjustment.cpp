@@ -5,6 +5,7 @@
 #include "pose_graph/pose_graph_gauge.hpp"
 #include "pose_graph/pose_graph_headings.hpp"
 #include "pose_graph/pose_graph_lifting.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/pose_graph.hpp"
 
@@ -12,8 +13,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -144,12 +143,12 @@ class Search {
     for (std::size_t k = 0; k < std::min(kNamed, loose.size()); ++k) {
       names += (k == 0 ? "" : ", ") + std::to_string(graph_.vertices[idx(loose[k])].id);
     }
-    if (loose.size() > kNamed) names += fmt::format(" and {} more", loose.size() - kNamed);
+    if (loose.size() > kNamed) names += joined(" and ", loose.size() - kNamed, " more");
+    const bool one = loose.size() == 1;
     throw SolveError(
-        fmt::format("{} {} can still move without contradicting any measurement "
-                    "(measure more of {}, or fix {})",
-                    loose.size() == 1 ? "vertex" : "vertices", names,
-                    loose.size() == 1 ? "it" : "them", loose.size() == 1 ? "it" : "one"));
+        joined(one ? "vertex " : "vertices ", names,
+               " can still move without contradicting any measurement (measure more of ",
+               one ? "it" : "them", ", or fix ", one ? "it" : "one", ")"));
   }
 
   /// Lets other starts try to beat what was found, then makes the best exact.
@@ -208,20 +207,17 @@ class Search {
     result.converged = best_.converged;
     result.start = best_start_;
     if (!best_.converged) {
-      result.warnings.push_back(
-          fmt::format("not converged after {} iterations; the result is not a minimum of chi2",
-                      best_.iterations));
+      result.warnings.push_back(joined("not converged after ", best_.iterations,
+                                       " iterations; the result is not a minimum of chi2"));
     }
     if (is_implausible()) {
-      result.warnings.push_back(
-          fmt::format("chi2 {:.6g} is far too large for {} degrees of freedom: wrong edges, too "
-                      "much information claimed, or a local minimum",
-                      best_.chi2, dof_));
+      result.warnings.push_back(joined(
+          "chi2 ", short_text(best_.chi2), " is far too large for ", dof_,
+          " degrees of freedom: wrong edges, too much information claimed, or a local minimum"));
     }
     for (const auto& [name, chi2] : others_) {
-      result.warnings.push_back(
-          fmt::format("a start from {} ends in another minimum, chi2 {:.6g}; the lower one is kept",
-                      name, chi2));
+      result.warnings.push_back(joined("a start from ", name, " ends in another minimum, chi2 ",
+                                       short_text(chi2), "; the lower one is kept"));
     }
     return result;
   }
@@ -261,8 +257,8 @@ std::vector<Eigen::MatrixXd> marginal_covariances(const PoseGraph& graph,
   try {
     if (H.unknowns() > 0) H.factorise();
   } catch (const NotPositiveDefinite& failure) {
-    throw SolveError(fmt::format("vertex {} can still move without contradicting any measurement",
-                                 graph.vertices[idx(system.vertex_of(failure.column()))].id));
+    throw SolveError(joined("vertex ", graph.vertices[idx(system.vertex_of(failure.column()))].id,
+                            " can still move without contradicting any measurement"));
   }
   std::vector<Eigen::MatrixXd> result;
   for (const int vertex : vertices) {

@@ -4,13 +4,13 @@
 
 #include "geometry/index.hpp"
 #include "linalg/connected_parts.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -63,20 +63,20 @@ std::string name_vertices(const PoseGraph& graph, const Part& part) {
     names += std::to_string(graph.vertices[idx(part.vertices[k])].id);
   }
   if (part.vertices.size() > kNamed) {
-    names += fmt::format(" and {} more", part.vertices.size() - kNamed);
+    names += joined(" and ", part.vertices.size() - kNamed, " more");
   }
   return names;
 }
 
 [[noreturn]] void refuse(const PoseGraph& graph, const std::vector<Part>& parts) {
   const std::int64_t first = graph.vertices[idx(parts.front().vertices.front())].id;
-  std::string message = fmt::format(
-      "the graph falls into {} parts that no measurement ties together: ", parts.size());
+  std::string message =
+      joined("the graph falls into ", parts.size(), " parts that no measurement ties together: ");
   for (std::size_t k = 1; k < std::min(parts.size(), kPartsNamed); ++k) {
     if (k > 1) message += "; ";
     const bool one = parts[k].vertices.size() == 1;
-    message += fmt::format("{} {} tied to nothing that is tied to vertex {}",
-                           name_vertices(graph, parts[k]), one ? "is" : "are", first);
+    message += joined(name_vertices(graph, parts[k]), one ? " is" : " are",
+                      " tied to nothing that is tied to vertex ", first);
   }
   if (parts.size() > kPartsNamed) message += "; and so on";
   throw SolveError(message + " (tie them by an edge, or fix a vertex of each part)");

@@ -4,13 +4,12 @@
 #include "pose_graph/pose_graph_chain.hpp"
 #include "pose_graph/pose_graph_descent.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/pose_graph.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -131,15 +130,15 @@ PoseGraph without(const PoseGraph& graph, const std::vector<int>& left_out) {
 
 std::string describe(const PoseGraph& graph, const std::vector<int>& left_out) {
   constexpr std::size_t kClosuresNamed = 8;
-  std::string text = fmt::format("{} loop closure{} left out as wrong: ", left_out.size(),
-                                 left_out.size() == 1 ? "" : "s");
+  std::string text = joined(left_out.size(), " loop closure", left_out.size() == 1 ? "" : "s",
+                            " left out as wrong: ");
   for (std::size_t k = 0; k < std::min(kClosuresNamed, left_out.size()); ++k) {
     const PoseEdge& edge = graph.pose_edges[idx(left_out[k])];
-    text += fmt::format("{}{} to {}", k == 0 ? "" : ", ", graph.vertices[idx(edge.from)].id,
-                        graph.vertices[idx(edge.to)].id);
+    text += joined(k == 0 ? "" : ", ", graph.vertices[idx(edge.from)].id, " to ",
+                   graph.vertices[idx(edge.to)].id);
   }
   if (left_out.size() > kClosuresNamed)
-    text += fmt::format(" and {} more", left_out.size() - kClosuresNamed);
+    text += joined(" and ", left_out.size() - kClosuresNamed, " more");
   return text;
 }
 

@@ -14,10 +14,18 @@ std::string shortest_text(double value) {
   return {buffer.data(), end};
 }
 
-std::string short_text(double value) {
-  std::array<char, 32> buffer{};
+std::string short_text(double value, int digits) {
+  std::array<char, 64> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                                 std::chars_format::general, 6)
+                                 std::chars_format::general, digits)
+                       .ptr;
+  return {buffer.data(), end};
+}
+
+std::string fixed_text(double value, int decimals) {
+  std::array<char, 400> buffer{};  // the largest double has 309 digits before the point
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, decimals)
                        .ptr;
   return {buffer.data(), end};
 }

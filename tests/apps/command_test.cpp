@@ -87,7 +87,7 @@ TEST(Command, AGraphWithPosesIsNoMapAndIsNamed) {
   const std::string graph = scratch.write("poses.g2o", "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n").string();
   const Ran ran = run_trussmap("convert " + graph + " " + at + "/x.geojson");
   EXPECT_EQ(ran.status, 2) << ran.output;
-  EXPECT_EQ(ran.output.rfind("trussmap: " + graph + ": the graph has poses", 0), 0U) << ran.output;
+  EXPECT_EQ(ran.output.rfind("trussmap: " + graph + ": is a graph of poses, expected a map", 0), 0U) << ran.output;
   EXPECT_EQ(scratch.contents().size(), 1U);
 }
 

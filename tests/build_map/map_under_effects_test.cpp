@@ -33,10 +33,7 @@ void PrintTo(const Fault& fault, std::ostream* out) {
 }
 
 Effect effect_of(const Fault& fault) {
-  Effect effect;
-  effect.name = fault.name;
-  effect.coefficients = fault.coefficients;
-  return resolved(effect);
+  return catalogue_effect(fault.name, fault.coefficients);
 }
 
 /// Two tours of a mesh, every landmark sighted in passing; without noise unless wanted.
