@@ -74,7 +74,7 @@ TEST(GeometryErrors, GoIntoAModelAndComeBack) {
 
   model.effects[0].channel = Channel::rotate;
   EXPECT_THROW((void)geometry_errors(model), std::invalid_argument);
-  model.effects = {catalogue_effect("wheelbase")};  // a catalogue name alone: not fitted yet
+  model.effects = {catalogue_effect("wheelbase")};  // not fitted yet
   EXPECT_EQ(geometry_errors(model).wheelbase_ratio, 1.0);
 }
 
