@@ -3,6 +3,7 @@
 #include "criticism/score_test.hpp"
 
 #include "recording/row_variables.hpp"
+#include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostPoints = 120;  // of a source
 constexpr std::size_t kFewest = 5;        // values that make a line
 
-double normal_quantile(std::size_t k, std::size_t count) {
+double normal_order_statistic(std::size_t k, std::size_t count) {
   return normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
 }
 
@@ -24,11 +24,11 @@ std::vector<std::size_t> drawn_places(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) places.push_back(k);
     return places;
   }
-  const double end = normal_quantile(count - 1, count);
+  const double end = normal_order_statistic(count - 1, count);
   for (std::size_t k = 0; k < kMostPoints; ++k) {
     const double z =
         end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostPoints - 1) - 1.0);
-    const double share = boost::math::cdf(boost::math::normal(), z);
+    const double share = normal_p_value(-z);
     const auto place = static_cast<std::size_t>(std::clamp(
         std::floor(share * static_cast<double>(count)), 0.0, static_cast<double>(count - 1)));
     if (places.empty() || places.back() != place) places.push_back(place);
@@ -53,7 +53,8 @@ Chart quantile_chart(const std::string& id, const std::string& title,
   double reach = 1.0;
   for (const SourceResiduals& one : sources) {
     if (one.standardised.size() < kFewest) continue;
-    reach = std::max(reach, normal_quantile(one.standardised.size() - 1, one.standardised.size()));
+    reach = std::max(reach,
+                     normal_order_statistic(one.standardised.size() - 1, one.standardised.size()));
   }
   ChartLayer line{LayerKind::line, "as stated", {{""}, {""}}, "faint"};
   for (ChartColumn& column : line.columns) column.numbers = {-reach, reach};
@@ -68,7 +69,7 @@ Chart quantile_chart(const std::string& id, const std::string& title,
                     std::to_string(1 + colour++ % 8)};
     dots.size = 3.0;
     for (const std::size_t k : drawn_places(count)) {
-      dots.columns[0].numbers.push_back(normal_quantile(k, count));
+      dots.columns[0].numbers.push_back(normal_order_statistic(k, count));
       dots.columns[1].numbers.push_back(one.standardised[k]);
     }
     chart.layers.push_back(std::move(dots));

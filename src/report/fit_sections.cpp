@@ -195,7 +195,7 @@ void add_quantiles(PageSection& section, const std::vector<NamedModel>& models) 
     Chart chart = quantile_chart(alone ? "quantiles" : fmt::format("quantiles-{}", k + 1),
                                  std::string("Do the errors scatter as stated?") +
                                      (alone ? "" : " \u2013 " + models[k].name),
-                                 models[k].model.residuals);
+                                 models[k].model.comparison.residuals);
     if (chart.layers.size() > 1) charts.push_back(std::move(chart));
   }
   if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
