@@ -3,7 +3,7 @@
 #include "bench_worlds.hpp"
 
 #include "trussmap/catalogue.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <fmt/format.h>
 

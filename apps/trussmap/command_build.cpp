@@ -5,7 +5,6 @@
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
-#include "plot/map_picture.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
 #include "trussmap/build_map.hpp"
@@ -207,7 +206,7 @@ void run_build(const BuildOptions& options) {
     files.emplace_back(options.json_file, result_json(built, options.method).dump(2) + "\n");
   }
   if (!options.svg.empty()) {
-    files.emplace_back(options.svg, draw_map(picture_of(built, "Landmark map, " + method)));
+    files.emplace_back(options.svg, map_picture(built, "Landmark map, " + method));
   }
   if (options.page.wanted()) {
     const std::string subject = subject_of(options.recordings, options.model) + ", " + method;

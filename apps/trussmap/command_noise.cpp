@@ -5,13 +5,12 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "option_checks.hpp"
-#include "plot/calibration_figures.hpp"
-#include "report/calibration_pages.hpp"
 #include "tape_options.hpp"
 #include "terminal.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/runs_files.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"
 #include "trussmap/umbmark.hpp"
@@ -195,7 +194,7 @@ void run_noise(const NoiseOptions& options) {
   }
   if (!options.tape.page.plots.empty()) {
     files.emplace_back(fs::path(options.tape.page.plots) / "noise.svg",
-                       draw_figure(noise_figure(result.errors, result.estimate)));
+                       noise_picture(result.errors, result.estimate));
     fs::create_directories(options.tape.page.plots);
   }
   if (!options.tape.page.html.empty()) {

@@ -7,7 +7,6 @@
 #include "simulate_options.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/write_files.hpp"

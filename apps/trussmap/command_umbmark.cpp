@@ -4,12 +4,11 @@
 // trussmap umbmark: wheel diameters and wheelbase from squares driven both ways.
 #include "commands.hpp"
 #include "option_checks.hpp"
-#include "plot/calibration_figures.hpp"
-#include "report/calibration_pages.hpp"
 #include "tape_options.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/runs_files.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/write_files.hpp"
 #include "umbmark_output.hpp"
@@ -109,7 +108,7 @@ void run_umbmark(const UmbmarkOptions& options) {
     runs.reserve(rounds.size());
     for (const SquareRound& round : rounds) runs.push_back(round.runs);
     files.emplace_back(fs::path(options.tape.page.plots) / "umbmark.svg",
-                       draw_figure(square_figure(runs, options.side)));
+                       square_picture(runs, options.side));
     fs::create_directories(options.tape.page.plots);
   }
   if (!options.tape.page.html.empty()) {

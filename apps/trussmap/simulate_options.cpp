@@ -3,7 +3,7 @@
 #include "simulate_options.hpp"
 
 #include "option_checks.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 

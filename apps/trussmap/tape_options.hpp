@@ -8,7 +8,7 @@
 #include "page_runtime.hpp"
 #include "trussmap/estimate.hpp"
 #include "trussmap/model.hpp"
-#include "trussmap/tape_robot.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -10,6 +10,10 @@
 // `subject` is what the page is about: recordings and model. Same input, same bytes.
 #pragma once
 
+#include "trussmap/calibrate.hpp"
+#include "trussmap/umbmark.hpp"
+#include "trussmap/wheel_noise.hpp"
+
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,11 +28,8 @@ struct DiagnosisEvidence;
 struct Discovery;
 struct DiscoveryEvidence;
 struct FitEvidence;
-struct NoiseCalibration;
 struct PageContent;
-struct SquareCalibration;
 struct TourResult;
-struct TruthCalibration;
 
 class Page {
  public:
@@ -56,6 +57,30 @@ struct DrawnChart {
 };
 [[nodiscard]] std::vector<DrawnChart> draw_charts(const Page& page);
 
+struct SquareCalibration {
+  std::vector<SquareRound> rounds;
+  double side = 4.0;      ///< m
+  Estimate wheelbase;     ///< m: to use from now on
+  Estimate left_factor;   ///< likewise
+  Estimate right_factor;  ///< likewise
+  std::vector<std::string> doubts;
+};
+
+struct NoiseCalibration {
+  EndErrors errors;
+  NoiseEstimate estimate;
+  NoiseFit fit;
+  double path = 0.0;  ///< m, its length
+  std::vector<std::string> doubts;
+};
+
+struct TruthCalibration {
+  WheelCalibration wheels;
+  ArrivalErrors nominal;     ///< of held-out legs
+  ArrivalErrors calibrated;  ///< of the same
+  std::string verdict;       ///< one sentence
+};
+
 [[nodiscard]] Page comparison_page(const ComparisonEvidence& evidence, const std::string& subject);
 [[nodiscard]] Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence,
                                   const std::string& subject);
@@ -68,5 +93,12 @@ struct DrawnChart {
 [[nodiscard]] Page truth_page(const TruthCalibration& found, const std::string& subject);
 /// Bands are 95 % intervals of the means over the seeds.
 [[nodiscard]] Page tour_page(const TourResult& result, int seeds, const std::string& subject);
+
+/// Pictures as SVG files: the map before and after, over its survey where there is one; where runs
+/// round a square of this side [m] ended, a cluster per direction and round; end errors with the
+/// 95 % ellipses of the runs and of the estimate.
+[[nodiscard]] std::string map_picture(const BuiltMap& built, const std::string& title);
+[[nodiscard]] std::string square_picture(const std::vector<SquareRuns>& rounds, double side);
+[[nodiscard]] std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate);
 
 }  // namespace trussmap

@@ -5,7 +5,7 @@
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
 #include "simulation/route_robot.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <atomic>

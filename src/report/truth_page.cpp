@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
-#include "report/calibration_pages.hpp"
+#include "report/page.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 
 #include <fmt/format.h>

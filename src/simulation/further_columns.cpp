@@ -3,7 +3,7 @@
 #include "simulation/further_columns.hpp"
 
 #include "recording/row_variables.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

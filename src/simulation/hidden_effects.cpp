@@ -7,7 +7,7 @@
 #include "simulation/motion_variables.hpp"
 #include "simulation/true_motion.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <array>

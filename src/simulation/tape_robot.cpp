@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/tape_robot.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

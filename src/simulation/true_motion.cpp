@@ -6,7 +6,7 @@
 #include "simulation/driving_checks.hpp"
 #include "simulation/further_columns.hpp"
 #include "simulation/leg_shape.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

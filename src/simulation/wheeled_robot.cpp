@@ -3,7 +3,7 @@
 #include "simulation/wheeled_robot.hpp"
 
 #include "geometry/index.hpp"
-#include "trussmap/random_stream.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

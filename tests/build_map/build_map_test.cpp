@@ -6,7 +6,6 @@
 
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"
 

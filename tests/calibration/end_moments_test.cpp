@@ -5,7 +5,7 @@
 // simulation where it is not.
 #include "calibration/end_moments.hpp"
 
-#include "trussmap/tape_robot.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <cmath>

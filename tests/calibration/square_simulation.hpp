@@ -4,7 +4,7 @@
 // Squares driven by the simulated robot, as the calibration reads them.
 #pragma once
 
-#include "trussmap/tape_robot.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/umbmark.hpp"
 
 #include <random>

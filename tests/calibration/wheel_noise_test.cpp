@@ -5,7 +5,7 @@
 #include "json_matrix.hpp"
 #include "shared_data.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/tape_robot.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -6,7 +6,6 @@
 #pragma once
 
 #include "trussmap/model.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <cmath>

@@ -9,7 +9,6 @@
 // is known. The reference is a mean over 20 seeds, and wanders by the scatter of such means.
 #include "geometry/index.hpp"
 #include "trussmap/pose_graph.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <array>

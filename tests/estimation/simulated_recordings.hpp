@@ -5,7 +5,6 @@
 #pragma once
 
 #include "estimation/recording_adjustment.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <cstdint>

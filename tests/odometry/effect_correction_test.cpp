@@ -8,7 +8,6 @@
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/random_stream.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/calibration_figures.hpp"
+#include "plot/map_picture.hpp"
+#include "trussmap/pages.hpp"
+
+namespace trussmap {
+
+std::string map_picture(const BuiltMap& built, const std::string& title) {
+  return draw_map(picture_of(built, title));
+}
+
+std::string square_picture(const std::vector<SquareRuns>& rounds, double side) {
+  return draw_figure(square_figure(rounds, side));
+}
+
+std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate) {
+  return draw_figure(noise_figure(errors, estimate));
+}
+
+}  // namespace trussmap
