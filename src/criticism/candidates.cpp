@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/candidates.hpp"
 
+#include "criticism/driven_variables.hpp"
 #include "effects/place_patterns.hpp"
-#include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/catalogue.hpp"
 
@@ -16,74 +16,7 @@
 namespace trussmap {
 namespace {
 
-using Instant = ShapeContext::Instant;
-
-/// How a variable spreads over the rows of all sessions in which the robot moves.
-struct Spread {
-  std::string name;
-  double least = 0.0;
-  double most = 0.0;
-  double mean = 0.0;
-  std::vector<double> sorted;  ///< thinned
-  std::size_t distinct = 0;    ///< up to 10
-
-  [[nodiscard]] double quantile(double share) const {
-    const double at = share * static_cast<double>(sorted.size() - 1);
-    return sorted[static_cast<std::size_t>(std::lround(at))];
-  }
-  [[nodiscard]] bool two_sided() const { return least < 0.0 && most > 0.0; }
-};
-
-constexpr std::size_t kThinned = 2000;
-constexpr int kQuickRounds = 10;  // of refining shape parameters
-constexpr int kExactRounds = 7;
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
-
-Spread spread_of(const std::string& name, const ShapeContext& context) {
-  Spread spread{name, 1e300, -1e300, 0.0, {}, 0};
-  std::vector<double> values;
-  for (std::size_t s = 0; s < context.recordings().size(); ++s) {
-    const RowVariables& variables = context.variables(s, Instant::middle);
-    const std::vector<double>& own = variables.at(name);
-    const std::vector<double>& speed = variables.at("speed");
-    const std::vector<double>& turn_rate = variables.at("turn_rate");
-    for (std::size_t row = 0; row < own.size(); ++row) {
-      if (speed[row] != 0.0 || turn_rate[row] != 0.0) values.push_back(own[row]);
-    }
-  }
-  if (values.empty()) return spread;
-  const std::size_t step = 1 + values.size() / kThinned;
-  for (std::size_t k = 0; k < values.size(); k += step) spread.sorted.push_back(values[k]);
-  for (const double value : values) {
-    spread.least = std::min(spread.least, value);
-    spread.most = std::max(spread.most, value);
-    spread.mean += value / static_cast<double>(values.size());
-  }
-  std::sort(spread.sorted.begin(), spread.sorted.end());
-  std::set<double> distinct;
-  for (const double value : spread.sorted) {
-    if (distinct.size() < 10) distinct.insert(value);
-  }
-  spread.distinct = distinct.size();
-  return spread;
-}
-
-bool in_all_sessions(const std::string& name, const ShapeContext& context) {
-  for (std::size_t s = 0; s < context.recordings().size(); ++s) {
-    if (!context.variables(s, Instant::middle).contains(name)) return false;
-  }
-  return true;
-}
-
-std::vector<std::string> covariates_of(const ShapeContext& context) {
-  std::vector<std::string> names;
-  for (const Covariate& one : context.recordings().front().drive.covariates) {
-    const auto& reserved = reserved_variables();
-    if (std::find(reserved.begin(), reserved.end(), one.name) != reserved.end()) continue;
-    if (in_all_sessions(one.name, context)) names.push_back(one.name);
-  }
-  return names;
-}
 
 bool has_word(const std::string& text, std::initializer_list<const char*> words) {
   std::string low = text;
@@ -100,43 +33,6 @@ double suits(const CatalogueEntry& entry, const std::string& covariate) {
   if (load && entry.name.starts_with("load")) return 0.2;
   if (drift && entry.name.starts_with("tyre")) return 0.2;
   return covariate.empty() || load || drift ? 0.0 : -0.1;
-}
-
-struct Area {
-  Vector2 low = Vector2(1e300, 1e300);
-  Vector2 high = Vector2(-1e300, -1e300);
-  double step = 0.0;             ///< m between centres tried
-  std::vector<Vector2> centres;  ///< that the robot came near
-};
-
-Area driven_area(const FitState& fit) {
-  constexpr int kAcross = 8;
-  Area area;
-  std::vector<Vector2> places;
-  for (const SessionPath& path : fit.paths) {
-    for (const Pose& pose : path.ends) {
-      area.low = area.low.cwiseMin(pose.position());
-      area.high = area.high.cwiseMax(pose.position());
-      if (places.empty() || (places.back() - pose.position()).norm() > 0.1) {
-        places.push_back(pose.position());
-      }
-    }
-  }
-  const Vector2 extent = area.high - area.low;
-  if (!(extent.maxCoeff() > 0.5)) return area;
-  area.step = extent.maxCoeff() / kAcross;
-  const int columns = std::max(1, static_cast<int>(std::lround(extent.x() / area.step)));
-  const int rows = std::max(1, static_cast<int>(std::lround(extent.y() / area.step)));
-  for (int i = 0; i <= columns; ++i) {
-    for (int j = 0; j <= rows; ++j) {
-      const Vector2 centre = area.low + Vector2(extent.x() * i / columns, extent.y() * j / rows);
-      const bool near = std::any_of(places.begin(), places.end(), [&](const Vector2& place) {
-        return (place - centre).norm() < 0.75 * area.step;
-      });
-      if (near) area.centres.push_back(centre);
-    }
-  }
-  return area;
 }
 
 /// Gathers the candidates.
@@ -427,82 +323,8 @@ class Gatherer {
 
 }  // namespace
 
-Candidate with_parameters(const Candidate& candidate, const std::vector<double>& values) {
-  Candidate one = candidate;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    one.parameters[k].value = rounded_within(values[k], candidate.search[k].step);
-  }
-  if (one.form == Form::catalogue) {
-    one.effect = catalogue_effect(*find_entry(candidate.effect.name), one.parameters);
-    return one;
-  }
-  one.effect.shape.clear();
-  for (const std::string& pattern : candidate.pattern) {
-    one.effect.shape.emplace_back(pattern, one.parameters);
-  }
-  return one;
-}
-
 std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& context) {
   return Gatherer(fit, context).run();
-}
-
-namespace {
-
-std::vector<double> values_of(const std::vector<ShapeParameter>& parameters) {
-  std::vector<double> values;
-  values.reserve(parameters.size());
-  for (const ShapeParameter& one : parameters) values.push_back(one.value);
-  return values;
-}
-
-/// Goes to better parameters, `step` apart, and halves the step where there are none.
-Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vector<double> step,
-                  int rounds, Resolution resolution) {
-  Candidate best = candidate;
-  double score = tests.test({candidate.effect}, resolution).front().score;
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<Candidate> around;
-    std::vector<Effect> effects;
-    for (std::size_t k = 0; k < step.size(); ++k) {
-      for (const double sign : {-1.0, 1.0}) {
-        std::vector<double> values = values_of(best.parameters);
-        values[k] = std::clamp(values[k] + sign * step[k], candidate.search[k].least,
-                               candidate.search[k].most);
-        Candidate next = with_parameters(candidate, values);
-        if (next.parameters == best.parameters) continue;
-        effects.push_back(next.effect);
-        around.push_back(std::move(next));
-      }
-    }
-    bool better = false;
-    const std::vector<Score> scores = tests.test(effects, resolution);
-    for (std::size_t k = 0; k < scores.size(); ++k) {
-      if (scores[k].score <= score * (1.0 + 1e-9)) continue;
-      score = scores[k].score;
-      best = around[k];
-      better = true;
-    }
-    if (better) continue;
-    for (double& s : step) s *= 0.5;
-  }
-  return best;
-}
-
-/// The search's steps, times a factor.
-std::vector<double> steps_of(const Candidate& candidate, double factor) {
-  std::vector<double> steps;
-  for (const SearchRange& one : candidate.search) steps.push_back(factor * one.step);
-  return steps;
-}
-
-}  // namespace
-
-Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
-  if (candidate.parameters.empty()) return candidate;
-  const Candidate near =
-      climbed(tests, candidate, steps_of(candidate, 0.5), kQuickRounds, Resolution::quick);
-  return climbed(tests, near, steps_of(candidate, 0.0625), kExactRounds, Resolution::exact);
 }
 
 }  // namespace trussmap

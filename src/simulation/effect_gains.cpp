@@ -3,6 +3,7 @@
 #include "simulation/effect_gains.hpp"
 
 #include "geometry/index.hpp"
+#include "simulation/true_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

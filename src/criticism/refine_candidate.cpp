@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/candidates.hpp"
+#include "text/number_text.hpp"
+#include "trussmap/catalogue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr int kQuickRounds = 10;
+constexpr int kExactRounds = 7;
+
+std::vector<double> values_of(const std::vector<ShapeParameter>& parameters) {
+  std::vector<double> values;
+  values.reserve(parameters.size());
+  for (const ShapeParameter& one : parameters) values.push_back(one.value);
+  return values;
+}
+
+/// Goes to better parameters, `step` apart, and halves the step where there are none.
+Candidate climbed(const ScoreTest& tests, const Candidate& candidate, std::vector<double> step,
+                  int rounds, Resolution resolution) {
+  Candidate best = candidate;
+  double score = tests.test({candidate.effect}, resolution).front().score;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Candidate> around;
+    std::vector<Effect> effects;
+    for (std::size_t k = 0; k < step.size(); ++k) {
+      for (const double sign : {-1.0, 1.0}) {
+        std::vector<double> values = values_of(best.parameters);
+        values[k] = std::clamp(values[k] + sign * step[k], candidate.search[k].least,
+                               candidate.search[k].most);
+        Candidate next = with_parameters(candidate, values);
+        if (next.parameters == best.parameters) continue;
+        effects.push_back(next.effect);
+        around.push_back(std::move(next));
+      }
+    }
+    bool better = false;
+    const std::vector<Score> scores = tests.test(effects, resolution);
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      if (scores[k].score <= score * (1.0 + 1e-9)) continue;
+      score = scores[k].score;
+      best = around[k];
+      better = true;
+    }
+    if (better) continue;
+    for (double& s : step) s *= 0.5;
+  }
+  return best;
+}
+
+/// The search's steps, times a factor.
+std::vector<double> steps_of(const Candidate& candidate, double factor) {
+  std::vector<double> steps;
+  for (const SearchRange& one : candidate.search) steps.push_back(factor * one.step);
+  return steps;
+}
+
+}  // namespace
+
+Candidate with_parameters(const Candidate& candidate, const std::vector<double>& values) {
+  Candidate one = candidate;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    one.parameters[k].value = rounded_within(values[k], candidate.search[k].step);
+  }
+  if (one.form == Form::catalogue) {
+    one.effect = catalogue_effect(*find_entry(candidate.effect.name), one.parameters);
+    return one;
+  }
+  one.effect.shape.clear();
+  for (const std::string& pattern : candidate.pattern) {
+    one.effect.shape.emplace_back(pattern, one.parameters);
+  }
+  return one;
+}
+
+Candidate refined(const ScoreTest& tests, const Candidate& candidate) {
+  if (candidate.parameters.empty()) return candidate;
+  const Candidate near =
+      climbed(tests, candidate, steps_of(candidate, 0.5), kQuickRounds, Resolution::quick);
+  return climbed(tests, near, steps_of(candidate, 0.0625), kExactRounds, Resolution::exact);
+}
+
+}  // namespace trussmap
