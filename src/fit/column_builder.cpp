@@ -8,8 +8,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <fmt/format.h>
-
 namespace trussmap {
 namespace {
 
@@ -208,7 +206,7 @@ Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
       }
     }
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+    throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
   }
   return result;
 }

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit/effect_columns.hpp"
 
+#include "text/number_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -116,7 +116,7 @@ auto in_words_of(const Effect& effect, const Action& action) {
   try {
     return action();
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("effect \"{}\": {}", effect.name, error.what()));
+    throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
   }
 }
 
@@ -163,10 +163,10 @@ std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) 
   const std::size_t expected = effect.shape.size() * (effect.per_session ? sessions : 1);
   if (effect.coefficients.empty()) return std::vector<double>(expected, 0.0);
   if (effect.coefficients.size() != expected) {
-    throw std::invalid_argument(fmt::format(
-        "effect \"{}\" has {} coefficients, expected {}: one per shape{}", effect.name,
-        effect.coefficients.size(), expected,
-        effect.per_session ? fmt::format(" and session, of which there are {}", sessions) : ""));
+    throw std::invalid_argument(
+        joined("effect \"", effect.name, "\" has ", effect.coefficients.size(),
+               " coefficients, expected ", expected, ": one per shape",
+               effect.per_session ? joined(" and session, of which there are ", sessions) : ""));
   }
   return effect.coefficients;
 }

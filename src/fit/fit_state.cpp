@@ -6,12 +6,11 @@
 #include "estimation/recording_start.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_free.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
 
 namespace trussmap {
 namespace {
@@ -305,7 +304,7 @@ class Fitter {
     }
     if (!fit_.settled) {
       fit_.adjustment.warnings.push_back(
-          fmt::format("shapes and path did not settle in {} rounds", options_.max_rounds));
+          joined("shapes and path did not settle in ", options_.max_rounds, " rounds"));
     }
   }
 

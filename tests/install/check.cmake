@@ -7,19 +7,16 @@ set(prefix ${BUILD_DIR}/install-test/prefix)
 set(consumer ${BUILD_DIR}/install-test/consumer)
 file(REMOVE_RECURSE ${prefix} ${consumer})
 
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output
-                  ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    message(FATAL_ERROR "${ARGV}\nended with ${status}:\n${output}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 run(${prefix}/bin/trussmap --version)
 if(NOT output STREQUAL "trussmap ${VERSION}\n")
   message(FATAL_ERROR "the installed command says it is '${output}', not trussmap ${VERSION}")
+endif()
+file(GLOB_RECURSE licence ${prefix}/share/LICENSE)
+if(NOT licence)
+  message(FATAL_ERROR "the licence was not installed")
 endif()
 
 # CLI11 serves the command alone: who uses the library must not need it.

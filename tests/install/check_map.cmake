@@ -1,0 +1,38 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+#
+# After check.cmake: builds and runs the project in CONSUMER_DIR/map against the installation, by
+# the component map alone and as if what reads files and models were nowhere to be found. Stops with
+# an error at the first thing that fails.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+set(prefix ${BUILD_DIR}/install-test/prefix)
+set(explorer ${BUILD_DIR}/install-test/explorer)
+file(REMOVE_RECURSE ${explorer})
+
+# The first example in C++.
+file(READ ${CONSUMER_DIR}/../../README.md readme)
+string(REGEX MATCH "```cpp\n([^`]*)```" found "${readme}")
+if(NOT found)
+  message(FATAL_ERROR "README.md has no example in C++")
+endif()
+file(WRITE ${explorer}/readme.cpp "${CMAKE_MATCH_1}")
+
+foreach(package fmt muparser LibLZMA EXPAT tomlplusplus nlohmann_json CLI11 Boost)
+  list(APPEND absent -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+run(${CMAKE_COMMAND} -S ${CONSUMER_DIR}/map -B ${explorer} -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Debug
+    -D README_EXAMPLE=${explorer}/readme.cpp ${absent})
+run(${CMAKE_COMMAND} --build ${explorer})
+foreach(program readme explorer)
+  run(${explorer}/${program})
+  message(STATUS "${output}")
+  run(readelf -d ${explorer}/${program})
+  string(REGEX MATCH "NEEDED[^\n]*(expat|lzma|muparser|fmt|toml|json)[^\n]*" needed "${output}")
+  if(needed)
+    message(FATAL_ERROR "${program} needs more than maps do: ${needed}")
+  endif()
+  if(NOT output MATCHES "NEEDED[^\n]*libc\\.")
+    message(FATAL_ERROR "readelf says nothing of ${program}:\n${output}")
+  endif()
+endforeach()
