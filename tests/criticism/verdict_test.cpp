@@ -45,7 +45,9 @@ void expect_agreement(const std::vector<Recording>& recordings, const ModelFit& 
   if (diagnosed.verdict == Diagnosis::Verdict::unexplained_misfit) {
     EXPECT_EQ(compared.objection, diagnosed.objection) << what;
   }
-  if (compared.objection == Objection::effect) EXPECT_EQ(compared.missing, diagnosed.missing);
+  if (compared.objection == Objection::effect) {
+    EXPECT_EQ(compared.missing, diagnosed.missing);
+  }
 }
 
 TEST(Verdict, OnThePracticeRecordingsNoneContradictsAnother) {

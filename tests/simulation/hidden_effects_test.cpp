@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/hidden_effects.hpp"
 
+#include "simulation/effect_gains.hpp"
+#include "simulation/motion_variables.hpp"
 #include "simulation/tours.hpp"
+#include "simulation/true_motion.hpp"
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>

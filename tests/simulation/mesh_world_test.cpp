@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/mesh_world.hpp"
 
+#include "geometry/index.hpp"
+
 #include <algorithm>
 #include <set>
 #include <stdexcept>

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/tours.hpp"
 
+#include "simulation/mesh_world.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/true_motion.hpp"
 
+#include "geometry/index.hpp"
 #include "simulation/tours.hpp"
 
 #include <cmath>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/wheeled_robot.hpp"
 
+#include "geometry/index.hpp"
 #include "simulation/tours.hpp"
 
 #include <algorithm>

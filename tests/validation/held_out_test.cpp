@@ -3,6 +3,9 @@
 #include "trussmap/held_out.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "estimation/recording_problem.hpp"
+#include "validation/held_out_legs.hpp"
+#include "validation/leg_spans.hpp"
 
 #include <cmath>
 #include <set>
