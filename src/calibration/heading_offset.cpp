@@ -80,10 +80,14 @@ std::string describe(const HeadingOffset& offset) {
     return "the truth's headings look clockwise, expected them counter-clockwise from +x";
   }
   if (std::abs(offset.angle) < kTurned) return "";
+  // Half a turn is 180 degrees on either side of it.
+  const double angle = offset.angle < 0.005 - std::numbers::pi
+                           ? offset.angle + 2.0 * std::numbers::pi
+                           : offset.angle;
   std::string text = fmt::format(
       "the truth's heading looks turned by {:.2f} rad ({:.0f} degrees) against the direction of "
       "travel; subtract that in truth.csv",
-      offset.angle, kDegrees * offset.angle);
+      angle, kDegrees * angle);
   if (std::abs(offset.angle) > std::numbers::pi - kTurned) {
     text += ", or change the sign of left and right in drive.csv where the wheels count backwards";
   }

@@ -71,10 +71,18 @@ void apply(Channel channel, const std::vector<double>& g, double wheelbase, Reco
 
 }  // namespace
 
+void require_shapes(const Effect& effect) {
+  if (!effect.shape.empty()) return;
+  throw std::invalid_argument("effect \"" + effect.name +
+                              "\" has no shape, expected at least one (catalogue_effect gives one "
+                              "of the catalogue's with its own)");
+}
+
 Recording corrected_recording(const Recording& recording, const Model& model,
                               const RowVariables& variables, int session) {
   Recording corrected = recording;
   for (const Effect& effect : model.effects) {
+    require_shapes(effect);
     try {
       const std::vector<double> g = gains(effect, variables, session, recording.drive.rows());
       apply(effect.channel, g, model.robot.wheelbase, corrected);

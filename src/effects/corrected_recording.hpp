@@ -14,6 +14,9 @@
 
 namespace trussmap {
 
+/// Throws std::invalid_argument where an effect has no shape.
+void require_shapes(const Effect& effect);
+
 /// `variables` are this recording's. Throws std::invalid_argument, naming the effect: one of the
 /// other channels, a shape that cannot be evaluated, coefficients that do not match. Effects
 /// without coefficients count as 0; per session, those of `session` are taken.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/effect_columns.hpp"
 
+#include "effects/corrected_recording.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -160,6 +161,7 @@ EffectPattern effect_column(Channel channel, const Shape& shape, int session,
 }
 
 std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) {
+  require_shapes(effect);
   const std::size_t expected = effect.shape.size() * (effect.per_session ? sessions : 1);
   if (effect.coefficients.empty()) return std::vector<double>(expected, 0.0);
   if (effect.coefficients.size() != expected) {

@@ -80,7 +80,7 @@ class ShapeContext {
                                            const ShapeContext& context);
 
 /// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
-/// std::invalid_argument where their number is wrong for so many sessions.
+/// std::invalid_argument where their number is wrong for so many sessions, or there is no shape.
 [[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);
 
 /// Sightings and truth rows moved back by the delays of the effects; those that fall out of the

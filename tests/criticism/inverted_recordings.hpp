@@ -275,11 +275,4 @@ inline Model inverted_model(std::vector<Effect> effects = {}) {
   return model;
 }
 
-/// One of the catalogue's, by its name.
-inline Effect effect_named(const std::string& name) {
-  Effect effect;
-  effect.name = name;
-  return effect;
-}
-
 }  // namespace trussmap::testing

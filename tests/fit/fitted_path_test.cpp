@@ -5,6 +5,7 @@
 #include "criticism/disturbances.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/row_variables.hpp"
+#include "trussmap/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +38,8 @@ TEST(FittedPath, IsTheTruePathOfANoiseFreeRecordingUnderItsEffect) {
       sightings.erase(sightings.begin(), sightings.begin() + 2);
       sightings.resize(sightings.size() - 2);
     }
-    Effect effect;
-    effect.name = one.effect;
-    const FitState fit = fit_recordings({simulated.recording}, inverted_model({effect}));
+    const FitState fit =
+        fit_recordings({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
     ASSERT_EQ(fit.paths.size(), 1U);
     ASSERT_EQ(fit.paths[0].ends.size(), simulated.places.size());
     double worst = 0.0;

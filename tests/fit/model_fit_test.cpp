@@ -6,6 +6,7 @@
 #include "criticism/disturbances.hpp"
 #include "fit/fit_state.hpp"
 #include "shared_data.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/wording.hpp"
@@ -20,7 +21,6 @@ namespace {
 using testing::Disturbance;
 using testing::disturbed_cases;
 using testing::DisturbedCase;
-using testing::effect_named;
 using testing::invert;
 using testing::inverted_model;
 using testing::InvertedOptions;
@@ -42,7 +42,7 @@ TEST_P(NoiseFree, TheEffectIsFoundExactly) {
   const InvertedRecording simulated = invert(one.disturbance, one.options, 11);
   const FitState without = fit_recordings({simulated.recording}, inverted_model());
   const FitState fit =
-      fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
+      fit_recordings({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
   EXPECT_TRUE(fit.settled);
   ASSERT_TRUE(fit.effects[0].not_fitted.empty())
       << in_words(fit.effects[0], fit.effects[0].not_fitted[0]);
@@ -76,7 +76,7 @@ TEST(ModelFit, WithoutSurveyAndCompassATwistIsStillFoundExactly) {
     options.survey = options.compass = false;
     const InvertedRecording simulated = invert(one.disturbance, options, 12);
     const FitState fit =
-        fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
+        fit_recordings({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
     EXPECT_LT(fit.adjustment.chi2, 1e-8) << one.effect;
     const double a = one.coefficients[0];
     EXPECT_NEAR(fit.effects[0].effect.coefficients[0], a, 1e-6 * std::abs(a)) << one.effect;
@@ -100,8 +100,9 @@ TEST(ModelFit, WhatTheDataCannotShowIsNotFittedAndSaysWhy) {
       options.noisy = noisy;
       const InvertedRecording simulated = invert(one.disturbance, options, 13);
       // Beside one that they do show.
-      const FitState fit = fit_recordings(
-          {simulated.recording}, inverted_model({effect_named(name), effect_named("wheelbase")}));
+      const FitState fit =
+          fit_recordings({simulated.recording},
+                         inverted_model({catalogue_effect(name), catalogue_effect("wheelbase")}));
       ASSERT_EQ(fit.effects[0].not_fitted.size(), 1U) << name << noisy;
       const std::string why = in_words(fit.effects[0], fit.effects[0].not_fitted[0]);
       EXPECT_EQ(why.find(name + " (1): not fitted, "), 0U) << why;
@@ -125,8 +126,9 @@ TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
     const InvertedRecording simulated = invert(one.disturbance, options, 13);
     for (const std::vector<std::string>& names :
          {std::vector<std::string>{"wheel scale", "wheelbase"}, {"wheelbase", "wheel scale"}}) {
-      const FitState fit = fit_recordings(
-          {simulated.recording}, inverted_model({effect_named(names[0]), effect_named(names[1])}));
+      const FitState fit =
+          fit_recordings({simulated.recording},
+                         inverted_model({catalogue_effect(names[0]), catalogue_effect(names[1])}));
       EXPECT_NEAR(fit.effects[0].effect.coefficients[0], one.coefficients[0], 1e-7) << names[0];
       EXPECT_TRUE(fit.effects[0].not_fitted.empty()) << names[0];
       EXPECT_EQ(fit.effects[1].not_fitted.size(), 1U) << names[1];
@@ -140,7 +142,7 @@ TEST(ModelFit, OfTwoThatOnlyGoTogetherTheLastGivesWay) {
 TEST(ModelFit, WithoutFittingCoefficientsStayAndExplainTheData) {
   const DisturbedCase one = disturbed_cases()[0];
   const InvertedRecording simulated = invert(one.disturbance, one.options, 14);
-  Model model = inverted_model({effect_named(one.effect)});
+  Model model = inverted_model({catalogue_effect(one.effect)});
   model.effects[0].coefficients = one.coefficients;
   FitterOptions options;
   options.fit_effects = false;
@@ -160,7 +162,7 @@ TEST(ModelFit, PerSessionEachRecordingHasItsOwnCoefficient) {
     recordings.push_back(
         invert(disturbance, {}, 20 + static_cast<std::uint64_t>(recordings.size())).recording);
   }
-  Effect effect = effect_named("compass offset");
+  Effect effect = catalogue_effect("compass offset");
   effect.per_session = true;
   const FitState fit = fit_recordings(recordings, inverted_model({effect}));
   ASSERT_EQ(fit.effects[0].effect.coefficients.size(), 3U);
@@ -189,7 +191,7 @@ TEST(ModelFit, AnOwnFormulaEqualToABuiltInGivesTheSame) {
       {"lever arm", Channel::lever, {"1 + 0*speed"}}};
   for (const Twin& twin : twins) {
     const FitState built_in =
-        fit_recordings({simulated.recording}, inverted_model({effect_named(twin.name)}));
+        fit_recordings({simulated.recording}, inverted_model({catalogue_effect(twin.name)}));
     Effect own;
     own.name = "of my own";
     own.channel = twin.channel;
@@ -210,12 +212,12 @@ TEST(ModelFit, TheOrderOfEffectsDoesNotMatter) {
   InvertedOptions options;
   options.noisy = true;
   const InvertedRecording simulated = invert({}, options, 31);
-  const FitState one =
-      fit_recordings({simulated.recording},
-                     inverted_model({effect_named("wheelbase"), effect_named("wheel scale")}));
-  const FitState other =
-      fit_recordings({simulated.recording},
-                     inverted_model({effect_named("wheel scale"), effect_named("wheelbase")}));
+  const FitState one = fit_recordings(
+      {simulated.recording},
+      inverted_model({catalogue_effect("wheelbase"), catalogue_effect("wheel scale")}));
+  const FitState other = fit_recordings(
+      {simulated.recording},
+      inverted_model({catalogue_effect("wheel scale"), catalogue_effect("wheelbase")}));
   EXPECT_NEAR(one.effects[0].effect.coefficients[0], other.effects[1].effect.coefficients[0],
               1e-5 * one.effects[0].sd[0]);
   EXPECT_NEAR(one.adjustment.chi2, other.adjustment.chi2, 1e-6);
@@ -251,7 +253,11 @@ TEST(ModelFit, WhatCannotBeAppliedIsNamedInOneSentence) {
       EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     }
   }
-  Effect effect = effect_named("wheelbase");
+  Effect nameless;
+  nameless.name = "wheelbase";  // its shape is the catalogue's affair
+  EXPECT_THROW(static_cast<void>(fit_recordings({simulated.recording}, inverted_model({nameless}))),
+               std::invalid_argument);
+  Effect effect = catalogue_effect("wheelbase");
   effect.per_session = true;
   effect.coefficients = {0.0, 0.0, 0.0};
   EXPECT_THROW(static_cast<void>(fit_recordings({simulated.recording}, inverted_model({effect}))),
@@ -262,7 +268,7 @@ TEST(ModelFit, ShowsWhatItsStateHas) {
   InvertedOptions options;
   options.noisy = true;
   const InvertedRecording simulated = invert({}, options, 33);
-  const Model model = inverted_model({effect_named("wheelbase")});
+  const Model model = inverted_model({catalogue_effect("wheelbase")});
   const ModelFit fit = fit_model({simulated.recording}, model);
   const FitState state = fit_recordings({simulated.recording}, model);
   EXPECT_DOUBLE_EQ(fit.chi2, state.adjustment.chi2);
@@ -356,7 +362,7 @@ TEST(SlowModelFit, IntervalsCoverAndChi2IsWhatChanceMakesIt) {
     const InvertedRecording simulated =
         invert(one.disturbance, options, 1 + static_cast<std::uint64_t>(run));
     const FitState fit =
-        fit_recordings({simulated.recording}, inverted_model({effect_named(one.effect)}));
+        fit_recordings({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
     ASSERT_TRUE(fit.effects[0].not_fitted.empty()) << one.effect;
     const double error = fit.effects[0].effect.coefficients[0] - one.coefficients[0];
     if (std::abs(error) < 1.959964 * fit.effects[0].sd[0]) ++covered;
@@ -383,7 +389,7 @@ TEST(SlowModelFit, TheScaleOfEffectFreeDrivesIsUnbiased) {
     options.noisy = true;
     const InvertedRecording simulated = invert({}, options, 5000 + seed);
     const FitState fit =
-        fit_recordings({simulated.recording}, inverted_model({effect_named("wheel scale")}));
+        fit_recordings({simulated.recording}, inverted_model({catalogue_effect("wheel scale")}));
     sum += fit.effects[0].effect.coefficients[0] / fit.effects[0].sd[0];
   }
   RecordProperty("mean_in_sds", std::to_string(sum / kRuns));

@@ -31,7 +31,7 @@ Recording random_recording() {
   r.drive.covariates = {{"load", {}}, {"T_1", {}}};
   for (int k = 0; k < 200; ++k) {
     r.drive.t.push_back(1e9 + 0.1 * k);
-    r.drive.left.push_back(normal(random) * std::pow(10.0, k % 17 - 8));
+    r.drive.left.push_back(normal(random) * std::pow(10.0, k % 14 - 8));
     r.drive.right.push_back(normal(random));
     r.drive.heading.push_back(k % 3 == 0 ? kAbsent : normal(random));
     r.drive.covariates[0].values.push_back(normal(random));

@@ -127,7 +127,8 @@ std::vector<std::string> wrong_in_room(const fs::path& file, const std::string& 
   if (!is_room(room)) return {file.string() + ": there is no room " + room};
   std::vector<std::string> wrong;
   for (const Include& one : includes_of(text)) {
-    const std::optional<std::string> other = room_of(one.target);
+    // <map> is the standard library's.
+    const std::optional<std::string> other = one.quoted ? room_of(one.target) : std::nullopt;
     if (one.quoted && !other) {
       wrong.push_back(file.string() + ":" + std::to_string(one.line) + ": " + one.target +
                       " is in no room, expected ROOM/name.hpp or trussmap/name.hpp");

@@ -4,6 +4,7 @@
 
 #include "criticism/disturbances.hpp"
 #include "estimation/recording_problem.hpp"
+#include "trussmap/catalogue.hpp"
 #include "validation/held_out_legs.hpp"
 #include "validation/leg_spans.hpp"
 
@@ -18,7 +19,6 @@ namespace {
 using testing::Disturbance;
 using testing::disturbed_cases;
 using testing::DisturbedCase;
-using testing::effect_named;
 using testing::invert;
 using testing::inverted_model;
 using testing::InvertedOptions;
@@ -100,7 +100,7 @@ TEST(HeldOut, AnExactRecordingIsPredictedExactlyUnderEachEffect) {
   for (const DisturbedCase& one : disturbed_cases()) {
     const InvertedRecording simulated = invert(one.disturbance, one.options, 54);
     const HeldOut result =
-        predicted({simulated.recording}, inverted_model({effect_named(one.effect)}));
+        predicted({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
     EXPECT_GT(result.legs.size(), 5U) << one.effect;
     EXPECT_LT(result.arrival_rms, 1e-5) << one.effect;
     EXPECT_LT(result.stretch_error, 1e-5) << one.effect;
@@ -119,7 +119,7 @@ TEST(HeldOut, SurveyAndCompassAreNotNeeded) {
       options.compass = compass;
       const InvertedRecording simulated = invert(one.disturbance, options, 55);
       const HeldOut result =
-          predicted({simulated.recording}, inverted_model({effect_named(one.effect)}));
+          predicted({simulated.recording}, inverted_model({catalogue_effect(one.effect)}));
       EXPECT_GT(result.legs.size(), 5U);
       EXPECT_LT(result.arrival_rms, 1e-5) << survey << compass;
     }
@@ -193,7 +193,7 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
     }
     ASSERT_GT(block, 25U);
     const Recording bad = spoiled(clean, legs, block, name == "sighting delay" ? 0.5 : 0.0);
-    const Model model = inverted_model({effect_named(name)});
+    const Model model = inverted_model({catalogue_effect(name)});
     const double until = legs[block].time.from - 1.0;
     const auto expected = errors_until(predicted({clean}, model), until);
     const auto found = errors_until(predicted({bad}, model), until);
@@ -235,7 +235,7 @@ TEST(HeldOut, TheTrainingItselfKnowsNothingOfThem) {
     }
   }
   options.problem.left_out[0] = joined;
-  const Model model = inverted_model({effect_named(one.effect)});
+  const Model model = inverted_model({catalogue_effect(one.effect)});
   const FitState a = fit_recordings({clean}, model, options);
   const FitState b = fit_recordings({spoiled(clean, legs, block)}, model, options);
   EXPECT_EQ(a.adjustment.dof, b.adjustment.dof);
@@ -253,7 +253,7 @@ TEST(HeldOut, TheRightModelPredictsBetterThanTheWrongOne) {
     one.options.noisy = true;
     one.options.compass = false;
     const Recording recording = invert(one.disturbance, one.options, 59).recording;
-    const HeldOut right = predicted({recording}, inverted_model({effect_named(name)}));
+    const HeldOut right = predicted({recording}, inverted_model({catalogue_effect(name)}));
     const HeldOut wrong = predicted({recording}, inverted_model());
     ASSERT_EQ(right.legs.size(), wrong.legs.size());
     EXPECT_GT(wrong.arrival_rms, 1.2 * right.arrival_rms) << name;
@@ -278,7 +278,7 @@ TEST(HeldOut, LegsBetweenTruthRowsArePredictedToo) {
     EXPECT_GE(driven, 1.0 - 1e-9);
     EXPECT_LT(driven, 1.6);  // rows of 9 cm, three apart, of which every 25 cm is used
   }
-  const HeldOut right = predicted({recording}, inverted_model({effect_named(one.effect)}));
+  const HeldOut right = predicted({recording}, inverted_model({catalogue_effect(one.effect)}));
   EXPECT_GT(right.legs.size(), 10U);
   EXPECT_LT(right.arrival_rms, 1e-5);
   EXPECT_TRUE(right.legs[0].from.empty());
