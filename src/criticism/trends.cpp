@@ -59,10 +59,35 @@ Variable place_variable(const FitState& fit) {
   return place;
 }
 
+/// Turn rate [rad/s] that the wheels' noise does not feign: four standard deviations of a row's.
+double faintest_turn(const FitState& fit) {
+  const Noise& noise = fit.model.noise;
+  std::vector<double> deviations;
+  for (const Recording& recording : fit.recordings) {
+    const Drive& drive = recording.drive;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      const double variance = noise.left * noise.left * std::abs(drive.left[row]) +
+                              noise.right * noise.right * std::abs(drive.right[row]);
+      if (variance == 0.0) continue;
+      deviations.push_back(std::sqrt(variance) / (fit.model.robot.wheelbase * drive.duration(row)));
+    }
+  }
+  if (deviations.empty()) return 0.0;
+  const auto high = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() * 9 / 10);
+  std::nth_element(deviations.begin(), high, deviations.end());
+  return rounded_within(4.0 * *high, *high);
+}
+
+/// The sign of the turn rate, but 0 where the robot drives straight: there the sign would be the
+/// noise's own, and go with every error that this noise makes.
+Shape turn_sense(const FitState& fit) {
+  return {"(sign(turn_rate-{w})+sign(turn_rate+{w}))/2", {{"w", faintest_turn(fit)}}};
+}
+
 std::vector<Variable> variables_of(const FitState& fit) {
   std::vector<Variable> variables{{"all", {"1"}},
                                   {"heading", {"sin(heading)", "cos(heading)"}},
-                                  {"turn sense", {"sign(turn_rate)"}},
+                                  {"turn sense", {turn_sense(fit)}},
                                   {"turn rate", {"abs(turn_rate)"}},
                                   {"signed turn rate", {"turn_rate"}},
                                   {"direction of travel", {"sign(speed)"}},
@@ -126,8 +151,9 @@ double rms_of(const std::vector<double>& coefficients,
 std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
   std::vector<Trend> trends;
   std::vector<Effect> effects;
+  const std::vector<Variable> variables = variables_of(fit);
   for (const Kind& kind : kinds_of(fit)) {
-    for (const Variable& variable : variables_of(fit)) {
+    for (const Variable& variable : variables) {
       Trend trend;
       trend.kind = kind.name;
       trend.against = variable.name;
