@@ -67,33 +67,31 @@ void run_add(const AddOptions& options) {
 
 }  // namespace
 
-void setup_add(CLI::App& app) {
+void setup_add(const Command& app) {
   auto options = std::make_shared<AddOptions>();
-  CLI::App* command = app.add_subcommand("add", "Add a physical effect to a model");
-  command->add_option("MODEL", options->model, "Model of the robot (TOML)")
-      ->required()
-      ->type_name("FILE");
+  const Command command = app.add_subcommand("add", "Add a physical effect to a model");
+  command.add_option("MODEL", options->model, "Model of the robot (TOML)")
+      .required()
+      .type_name("FILE");
   command
-      ->add_option("EFFECT", options->effect,
-                   "Name from the catalogue (trussmap simulate --help lists it), or your own")
-      ->required()
-      ->type_name("NAME");
-  command->add_option("--channel", options->channel, "Where an effect of your own acts")
-      ->type_name("CHANNEL");
+      .add_option("EFFECT", options->effect,
+                  "Name from the catalogue (trussmap simulate --help lists it), or your own")
+      .required()
+      .type_name("NAME");
+  command.add_option("--channel", options->channel, "Where an effect of your own acts")
+      .type_name("CHANNEL");
   command
-      ->add_option("--shape", options->shape,
-                   "Expressions over the row's variables, one per coefficient")
-      ->type_name("EXPR...");
-  command->add_flag("--per-session", options->per_session, "Coefficients of its own per recording");
-  command->add_option("--out", options->out, "Write the model (TOML)")
-      ->required()
-      ->type_name("FILE");
-  command->footer(
+      .add_option("--shape", options->shape,
+                  "Expressions over the row's variables, one per coefficient")
+      .type_name("EXPR...");
+  command.add_flag("--per-session", options->per_session, "Coefficients of its own per recording");
+  command.add_option("--out", options->out, "Write the model (TOML)").required().type_name("FILE");
+  command.footer(
       "  trussmap add robot.toml wheelbase --out robot2.toml\n"
       "  trussmap add robot.toml \"tyre drift (temperature_C)\" --out robot2.toml\n"
       "  trussmap add robot.toml \"magnet in the lights\" --channel compass --shape lights "
       "--out robot2.toml");
-  command->callback([options] { run_add(*options); });
+  command.callback([options] { run_add(*options); });
 }
 
 }  // namespace trussmap::app

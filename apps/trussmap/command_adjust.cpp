@@ -3,6 +3,7 @@
 //
 // trussmap adjust: the best fit of a plain pose graph.
 #include "commands.hpp"
+#include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -140,37 +141,36 @@ void run_adjust(const AdjustOptions& options) {
 
 }  // namespace
 
-void setup_adjust(CLI::App& app) {
+void setup_adjust(const Command& app) {
   auto options = std::make_shared<AdjustOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "adjust", "Adjust a pose graph: find the poses and landmarks of least chi2");
-  command->add_option("GRAPH", options->graph, "Pose graph to adjust, m and rad")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--out", options->out, "Write the adjusted graph as g2o")->type_name("FILE");
-  command->add_option("--json", options->json, "Write every figure as JSON")->type_name("FILE");
+  command.add_option("GRAPH", options->graph, "Pose graph to adjust, m and rad")
+      .required()
+      .type_name("FILE");
+  command.add_option("--out", options->out, "Write the adjusted graph as g2o").type_name("FILE");
+  command.add_option("--json", options->json, "Write every figure as JSON").type_name("FILE");
   command
-      ->add_option("--start", options->start,
-                   "Estimates to start from: the file's, those that odometry gives (the file's "
-                   "are ignored), or the best of both; in each case other starts, drawn from the "
-                   "measurements, are tried as well and the lowest chi2 is kept")
-      ->check(CLI::IsMember({"best", "file", "odometry"}))
-      ->capture_default_str();
-  command->add_flag("--robust", options->robust,
-                    "Leave out loop closures that contradict the rest, and say which");
+      .add_option("--start", options->start,
+                  "Estimates to start from: the file's, those that odometry gives (the file's "
+                  "are ignored), or the best of both; in each case other starts, drawn from the "
+                  "measurements, are tried as well and the lowest chi2 is kept")
+      .check(one_of({"best", "file", "odometry"}))
+      .capture_default_str();
+  command.add_flag("--robust", options->robust,
+                   "Leave out loop closures that contradict the rest, and say which");
   command
-      ->add_option(
-          "--gate", options->gate,
-          "With --robust: leave loop closures out whose e'Omega e, against the best fit of "
-          "all others, exceeds this (squared standard deviations)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->footer(
+      .add_option("--gate", options->gate,
+                  "With --robust: leave loop closures out whose e'Omega e, against the best fit of "
+                  "all others, exceeds this (squared standard deviations)")
+      .check(above_zero())
+      .capture_default_str();
+  command.footer(
       "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
       "(VERTEX2, EDGE2), iSAM (ODOMETRY or EDGE2, LANDMARK), plain or .xz. Without FIX the first "
       "vertex stays where it is.");
-  command->callback([options, command] {
-    if (command->count("--gate") > 0 && !options->robust) {
+  command.callback([options, command] {
+    if (command.count("--gate") > 0 && !options->robust) {
       throw UsageError("--gate is given without --robust, to which it belongs");
     }
     run_adjust(*options);

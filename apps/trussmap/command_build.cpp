@@ -219,52 +219,50 @@ void run_build(const BuildOptions& options) {
 
 }  // namespace
 
-void setup_build(CLI::App& app) {
+void setup_build(const Command& app) {
   auto options = std::make_shared<BuildOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "build", "Build a landmark map from recordings (several folders: several sessions)");
-  command->add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--model", options->model, "The robot and its noise (TOML)")
-      ->required()
-      ->type_name("FILE");
+  command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+      .required()
+      .type_name("DIR");
+  command.add_option("--model", options->model, "The robot and its noise (TOML)")
+      .required()
+      .type_name("FILE");
   command
-      ->add_option(
+      .add_option(
           "--method", options->method,
           "How the map is made: leg by leg, or by an adjustment of all measurements at once")
-      ->check(CLI::IsMember({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
-      ->type_name("FILE");
-  command->add_option("--json", options->json_file, "Write every figure as JSON")
-      ->type_name("FILE");
-  command->add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
-      ->type_name("FILE");
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
+      .check(one_of({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
+      .capture_default_str();
+  command.add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
+      .type_name("FILE");
+  command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
+  command.add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
+      .type_name("FILE");
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
   command
-      ->add_option(
-          "--eta", options->eta,
-          "How many landmarks a refinement of the elastic methods may move: a number, all, "
-          "or auto")
-      ->type_name("N|all|auto")
-      ->check(eta_text())
-      ->capture_default_str();
+      .add_option("--eta", options->eta,
+                  "How many landmarks a refinement of the elastic methods may move: a number, all, "
+                  "or auto")
+      .type_name("N|all|auto")
+      .check(eta_text())
+      .capture_default_str();
   command
-      ->add_option("--min-drive", options->min_drive,
-                   "Shortest driven path between a leg's ends [m]")
-      ->check(zero_or_more())
-      ->capture_default_str();
+      .add_option("--min-drive", options->min_drive,
+                  "Shortest driven path between a leg's ends [m]")
+      .check(zero_or_more())
+      .capture_default_str();
   command
-      ->add_option(
+      .add_option(
           "--gate", options->gate,
           fmt::format("Leave sightings out that contradict the map by more standard deviations "
                       "than this; by default {:g}, of the sighting, the reckoning and the "
                       "map jointly, with --method adjustment {:g}, of the sighting alone",
                       kMapGate, kAdjustmentGate))
-      ->check(above_zero());
-  command->callback([options] { run_build(*options); });
+      .check(above_zero());
+  command.callback([options] { run_build(*options); });
 }
 
 }  // namespace trussmap::app

@@ -121,6 +121,7 @@ ordered_json json(const WheelCalibration& found, const CalibrationValidation& he
                     {"heading_rad", found.truth.heading},
                     {"clocks", clocks}};
   }
+  out["settled"] = found.settled;
   out["undetermined"] = found.undetermined;
   return out;
 }
@@ -208,6 +209,12 @@ std::string text(const WheelCalibration& found, const CalibrationValidation& hel
   if (!found.truth.clocks.empty()) out += text(found.truth);
   if (test) out += text(*test);
   for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";
+  if (!found.settled) {
+    out += "\n" + warning_text(
+                      "the last round still moved an estimate by more than a tenth of its standard "
+                      "error: wheels that differ in these figures alone do not explain the "
+                      "recordings (trussmap diagnose looks for what does)");
+  }
   return out;
 }
 
@@ -252,40 +259,40 @@ void run_calibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
-void setup_calibrate(CLI::App& app) {
+void setup_calibrate(const Command& app) {
   auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "calibrate",
       "Calibrate wheels, wheelbase and wheel noise from recordings with truth or survey");
-  command->add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--model", options->model, "Model to start from (TOML)")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("--out", options->out, "Write the model with what was found (TOML)")
-      ->type_name("FILE");
-  command->add_option("--json", options->json, "Write every figure as JSON")->type_name("FILE");
+  command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
+      .required()
+      .type_name("DIR");
+  command.add_option("--model", options->model, "Model to start from (TOML)")
+      .required()
+      .type_name("FILE");
+  command.add_option("--out", options->out, "Write the model with what was found (TOML)")
+      .type_name("FILE");
+  command.add_option("--json", options->json, "Write every figure as JSON").type_name("FILE");
   command
-      ->add_option("--holdout", options->calibration.holdout,
-                   "Share of the legs with truth that are held out to judge the calibration by; "
-                   "with a few short recordings each is held out in turn (0: none)")
-      ->check(CLI::Range(0.0, 0.9))
-      ->capture_default_str();
-  command->add_option("--leg", options->calibration.leg, "Length of such a leg [m of driven path]")
-      ->check(above_zero())
-      ->capture_default_str();
+      .add_option("--holdout", options->calibration.holdout,
+                  "Share of the legs with truth that are held out to judge the calibration by; "
+                  "with a few short recordings each is held out in turn (0: none)")
+      .check(between(0.0, 0.9))
+      .capture_default_str();
+  command.add_option("--leg", options->calibration.leg, "Length of such a leg [m of driven path]")
+      .check(above_zero())
+      .capture_default_str();
   command
-      ->add_option("--test", options->test,
-                   "Recordings with truth, not calibrated by, to test the calibration on")
-      ->type_name("DIR");
-  command->add_option("--without", options->without, "Do not use the survey, or the truth")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"survey", "truth"}))
-      ->type_name("WHAT,...");
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->footer(
+      .add_option("--test", options->test,
+                  "Recordings with truth, not calibrated by, to test the calibration on")
+      .type_name("DIR");
+  command.add_option("--without", options->without, "Do not use the survey, or the truth")
+      .delimiter(',')
+      .check(one_of({"survey", "truth"}))
+      .type_name("WHAT,...");
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.footer(
       "E_d, E_b and E_s become the model's effects wheel diameter ratio, wheelbase and wheel\n"
       "scale. Standard errors hold for the noise that the model states for truth, survey and\n"
       "sightings; chi2/dof should be near 1. Where truth tracks the robot, and how late, is found "
@@ -295,7 +302,7 @@ void setup_calibrate(CLI::App& app) {
       "model (nominal) and with the calibrated one: how far the end is off, and how far the "
       "change\n"
       "of heading, per metre of the wheels' mean travel (so that turns on the spot count).");
-  command->callback([options] { run_calibrate(*options); });
+  command.callback([options] { run_calibrate(*options); });
 }
 
 }  // namespace trussmap::app

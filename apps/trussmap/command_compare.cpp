@@ -257,18 +257,18 @@ void run_compare(const CompareCommand& options) {
 
 }  // namespace
 
-void setup_compare(CLI::App& app) {
+void setup_compare(const Command& app) {
   auto options = std::make_shared<CompareCommand>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "compare", "Compare a model with recordings: is it consistent, and where does it fail?");
-  add_model_recordings(*command, options->input);
-  command->add_option("--worst", options->worst, "Legs and routes to list")->capture_default_str();
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->footer(
+  add_model_recordings(command, options->input);
+  command.add_option("--worst", options->worst, "Legs and routes to list").capture_default_str();
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.footer(
       "Survey and truth are used as measurements. A bar force is what a route pulls (+) or pushes\n"
       "(-) its landmarks with. JSON holds all legs, routes and trends.");
-  command->callback([options] { run_compare(*options); });
+  command.callback([options] { run_compare(*options); });
 }
 
 }  // namespace trussmap::app

@@ -90,22 +90,22 @@ void run_convert(const ConvertOptions& options) {
 
 }  // namespace
 
-void setup_convert(CLI::App& app) {
+void setup_convert(const Command& app) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      ->add_option("IN", options->in,
-                   "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
-                   "..._run-NN.csv (plain or .xz files)")
-      ->required()
-      ->type_name("FILE");
+      .add_option("IN", options->in,
+                  "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
+                  "..._run-NN.csv (plain or .xz files)")
+      .required()
+      .type_name("FILE");
   command
-      ->add_option("OUT", options->out,
-                   "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
-      ->required()
-      ->type_name("FILE|DIR");
-  command->callback([options] { run_convert(*options); });
+      .add_option("OUT", options->out,
+                  "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
+      .required()
+      .type_name("FILE|DIR");
+  command.callback([options] { run_convert(*options); });
 }
 
 }  // namespace trussmap::app

@@ -211,21 +211,21 @@ void run_diagnose(const DiagnoseCommand& options) {
 
 }  // namespace
 
-void setup_diagnose(CLI::App& app) {
+void setup_diagnose(const Command& app) {
   auto options = std::make_shared<DiagnoseCommand>();
-  CLI::App* command =
+  const Command command =
       app.add_subcommand("diagnose", "Find out which physical effect a model is missing");
-  add_model_recordings(*command, options->input);
-  command->add_option("--list", options->list, "Candidates to list")->capture_default_str();
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->footer(
+  add_model_recordings(command, options->input);
+  command.add_option("--list", options->list, "Candidates to list").capture_default_str();
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.footer(
       "Tries the whole catalogue, and every channel against every variable and covariate. "
       "Missing:\n"
       "named by these data. Absent: would have been seen at any size that matters. Cannot tell:\n"
       "these data could not show it, or another effect looks the same. The page (--html) has what\n"
       "is missing, its rivals, the next drive, and the best change to each part of the robot.");
-  command->callback([options] { run_diagnose(*options); });
+  command.callback([options] { run_diagnose(*options); });
 }
 
 }  // namespace trussmap::app

@@ -162,20 +162,20 @@ void run_discover(const DiscoverCommand& options) {
 
 }  // namespace
 
-void setup_discover(CLI::App& app) {
+void setup_discover(const Command& app) {
   auto options = std::make_shared<DiscoverCommand>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "discover", "Find the effects that a model is missing, add and fit them, one by one");
-  add_model_recordings(*command, options->input);
-  command->add_option("--out", options->out, "Write the model found (TOML)")->type_name("FILE");
-  command->add_option("--most", options->most, "Effects to add at most")->capture_default_str();
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->footer(
+  add_model_recordings(command, options->input);
+  command.add_option("--out", options->out, "Write the model found (TOML)").type_name("FILE");
+  command.add_option("--most", options->most, "Effects to add at most").capture_default_str();
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.footer(
       "The table has one line per model, always over the same held-out legs. \"predicted\" is "
       "what\n"
       "the diagnosis predicted before the fit. The page (--html) adds each effect's curve.");
-  command->callback([options] { run_discover(*options); });
+  command.callback([options] { run_discover(*options); });
 }
 
 }  // namespace trussmap::app

@@ -150,20 +150,20 @@ void run_fit(const FitCommand& options) {
 
 }  // namespace
 
-void setup_fit(CLI::App& app) {
+void setup_fit(const Command& app) {
   auto options = std::make_shared<FitCommand>();
-  CLI::App* command =
+  const Command command =
       app.add_subcommand("fit", "Estimate the coefficients of a model's effects from recordings");
-  add_model_recordings(*command, options->input);
-  command->add_option("--out", options->out, "Write the model with its coefficients (TOML)")
-      ->type_name("FILE");
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->footer(
+  add_model_recordings(command, options->input);
+  command.add_option("--out", options->out, "Write the model with its coefficients (TOML)")
+      .type_name("FILE");
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.footer(
       "Effects without coefficients start at 0. A coefficient that these recordings cannot show "
       "is\n"
       "left as it was, and named. The held-out figures are those of a fit without these legs.");
-  command->callback([options] { run_fit(*options); });
+  command.callback([options] { run_fit(*options); });
 }
 
 }  // namespace trussmap::app

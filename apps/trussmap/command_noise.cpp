@@ -226,31 +226,31 @@ constexpr const char* kFooter =
 
 }  // namespace
 
-void setup_noise(CLI::App& app) {
+void setup_noise(const Command& app) {
   auto options = std::make_shared<NoiseOptions>();
   options->tape.runs = 60;
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "noise",
       "Measure how noisy each wheel is: one path driven many times, k of both wheels by maximum "
       "likelihood (Chong & Kleeman 1997).");
-  command->add_option("RUNS", options->file, "End errors of the runs (CSV)")->type_name("FILE");
-  command->add_option("--path", options->path, "Path driven in every run")
-      ->type_name("PATH")
-      ->capture_default_str();
+  command.add_option("RUNS", options->file, "End errors of the runs (CSV)").type_name("FILE");
+  command.add_option("--path", options->path, "Path driven in every run")
+      .type_name("PATH")
+      .capture_default_str();
   command
-      ->add_option("--sensor-sd", options->sensor_sd,
-                   "Noise of the measured ends, standard deviations x,y,heading [m, m, rad]; "
-                   "0,0,0 if left out")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(zero_or_more())
-      ->type_name("X,Y,HEADING");
-  command->add_flag("--subtract-mean", options->subtract_mean,
-                    "Take the mean of the runs as a systematic error, not as noise");
-  add_tape_options(*command, options->tape);
-  command->footer(kFooter);
-  command->callback([options, command] {
-    check_source(*command, !options->file.empty());
+      .add_option("--sensor-sd", options->sensor_sd,
+                  "Noise of the measured ends, standard deviations x,y,heading [m, m, rad]; "
+                  "0,0,0 if left out")
+      .delimiter(',')
+      .expected(3)
+      .check(zero_or_more())
+      .type_name("X,Y,HEADING");
+  command.add_flag("--subtract-mean", options->subtract_mean,
+                   "Take the mean of the runs as a systematic error, not as noise");
+  add_tape_options(command, options->tape);
+  command.footer(kFooter);
+  command.callback([options, command] {
+    check_source(command, !options->file.empty());
     run_noise(*options);
   });
 }

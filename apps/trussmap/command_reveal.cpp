@@ -10,7 +10,6 @@
 #include <memory>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -31,14 +30,14 @@ void run_reveal(const RevealOptions& options) {
 
 }  // namespace
 
-void setup_reveal(CLI::App& app) {
+void setup_reveal(const Command& app) {
   auto options = std::make_shared<RevealOptions>();
-  CLI::App& command =
-      *app.add_subcommand("reveal", "Open the answer that simulate --hide sealed: the effects.");
+  const Command command =
+      app.add_subcommand("reveal", "Open the answer that simulate --hide sealed: the effects.");
   command.add_option("FOLDER", options->folder, "Recording that simulate --hide wrote")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--json", options->json, "Write the answer as JSON")->type_name("FILE");
+      .required()
+      .type_name("DIR");
+  command.add_option("--json", options->json, "Write the answer as JSON").type_name("FILE");
   command.callback([options] { run_reveal(*options); });
 }
 

@@ -19,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -135,15 +134,15 @@ void run_simulate(const SimulateOptions& options) {
 
 }  // namespace
 
-void setup_simulate(CLI::App& app) {
+void setup_simulate(const Command& app) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App& command = *app.add_subcommand(
+  const Command command = app.add_subcommand(
       "simulate",
       "Write the recording of a simulated robot with two wheels, a compass and an eye for "
       "landmarks "
       "that tours a square mesh of landmarks, with a survey and the robot's model.");
   add_simulate_options(command, *options);
-  command.callback([options, &command] {
+  command.callback([options, command] {
     if (options->hide && command.count("--seed") == 0) {
       options->seed = std::random_device()();
       options->seed_drawn = true;

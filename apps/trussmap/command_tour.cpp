@@ -162,63 +162,62 @@ void run_tour(const CommandOptions& options) {
   print_result(result, options);
 }
 
-void add_world(CLI::App& command, CommandOptions& options) {
+void add_world(const Command& command, CommandOptions& options) {
   command.add_option("--mesh", options.mesh, "Landmarks along x and along y, like 6x6")
-      ->type_name("NxN")
-      ->capture_default_str();
+      .type_name("NxN")
+      .capture_default_str();
   command.add_option("--spacing", options.spacing, "Distance between neighbours [m]")
-      ->check(above_zero())
-      ->capture_default_str();
+      .check(above_zero())
+      .capture_default_str();
   command
       .add_option("--x-lines", options.x_lines,
                   "Uneven mesh: x of its columns [m], like 0,1,9,11 (with --y-lines)")
-      ->type_name("X,X...")
-      ->delimiter(',');
+      .type_name("X,X...")
+      .delimiter(',');
   command.add_option("--y-lines", options.y_lines, "Uneven mesh: y of its rows [m]")
-      ->type_name("X,X...")
-      ->delimiter(',');
+      .type_name("X,X...")
+      .delimiter(',');
   command.add_option("--walk", options.walk, "How a tour covers the routes; drawn anew each tour")
-      ->check(CLI::IsMember({"euler", "face", "depth-first", "random"}))
-      ->capture_default_str();
+      .check(one_of({"euler", "face", "depth-first", "random"}))
+      .capture_default_str();
 }
 
 }  // namespace
 
-void setup_tour(CLI::App& app) {
+void setup_tour(const Command& app) {
   auto options = std::make_shared<CommandOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "tour", "Tour a simulated mesh again and again and compare all methods with the truth");
-  add_world(*command, *options);
-  command->add_option("--tours", options->tours, "Number of tours")
-      ->check(whole_number(1))
-      ->capture_default_str();
-  command->add_option("--seeds", options->seeds, "Average over this many seeds")
-      ->check(whole_number(1))
-      ->capture_default_str();
-  command->add_option("--first-seed", options->first_seed, "The first of them")
-      ->check(whole_number(0))
-      ->capture_default_str();
+  add_world(command, *options);
+  command.add_option("--tours", options->tours, "Number of tours")
+      .check(whole_number(1))
+      .capture_default_str();
+  command.add_option("--seeds", options->seeds, "Average over this many seeds")
+      .check(whole_number(1))
+      .capture_default_str();
+  command.add_option("--first-seed", options->first_seed, "The first of them")
+      .check(whole_number(0))
+      .capture_default_str();
   command
-      ->add_option("--odometry-error", options->odometry_error,
-                   "Mean absolute error of a route's stretch, as a fraction of it")
-      ->check(above_zero())
-      ->capture_default_str();
+      .add_option("--odometry-error", options->odometry_error,
+                  "Mean absolute error of a route's stretch, as a fraction of it")
+      .check(above_zero())
+      .capture_default_str();
   command
-      ->add_option("--compass-error", options->compass_error,
-                   "Mean absolute error of a route's orientation [rad]")
-      ->check(above_zero())
-      ->capture_default_str();
+      .add_option("--compass-error", options->compass_error,
+                  "Mean absolute error of a route's orientation [rad]")
+      .check(above_zero())
+      .capture_default_str();
   command
-      ->add_option("--eta", options->eta,
-                   "Landmarks a refinement may move: a number, all, or auto (estimated each time)")
-      ->type_name("N|all|auto")
-      ->check(eta_text())
-      ->capture_default_str();
-  command->add_option("--json", options->json_file, "Write every figure as JSON")
-      ->type_name("FILE");
-  add_html_option(*command, options->page);
-  add_plots_option(*command, options->page);
-  command->callback([options] { run_tour(*options); });
+      .add_option("--eta", options->eta,
+                  "Landmarks a refinement may move: a number, all, or auto (estimated each time)")
+      .type_name("N|all|auto")
+      .check(eta_text())
+      .capture_default_str();
+  command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.callback([options] { run_tour(*options); });
 }
 
 }  // namespace trussmap::app

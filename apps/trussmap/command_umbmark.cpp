@@ -134,32 +134,32 @@ constexpr const char* kFooter =
 
 }  // namespace
 
-void setup_umbmark(CLI::App& app) {
+void setup_umbmark(const Command& app) {
   auto options = std::make_shared<UmbmarkOptions>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "umbmark",
       "Calibrate wheel diameters and wheelbase with a tape measure: squares driven in both "
       "directions (UMBmark; Borenstein & Feng 1996), by the papers' formulas and exactly.");
-  command->add_option("RUNS", options->files, "End errors of the runs (CSV), a file per round")
-      ->type_name("FILE");
-  command->add_option("--side", options->side, "Side of the square [m]")
-      ->check(above_zero())
-      ->capture_default_str();
+  command.add_option("RUNS", options->files, "End errors of the runs (CSV), a file per round")
+      .type_name("FILE");
+  command.add_option("--side", options->side, "Side of the square [m]")
+      .check(above_zero())
+      .capture_default_str();
   command
-      ->add_option("--solution", options->solution,
-                   "What to correct by: exact (right for large errors too) or formulas (the "
-                   "papers', for small angles)")
-      ->check(CLI::IsMember({"exact", "formulas"}))
-      ->capture_default_str();
-  add_tape_options(*command, options->tape);
+      .add_option("--solution", options->solution,
+                  "What to correct by: exact (right for large errors too) or formulas (the "
+                  "papers', for small angles)")
+      .check(one_of({"exact", "formulas"}))
+      .capture_default_str();
+  add_tape_options(command, options->tape);
   command
-      ->add_option("--rounds", options->rounds, "Rounds, each with the corrections of those before")
-      ->check(whole_number(1))
-      ->capture_default_str()
-      ->group("Rehearsal with a simulated robot");
-  command->footer(kFooter);
-  command->callback([options, command] {
-    check_source(*command, !options->files.empty());
+      .add_option("--rounds", options->rounds, "Rounds, each with the corrections of those before")
+      .check(whole_number(1))
+      .capture_default_str()
+      .group("Rehearsal with a simulated robot");
+  command.footer(kFooter);
+  command.callback([options, command] {
+    check_source(command, !options->files.empty());
     run_umbmark(*options);
   });
 }

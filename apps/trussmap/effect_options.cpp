@@ -81,18 +81,18 @@ Effect applicable(const Effect& effect) {
 
 }  // namespace
 
-void add_effect_options(CLI::App& command, EffectOptions& options) {
+void add_effect_options(const Command& command, EffectOptions& options) {
   command
       .add_option("--effect", options.named,
                   "A physical effect of the catalogue (its names: below), "
                   "with a coefficient per shape; again for more effects")
-      ->type_name("NAME=X[,X...]")
-      ->allow_extra_args(false);
+      .type_name("NAME=X[,X...]")
+      .one_value_each();
   command
       .add_option(
           "--effects", options.model,
           "Model whose [[effect]]s, with their coefficients, act too: any channel and shape")
-      ->type_name("FILE");
+      .type_name("FILE");
 }
 
 std::vector<Effect> effects_of(const EffectOptions& options) {

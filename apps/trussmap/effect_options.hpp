@@ -5,12 +5,12 @@
 // effects of a model file.
 #pragma once
 
+#include "command_line.hpp"
 #include "trussmap/model.hpp"
 
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 namespace trussmap::app {
@@ -20,7 +20,7 @@ struct EffectOptions {
   std::string model;               ///< file; "" = none
 };
 
-void add_effect_options(CLI::App& command, EffectOptions& options);
+void add_effect_options(const Command& command, EffectOptions& options);
 
 /// The model's effects, then the named ones: each with channel, shape and coefficients. Throws
 /// UsageError, in one line.

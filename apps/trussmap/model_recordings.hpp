@@ -4,14 +4,13 @@
 // What compare, fit and their like have in common: a model, recordings, and what of them to use.
 #pragma once
 
+#include "command_line.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
 
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace trussmap::app {
 
@@ -26,7 +25,7 @@ struct ModelRecordingsOptions {
 };
 
 /// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --level.
-void add_model_recordings(CLI::App& command, ModelRecordingsOptions& options);
+void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
 
 struct ModelRecordings {
   Model model;

@@ -23,14 +23,14 @@ PageRuntime page_runtime() {
           {trussmap_page_script, trussmap_page_script_end}};
 }
 
-void add_html_option(CLI::App& command, PageOptions& options) {
+void add_html_option(const Command& command, PageOptions& options) {
   command.add_option("--html", options.html, "Write a page with charts, one file (HTML)")
-      ->type_name("FILE");
+      .type_name("FILE");
 }
 
-void add_plots_option(CLI::App& command, PageOptions& options) {
+void add_plots_option(const Command& command, PageOptions& options) {
   command.add_option("--plots", options.plots, "Folder to write the charts to, one by one (SVG)")
-      ->type_name("DIR");
+      .type_name("DIR");
 }
 
 void add_page(Files& files, const Page& page, const PageOptions& options) {

@@ -4,14 +4,13 @@
 // --html: style sheet and script are part of the executable.
 #pragma once
 
+#include "command_line.hpp"
 #include "trussmap/pages.hpp"
 
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace trussmap::app {
 
@@ -25,8 +24,8 @@ struct PageOptions {
   [[nodiscard]] bool wanted() const { return !html.empty() || !plots.empty(); }
 };
 
-void add_html_option(CLI::App& command, PageOptions& options);
-void add_plots_option(CLI::App& command, PageOptions& options);
+void add_html_option(const Command& command, PageOptions& options);
+void add_plots_option(const Command& command, PageOptions& options);
 
 using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
 

@@ -15,13 +15,13 @@ constexpr double kJitterShare = 0.06;  // and landmarks moved by up to this time
 constexpr double kRestShare = 0.1;
 constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
 
-void add_driving_options(CLI::App& command, SimulateOptions& options) {
+void add_driving_options(const Command& command, SimulateOptions& options) {
   const auto add_pair = [&](const char* name, std::vector<double>& value, const char* help) {
     command.add_option(name, value, help)
-        ->delimiter(',')
-        ->expected(2)
-        ->check(above_zero())
-        ->capture_default_str();
+        .delimiter(',')
+        .expected(2)
+        .check(above_zero())
+        .capture_default_str();
   };
   add_pair("--speeds", options.speeds, "Slowest and fastest leg [m/s], like 0.25,0.9");
   add_pair("--turn-rates", options.turn_rates,
@@ -29,55 +29,55 @@ void add_driving_options(CLI::App& command, SimulateOptions& options) {
   command
       .add_option("--ramp", options.ramp,
                   "Time in which a drive reaches its speed and leaves it [s]")
-      ->check(zero_or_more())
-      ->capture_default_str();
+      .check(zero_or_more())
+      .capture_default_str();
   command
       .add_option("--overrun", options.overrun,
                   "How far the robot drives on before it turns, so that it sees landmarks in "
                   "passing [m]; 0.4 with a delay of the sightings, else 0")
-      ->check(zero_or_more());
+      .check(zero_or_more());
   command
       .add_option("--covariate", options.covariates,
                   "A further column, between 0 and 1, anew at one stop in two; payload_kg, lights "
                   "and temperature_C are always there; again for more")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
+      .type_name("NAME")
+      .one_value_each();
 }
 
-void add_world_options(CLI::App& command, SimulateOptions& options) {
+void add_world_options(const Command& command, SimulateOptions& options) {
   command.add_option("--mesh", options.mesh, "Landmarks along x and along y, like 6x6")
-      ->type_name("NxN")
-      ->capture_default_str();
+      .type_name("NxN")
+      .capture_default_str();
   command.add_option("--spacing", options.spacing, "Distance between neighbours [m]")
-      ->check(above_zero())
-      ->capture_default_str();
+      .check(above_zero())
+      .capture_default_str();
   command.add_flag("--uneven", options.uneven,
                    "Random distances (0.6 to 1.4 of the spacing) and landmarks a little off the "
                    "lines");
   command
       .add_option("--walk", options.walk, "How a tour covers the routes; each tour is drawn anew")
-      ->check(CLI::IsMember({"euler", "face", "depth-first", "random"}))
-      ->capture_default_str();
+      .check(one_of({"euler", "face", "depth-first", "random"}))
+      .capture_default_str();
   command.add_option("--tours", options.tours, "Number of tours")
-      ->check(whole_number(1))
-      ->capture_default_str();
+      .check(whole_number(1))
+      .capture_default_str();
   command
       .add_option("--seed", options.seed,
                   "The same seed gives the same recording; --hide without it draws one")
-      ->check(whole_number(0))
-      ->capture_default_str();
+      .check(whole_number(0))
+      .capture_default_str();
   command.add_flag("--rests", options.rests, "Rest for 2 to 20 s at one stop in ten");
   command
       .add_option("--full-turns", options.full_turns,
                   "Stops at which the robot turns round twice to the left and twice to the right")
-      ->check(whole_number(0))
-      ->capture_default_str();
+      .check(whole_number(0))
+      .capture_default_str();
   add_driving_options(command, options);
 }
 
-void add_robot_options(CLI::App& command, SimulateOptions& options) {
+void add_robot_options(const Command& command, SimulateOptions& options) {
   const auto add_positive = [&](const char* name, double& value, const char* help) {
-    command.add_option(name, value, help)->check(above_zero())->capture_default_str();
+    command.add_option(name, value, help).check(above_zero()).capture_default_str();
   };
   add_positive("--wheelbase", options.wheelbase, "Distance of the wheels [m]");
   add_positive("--wheel-noise", options.wheel_noise,
@@ -155,7 +155,7 @@ Model nominal_model(const SimulateOptions& options) {
   return model;
 }
 
-void add_simulate_options(CLI::App& command, SimulateOptions& options) {
+void add_simulate_options(const Command& command, SimulateOptions& options) {
   add_world_options(command, options);
   add_robot_options(command, options);
   add_effect_options(command, options.effects);
@@ -165,17 +165,17 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
   command
       .add_flag("--hide", options.hide,
                 "Draw one or two effects from the catalogue; truth.json seals which (see reveal)")
-      ->excludes("--effect")
-      ->excludes("--effects");
+      .excludes("--effect")
+      .excludes("--effects");
   command.footer(catalogue_text());
   command.add_flag("--no-survey", options.no_survey, "Write no survey.csv");
   command
       .add_option("--out", options.out,
                   "Folder to write drive.csv, sightings.csv, survey.csv and model.toml to; a "
                   "recording that is there already is replaced")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--json", options.json, "Write every figure as JSON")->type_name("FILE");
+      .required()
+      .type_name("DIR");
+  command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
 }
 
 }  // namespace trussmap::app

@@ -4,6 +4,7 @@
 // Options of trussmap simulate, and the world, robot and driving style that they describe.
 #pragma once
 
+#include "command_line.hpp"
 #include "effect_options.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
@@ -11,8 +12,6 @@
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace trussmap::app {
 
@@ -62,6 +61,6 @@ struct SimulateOptions {
 /// the noise in its model, since measurements are weighted by it.
 [[nodiscard]] Model nominal_model(const SimulateOptions& options);
 
-void add_simulate_options(CLI::App& command, SimulateOptions& options);
+void add_simulate_options(const Command& command, SimulateOptions& options);
 
 }  // namespace trussmap::app

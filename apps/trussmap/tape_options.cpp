@@ -12,25 +12,24 @@
 
 namespace trussmap::app {
 
-void add_tape_options(CLI::App& command, TapeOptions& options) {
+void add_tape_options(const Command& command, TapeOptions& options) {
   command
       .add_option("--wheelbase", options.wheelbase,
                   "Distance of the wheels that the robot calculates with [m]; may be left out with "
                   "--model, which has it, and with --simulate (0.34 then)")
-      ->check(above_zero());
-  command.add_option("--model", options.model, "Model to start from (TOML)")->type_name("FILE");
+      .check(above_zero());
+  command.add_option("--model", options.model, "Model to start from (TOML)").type_name("FILE");
   command.add_option("--out", options.out, "Write the model with what was found (TOML)")
-      ->type_name("FILE");
-  command.add_option("--json", options.json, "Write every figure as JSON")->type_name("FILE");
+      .type_name("FILE");
+  command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
   add_html_option(command, options.page);
   add_plots_option(command, options.page);
 
   const std::string group = "Rehearsal with a simulated robot";
   command.add_flag("--simulate", options.simulate, "Let a simulated robot make the runs")
-      ->group(group);
-  const auto add = [&](const char* name, double& value, const CLI::Validator& check,
-                       const char* help) {
-    command.add_option(name, value, help)->check(check)->capture_default_str()->group(group);
+      .group(group);
+  const auto add = [&](const char* name, double& value, const Check& check, const char* help) {
+    command.add_option(name, value, help).check(check).capture_default_str().group(group);
   };
   add("--true-E-d", options.true_e_d, above_zero(), "Its right wheel over its left");
   add("--true-E-b", options.true_e_b, above_zero(), "Its true wheelbase over the nominal one");
@@ -41,30 +40,28 @@ void add_tape_options(CLI::App& command, TapeOptions& options) {
   add("--scatter-heading", options.scatter_heading, zero_or_more(),
       "Error of a measured end heading [rad, standard deviation]");
   command.add_option("--runs", options.runs, "Number of runs; of umbmark, in each direction")
-      ->check(whole_number(2))
-      ->capture_default_str()
-      ->group(group);
+      .check(whole_number(2))
+      .capture_default_str()
+      .group(group);
   command.add_option("--seed", options.seed, "The same seed gives the same runs")
-      ->check(whole_number(0))
-      ->capture_default_str()
-      ->group(group);
+      .check(whole_number(0))
+      .capture_default_str()
+      .group(group);
   command.add_option("--write", options.write, "Write the runs as CSV")
-      ->type_name("FILE")
-      ->group(group);
+      .type_name("FILE")
+      .group(group);
 }
 
-void check_source(const CLI::App& command, bool has_files) {
+void check_source(const Command& command, bool has_files) {
   const bool simulate = command.count("--simulate") > 0;
   if (simulate && has_files) {
     throw UsageError("both RUNS.csv and --simulate are given, expected one of them");
   }
   if (!simulate && !has_files) throw UsageError("no runs, expected RUNS.csv or --simulate");
   if (simulate) return;
-  for (const CLI::Option* option : command.get_options()) {
-    const bool rehearsal = option->get_group().rfind("Rehearsal", 0) == 0;
-    if (rehearsal && option->count() > 0) {
-      throw UsageError(option->get_name() + " is given without --simulate, to which it belongs");
-    }
+  const std::string given = command.given_of_group("Rehearsal");
+  if (!given.empty()) {
+    throw UsageError(given + " is given without --simulate, to which it belongs");
   }
 }
 

@@ -5,6 +5,7 @@
 // that rehearses them, and tables of estimates.
 #pragma once
 
+#include "command_line.hpp"
 #include "page_runtime.hpp"
 #include "trussmap/estimate.hpp"
 #include "trussmap/model.hpp"
@@ -14,8 +15,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
 
 namespace trussmap::app {
 
@@ -37,10 +36,10 @@ struct TapeOptions {
   std::string write;
 };
 
-void add_tape_options(CLI::App& command, TapeOptions& options);
+void add_tape_options(const Command& command, TapeOptions& options);
 
 /// Refuses neither or both of runs and --simulate, and options that go with --simulate alone.
-void check_source(const CLI::App& command, bool has_files);
+void check_source(const Command& command, bool has_files);
 
 /// The model given, or one with the wheelbase alone. Throws UsageError without either.
 [[nodiscard]] Model starting_model(const TapeOptions& options);

@@ -76,6 +76,9 @@ struct WheelCalibration {
   TruthAlignment truth;
   double chi2 = 0.0;
   int dof = 0;
+  /// False where the last round still moved an estimate by more than a tenth of its standard error:
+  /// the recordings contradict wheels that differ in these figures alone, which then mean little.
+  bool settled = true;
   std::vector<std::string> undetermined;  ///< what was not determined, and why
 };
 

@@ -4,11 +4,10 @@
 // How far runs end from where the noise model has them, and from when on that is too far.
 #pragma once
 
+#include "linalg/dense.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <vector>
-
-#include <Eigen/Cholesky>
 
 namespace trussmap {
 
@@ -19,7 +18,7 @@ inline constexpr double kBadNoiseFit = 0.01;  ///< p-value
                                                            const NoiseEstimate& estimate,
                                                            const std::vector<int>& coordinates) {
   const Eigen::MatrixXd covariance = estimate.modelled(coordinates, coordinates);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
+  const DenseLdlt factor(covariance);
   std::vector<double> result;
   for (const Eigen::Vector3d& e : errors) {
     const Eigen::VectorXd off = (e - estimate.centre)(coordinates);

@@ -204,6 +204,14 @@ void read_ratios(WheelCalibration& result, const std::array<double, 3>& g,
   if (wanted[2]) result.scale = Calibrated{e_s, e_s * sd()};
 }
 
+/// Whether a round moved no estimate by more than `kStill` of its standard error.
+bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) {
+  constexpr double kStill = 0.1;
+  const Eigen::ArrayXd steps = adjustment.coefficients.head(geometry).array().abs();
+  const Eigen::ArrayXd variances = adjustment.coefficient_covariance.diagonal().head(geometry);
+  return (steps <= kStill * variances.sqrt()).all();
+}
+
 /// Wheels that run backwards, or change sides: the truth is not what it is said to be.
 void require_positive(const std::array<double, 3>& g, const std::array<bool, 3>& wanted,
                       const std::vector<Recording>& recordings, const Model& model,
@@ -261,6 +269,7 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
     if (noise) find_noise(last, options.problem, result);
   }
   read_ratios(result, g, wanted, last.adjustment);
+  result.settled = stands_still(last.adjustment, geometry);
   return result;
 }
 

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 #include "fit/fit_state.hpp"
+#include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
 
 namespace trussmap {
 namespace {
@@ -242,7 +241,7 @@ class Discoverer {
     if (places.empty()) return 0.0;
     const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
     const Eigen::VectorXd a = fit.adjustment.coefficients(places);
-    return a.dot(C.ldlt().solve(a));
+    return a.dot(DenseLdlt(C).solve(a));
   }
 
   const std::vector<Recording>& recordings_;

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/event_scores.hpp"
 
+#include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -34,8 +33,8 @@ double effective_tries(const Eigen::MatrixXd& S, Eigen::Index width) {
       }
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(overlap);
-  const Eigen::ArrayXd l = axes.eigenvalues().array().max(0.0);
+  const SymmetricModes axes = symmetric_modes(overlap);
+  const Eigen::ArrayXd l = axes.eigenvalues.array().max(0.0);
   return l.sum() > 0.0 ? std::pow(l.sqrt().sum(), 2) / l.sum() : 1.0;
 }
 
@@ -193,14 +192,14 @@ class Scorer {
       const Eigen::VectorXd sds = prior_sd(seen);
       scaled.diagonal() += dispersion * scale.cwiseAbs2().cwiseQuotient(sds.cwiseAbs2());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(scaled);
-    const Eigen::VectorXd along = axes.eigenvectors().transpose() * scale.cwiseProduct(g(seen));
+    const SymmetricModes axes = symmetric_modes(scaled);
+    const Eigen::VectorXd along = axes.eigenvectors.transpose() * scale.cwiseProduct(g(seen));
     Eigen::VectorXd size = Eigen::VectorXd::Zero(along.size());
     for (Eigen::Index k = 0; k < along.size(); ++k) {
-      if (axes.eigenvalues()[k] < kUnchecked) continue;
+      if (axes.eigenvalues[k] < kUnchecked) continue;
       ++result.dof;
-      result.score += along[k] * along[k] / axes.eigenvalues()[k];
-      size -= along[k] / axes.eigenvalues()[k] * axes.eigenvectors().col(k);
+      result.score += along[k] * along[k] / axes.eigenvalues[k];
+      size -= along[k] / axes.eigenvalues[k] * axes.eigenvectors.col(k);
     }
     result.size(seen) = scale.cwiseProduct(size);
     const double left = dof > result.dof ? (chi2 - result.score) / (dof - result.dof) : 1.0;

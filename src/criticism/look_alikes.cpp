@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/look_alikes.hpp"
 
-#include <algorithm>
+#include "linalg/dense.hpp"
 
-#include <Eigen/QR>
+#include <algorithm>
 
 namespace trussmap {
 namespace {
@@ -37,8 +37,8 @@ std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>&
   }
   visit_scores(tests, rivals, Resolution::exact, [&](std::size_t k, const Score& score) {
     if (score.dof == 0) return;
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(score.projected);
-    const double cosine = (score.projected * factor.solve(trace)).norm() / length;
+    const Eigen::VectorXd nearest = least_squares(score.projected, trace);
+    const double cosine = (score.projected * nearest).norm() / length;
     if (cosine >= kLeastCosine) alike.push_back({rivals[k].effect, std::min(1.0, cosine)});
   });
   std::stable_sort(alike.begin(), alike.end(),

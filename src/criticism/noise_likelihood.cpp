@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/noise_likelihood.hpp"
 
+#include "linalg/dense.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -55,8 +56,8 @@ double NoiseLikelihood::minus_two_log() {
   Eigen::VectorXd left = system_.residuals() + system_.times(step.nodes);
   if (M.cols() > 0) left += M * step.coefficients;
   const Eigen::VectorXd g = nuisance_.transpose() * left;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(S);
-  return sum + factor.vectorD().array().abs().log().sum() - g.dot(factor.solve(g));
+  const DenseLdlt factor(S);
+  return sum + factor.log_determinant() - g.dot(factor.solve(g));
 }
 
 double NoiseLikelihood::deviance(const NoiseLaw& law, double variance) {

@@ -5,6 +5,7 @@
 #include "criticism/noise_laws.hpp"
 #include "criticism/noise_likelihood.hpp"
 #include "fit/fit_projection.hpp"
+#include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/multiple_tests.hpp"
 
@@ -12,8 +13,6 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -151,14 +150,13 @@ class ShapeStatistics {
 
   void add_measurement(std::size_t k, const Measurement& one, const FitProjection& P) {
     if (P.left_out(k)) return;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(P.own_block(k));
+    const SymmetricModes axes = symmetric_modes(P.own_block(k));
     Eigen::Index checked = 0;
-    for (Eigen::Index a = 0; a < one.rows; ++a) checked += axes.eigenvalues()[a] > kUnchecked;
+    for (Eigen::Index a = 0; a < one.rows; ++a) checked += axes.eigenvalues[a] > kUnchecked;
     if (checked == 0) return;
     Standardised result{system_.first_row(k), Eigen::MatrixXd(checked, one.rows)};
     for (Eigen::Index a = one.rows - checked, row = 0; a < one.rows; ++a, ++row) {
-      result.root.row(row) =
-          axes.eigenvectors().col(a).transpose() / std::sqrt(axes.eigenvalues()[a]);
+      result.root.row(row) = axes.eigenvectors.col(a).transpose() / std::sqrt(axes.eigenvalues[a]);
     }
     standardised_.push_back(std::move(result));
   }
@@ -212,8 +210,8 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
                                        const Eigen::MatrixXd& nuisance) {
   const RecordingProblem& problem = fit.problem;
   const RecordingSystem& system = tests.system();
-  const Eigen::MatrixXd apart =
-      nuisance.cols() > 0 ? orthonormal(nuisance) : Eigen::MatrixXd(system.rows(), 0);
+  const Eigen::MatrixXd apart = nuisance.cols() > 0 ? orthonormal_basis(nuisance, kSameDirection)
+                                                    : Eigen::MatrixXd(system.rows(), 0);
   const FitProjection P(fit, problem, system, apart);
   std::vector<Eigen::MatrixXd> own;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));

@@ -5,14 +5,13 @@
 #include "criticism/response_bins.hpp"
 #include "effects/place.hpp"
 #include "effects/place_patterns.hpp"
+#include "linalg/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <stdexcept>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -36,27 +35,27 @@ void estimate(Response& response, const Score& score, double prior_sd, const Fit
   std::vector<ResponseBin>& bins = response.bins;
   const Eigen::MatrixXd& M = score.projected;
   const Eigen::MatrixXd S = M.transpose() * M;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(S);
+  const SymmetricModes modes = symmetric_modes(S);
   const double least =
       9.0 * tests.dispersion() / (prior_sd * prior_sd * static_cast<double>(bins.size()));
-  const Eigen::VectorXd g = modes.eigenvectors().transpose() * (M.transpose() * tests.residuals());
+  const Eigen::VectorXd g = modes.eigenvectors.transpose() * (M.transpose() * tests.residuals());
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(S.rows());
   double explained = 0.0;
   for (Eigen::Index mode = 0; mode < S.rows(); ++mode) {
-    if (modes.eigenvalues()[mode] < least) continue;
-    inverse[mode] = 1.0 / modes.eigenvalues()[mode];
+    if (modes.eigenvalues[mode] < least) continue;
+    inverse[mode] = 1.0 / modes.eigenvalues[mode];
     explained += g[mode] * g[mode] * inverse[mode];
   }
   const double left = tests.residuals().squaredNorm() - explained;
   const double dof = static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
-  const Eigen::MatrixXd projected = modes.eigenvectors() * inverse.asDiagonal() *
-                                    modes.eigenvectors().transpose() * (M.transpose() * traces);
+  const Eigen::MatrixXd projected = modes.eigenvectors * inverse.asDiagonal() *
+                                    modes.eigenvectors.transpose() * (M.transpose() * traces);
   response.rivals.resize(static_cast<std::size_t>(traces.cols()));
   const double dispersion = dof > 0.0 ? std::max(1.0, left / dof) : tests.dispersion();
   std::vector<ResponseBin> seen;
   for (Eigen::Index k = 0; k < S.rows(); ++k) {
     if (!(S(k, k) > 0.0)) continue;
-    const Eigen::VectorXd part = modes.eigenvectors().row(k);
+    const Eigen::VectorXd part = modes.eigenvectors.row(k);
     ResponseBin bin = bins[static_cast<std::size_t>(k)];
     bin.estimate = -part.dot(inverse.cwiseProduct(g));
     bin.sd = std::sqrt(dispersion * part.dot(inverse.cwiseProduct(part)));

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/score_test.hpp"
 
+#include "linalg/dense.hpp"
 #include "recording/row_variables.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 namespace trussmap {
 namespace {
@@ -90,11 +87,11 @@ void ScoreTest::condition_on(const Eigen::MatrixXd& columns) {
     left.col(kept++) = left.col(k).normalized();
   }
   if (kept == 0) return;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(left.leftCols(kept));
-  const Eigen::Index rank = factor.rank();
+  const Eigen::MatrixXd basis = orthonormal_basis(left.leftCols(kept));
+  const Eigen::Index rank = basis.cols();
   const Eigen::Index had = present_.cols();
   present_.conservativeResize(Eigen::NoChange, had + rank);
-  present_.rightCols(rank) = factor.householderQ() * Eigen::MatrixXd::Identity(left.rows(), rank);
+  present_.rightCols(rank) = basis;
   residuals_ -= present_.rightCols(rank) * (present_.rightCols(rank).transpose() * residuals_);
 }
 
@@ -138,15 +135,14 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
   const Eigen::VectorXd g = M.transpose() * residuals_;
   Eigen::MatrixXd with_prior = S;
   with_prior.diagonal() += prior;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(with_prior);
+  const DenseLdlt factor(with_prior);
   const Eigen::VectorXd estimate = -factor.solve(g);
-  const Eigen::MatrixXd covariance = factor.solve(Eigen::MatrixXd::Identity(dof, dof));
+  const Eigen::MatrixXd covariance = factor.inverse();
   result.score = std::max(0.0, -g.dot(estimate));
   // Shapes that are nearly the same count once.
   const Eigen::VectorXd scale = with_prior.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scale.asDiagonal() * S *
-                                                             scale.asDiagonal());
-  for (Eigen::Index k = 0; k < dof; ++k) result.dof += modes.eigenvalues()[k] > 1e-6 ? 1 : 0;
+  const SymmetricModes modes = symmetric_modes(scale.asDiagonal() * S * scale.asDiagonal());
+  for (Eigen::Index k = 0; k < dof; ++k) result.dof += modes.eigenvalues[k] > 1e-6 ? 1 : 0;
   result.p_value = chi2_p_value(result.score, result.dof);
   for (Eigen::Index k = 0; k < dof; ++k) {
     const auto place = static_cast<std::size_t>(seen[static_cast<std::size_t>(k)]);
@@ -230,8 +226,8 @@ double ScoreTest::joint_score(const std::vector<Effect>& effects) const {
     M.rightCols(one.projected.cols()) = one.projected;
   }
   if (M.cols() == 0) return 0.0;
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(M);
-  return (M * factor.solve(residuals_)).squaredNorm();
+  const Eigen::VectorXd nearest = least_squares(M, residuals_);
+  return (M * nearest).squaredNorm();
 }
 
 }  // namespace trussmap

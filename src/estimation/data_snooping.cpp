@@ -3,6 +3,7 @@
 #include "estimation/data_snooping.hpp"
 
 #include "estimation/recording_system.hpp"
+#include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/multiple_tests.hpp"
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -22,12 +22,12 @@ constexpr double kNoncentrality = 17.08;
 /// r' R^-1 r over what is checked, and how many directions that are.
 void test_against_others(const Eigen::VectorXd& r, const Eigen::MatrixXd& R,
                          CheckedMeasurement& result) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(R);
+  const SymmetricModes axes = symmetric_modes(R);
   for (Eigen::Index k = 0; k < r.size(); ++k) {
-    const double share = axes.eigenvalues()[k];
+    const double share = axes.eigenvalues[k];
     if (share < kUnchecked) continue;
     ++result.checked;
-    result.statistic += std::pow(axes.eigenvectors().col(k).dot(r), 2) / share;
+    result.statistic += std::pow(axes.eigenvectors.col(k).dot(r), 2) / share;
   }
   result.p_value = chi2_p_value(result.statistic, result.checked);
 }

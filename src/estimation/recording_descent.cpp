@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_descent.hpp"
 
+#include "linalg/dense.hpp"
 #include "linalg/loose_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -79,13 +78,13 @@ std::vector<int> find_undetermined(const RecordingSystem& system) {
   constexpr double kShare = 0.1;  // of the eigenvector, to be worth naming
   const Eigen::MatrixXd schur = system.scaled_schur();
   if (schur.cols() == 0) return {};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(schur);
+  const SymmetricModes modes = symmetric_modes(schur);
   std::vector<int> result;
   for (Eigen::Index c = 0; c < schur.cols(); ++c) {
     double share = 0.0;
     for (Eigen::Index k = 0; k < schur.cols(); ++k) {
-      if (modes.eigenvalues()[k] < kFree) {
-        share = std::max(share, std::abs(modes.eigenvectors()(c, k)));
+      if (modes.eigenvalues[k] < kFree) {
+        share = std::max(share, std::abs(modes.eigenvectors(c, k)));
       }
     }
     if (share > kShare) result.push_back(static_cast<int>(c));

@@ -3,6 +3,7 @@
 #include "estimation/recording_problem.hpp"
 
 #include "estimation/motion_changes.hpp"
+#include "linalg/dense.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -243,8 +243,7 @@ class Collector {
 Matrix4 whitener_of(const Matrix4& covariance, int rows) {
   Matrix4 result = Matrix4::Zero();
   const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
-  const Eigen::LLT<Eigen::MatrixXd> factor(block);
-  result.topLeftCorner(rows, rows) = factor.matrixL().solve(Eigen::MatrixXd::Identity(rows, rows));
+  result.topLeftCorner(rows, rows) = DenseCholesky(block).inverse_factor();
   return result;
 }
 

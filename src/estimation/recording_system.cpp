@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_system.hpp"
 
+#include "linalg/dense.hpp"
+
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -240,9 +241,9 @@ void RecordingSystem::build_schur(double damping) {
   schur_ = (0.5 * (schur_ + schur_.transpose())).eval();
   schur_.diagonal() += damping * D_.diagonal();
   if (schur_.cols() == 0) return;
-  const Eigen::LLT<Eigen::MatrixXd> factor(schur_);
-  if (factor.info() != Eigen::Success) throw NotPositiveDefinite(-1);
-  schur_inverse_ = factor.solve(Eigen::MatrixXd::Identity(schur_.rows(), schur_.cols()));
+  const DenseCholesky factor(schur_);
+  if (!factor.positive_definite()) throw NotPositiveDefinite(-1);
+  schur_inverse_ = factor.inverse();
 }
 
 RecordingSystem::Step RecordingSystem::solve_step(double damping) {
@@ -331,8 +332,7 @@ Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {
 double RecordingSystem::log_determinant() const {
   double sum = normal_.unknowns() > 0 ? normal_.log_determinant() : 0.0;
   if (schur_.cols() == 0) return sum;
-  const Eigen::LLT<Eigen::MatrixXd> factor(schur_);
-  return sum + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return sum + DenseCholesky(schur_).log_determinant();
 }
 
 double RecordingSystem::gradient_norm() const {

@@ -2,17 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_projection.hpp"
 
-#include <Eigen/QR>
+#include "linalg/dense.hpp"
 
 namespace trussmap {
-
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
-  if (columns.cols() == 0) return columns;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(columns.rows(), columns.cols());
-  factor.setThreshold(1e-10);
-  factor.compute(columns);
-  return factor.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factor.rank());
-}
 
 FitProjection::FitProjection(const FitState& fit, const RecordingProblem& problem,
                              const RecordingSystem& system, const Eigen::MatrixXd& nuisance)
@@ -47,7 +39,7 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
     for (Eigen::Index c = 0; c < Q_.cols(); ++c) {
       if (Q_.col(c).norm() > 0.0) Q_.col(c).normalize();
     }
-    Q_ = orthonormal(Q_);
+    Q_ = orthonormal_basis(Q_, kSameDirection);
   }
 }
 

@@ -49,7 +49,7 @@ class FitProjection {
   Eigen::MatrixXd Q_;
 };
 
-/// Orthonormal columns that span these.
-[[nodiscard]] Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns);
+/// Columns count as one that differ by no more than this share of the largest pivot.
+inline constexpr double kSameDirection = 1e-10;
 
 }  // namespace trussmap

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "map/exact_increments.hpp"
 
+#include "linalg/dense.hpp"
 #include "truss/truss_system.hpp"
 #include "trussmap/error.hpp"
 
@@ -9,8 +10,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -120,9 +119,9 @@ std::vector<Vector2> ExactIncrements::pull(int i, int j, const Vector2& force) {
 
 /// A change of stiffness may be indefinite: what it adds goes in first, so that K stays definite.
 void ExactIncrements::change_factor(const Bar& change) {
-  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(change.stiffness);
-  const Vector2 size = axes.eigenvalues();
-  const Matrix2 W = axes.eigenvectors() * size.cwiseAbs().cwiseSqrt().asDiagonal();
+  const PlanarModes axes = planar_modes(change.stiffness);
+  const Vector2 size = axes.eigenvalues;
+  const Matrix2 W = axes.eigenvectors * size.cwiseAbs().cwiseSqrt().asDiagonal();
   const auto columns = [&](int first, int count) {
     return between(unknown(change.i), unknown(change.j), W.middleCols(first, count),
                    2 * (places_ - 1));

@@ -4,6 +4,7 @@
 
 #include "geometry/index.hpp"
 #include "linalg/connected_parts.hpp"
+#include "linalg/dense.hpp"
 #include "map/exact_increments.hpp"
 #include "map/first_sight.hpp"
 #include "map/nearest_landmarks.hpp"
@@ -18,7 +19,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -359,8 +359,8 @@ class MapBuilder::State {
       largest = std::max(largest, displacement_of(moves, landmark).norm());
       for (const int number : graph_.routes_at(landmark)) {
         const Route& route = graph_.route(number);
-        const Eigen::SelfAdjointEigenSolver<Matrix2> axes(route.covariance);
-        smallest_variance = std::min(smallest_variance, axes.eigenvalues()(0) / route.traversals);
+        const double smallest = planar_modes(route.covariance).eigenvalues[0];
+        smallest_variance = std::min(smallest_variance, smallest / route.traversals);
       }
     }
     return largest < kNegligibleShare * std::sqrt(smallest_variance);

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
 
+#include "linalg/dense.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 
@@ -66,14 +65,14 @@ ChartLayer ellipse_layer(const std::string& legend, const std::vector<PlacedElli
       colour};
   const double scale = ellipse95_scale(2);
   for (const PlacedEllipse& one : ellipses) {
-    const Eigen::SelfAdjointEigenSolver<Matrix2> axes(one.covariance);
-    const double larger = axes.eigenvalues()[1];
+    const PlanarModes axes = planar_modes(one.covariance);
+    const double larger = axes.eigenvalues[1];
     if (!(larger > 0.0)) continue;
-    const Vector2 along = axes.eigenvectors().col(1);
+    const Vector2 along = axes.eigenvectors.col(1);
     layer.columns[0].numbers.push_back(one.centre.x());
     layer.columns[1].numbers.push_back(one.centre.y());
     layer.columns[2].numbers.push_back(scale * std::sqrt(larger));
-    layer.columns[3].numbers.push_back(scale * std::sqrt(std::max(0.0, axes.eigenvalues()[0])));
+    layer.columns[3].numbers.push_back(scale * std::sqrt(std::max(0.0, axes.eigenvalues[0])));
     layer.columns[4].numbers.push_back(std::atan2(along.y(), along.x()));
     layer.columns[5].texts.push_back(one.name);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/svg.hpp"
 
+#include "linalg/dense.hpp"
 #include "plot/svg_marks.hpp"
 #include "text/xml_text.hpp"
 
@@ -12,7 +13,6 @@
 #include <set>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -217,13 +217,13 @@ std::vector<double> round_ticks(const Range& range, int count) {
 std::vector<Vector2> ellipse_outline(const Vector2& centre, const Matrix2& covariance,
                                      double scale) {
   constexpr int kPoints = 96;
-  const Eigen::SelfAdjointEigenSolver<Matrix2> eigen(covariance);
-  const Vector2 axes = scale * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const PlanarModes modes = planar_modes(covariance);
+  const Vector2 axes = scale * modes.eigenvalues.cwiseMax(0.0).cwiseSqrt();
   std::vector<Vector2> outline;
   for (int k = 0; k <= kPoints; ++k) {
     const double angle = 2.0 * std::numbers::pi * (k % kPoints) / kPoints;
     const Vector2 along(axes.x() * std::cos(angle), axes.y() * std::sin(angle));
-    outline.push_back(centre + eigen.eigenvectors() * along);
+    outline.push_back(centre + modes.eigenvectors * along);
   }
   return outline;
 }

@@ -3,12 +3,12 @@
 #include "trussmap/pose_graph.hpp"
 
 #include "geometry/index.hpp"
+#include "linalg/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace trussmap {
@@ -22,9 +22,7 @@ bool semidefinite(const Eigen::Matrix<double, N, N>& matrix) {
   if (!matrix.allFinite()) return false;
   const double size = matrix.cwiseAbs().maxCoeff();
   if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > kRounding * size) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(matrix,
-                                                                         Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().minCoeff() >= -kRounding * size;
+  return symmetric_eigenvalues(matrix).minCoeff() >= -kRounding * size;
 }
 
 /// Sylvester's criterion, clear of rounding: the quick answer for nearly every edge.

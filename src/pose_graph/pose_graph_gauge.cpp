@@ -4,13 +4,12 @@
 
 #include "geometry/index.hpp"
 #include "linalg/connected_parts.hpp"
+#include "linalg/dense.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <optional>
-
-#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -98,9 +97,9 @@ void hold(const PoseGraph& graph, const Part& part, std::vector<std::uint8_t>& h
 template <typename Matrix>
 int rank(const Matrix& information) {
   constexpr double kZero = 1e-9;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(information, Eigen::EigenvaluesOnly);
   const double size = information.cwiseAbs().maxCoeff();
-  return static_cast<int>((eigen.eigenvalues().array() > kZero * kZero * size).count());
+  return static_cast<int>(
+      (symmetric_eigenvalues(information).array() > kZero * kZero * size).count());
 }
 
 }  // namespace

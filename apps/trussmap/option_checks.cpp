@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "option_checks.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace trussmap::app {
+namespace {
+
+/// The number that the whole text is.
+template <typename Number>
+std::optional<Number> number_of(const std::string& text) {
+  Number value{};
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec != std::errc{} || read.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<double> finite_number(const std::string& text) {
+  const std::optional<double> value = number_of<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+bool is_whole_number(const std::string& text, std::uint64_t least) {
+  const std::optional<std::uint64_t> value = number_of<std::uint64_t>(text);
+  return value && *value >= least;
+}
+
+}  // namespace
+
+Check above_zero() {
+  return {[](const std::string& text) {
+            const std::optional<double> value = finite_number(text);
+            return value && *value > 0.0 ? "" : "'" + text + "' is not a number above 0";
+          },
+          ""};
+}
+
+Check zero_or_more() {
+  return {[](const std::string& text) {
+            const std::optional<double> value = finite_number(text);
+            return value && *value >= 0.0 ? "" : "'" + text + "' is not a number of 0 or more";
+          },
+          ""};
+}
+
+Check whole_number(std::uint64_t least) {
+  return {[least](const std::string& text) {
+            return is_whole_number(text, least) ? ""
+                                                : "'" + text + "' is not a whole number of " +
+                                                      std::to_string(least) + " or more";
+          },
+          ""};
+}
+
+Check eta_text() {
+  return {[](const std::string& text) {
+            return text == "all" || text == "auto" || is_whole_number(text, 2)
+                       ? ""
+                       : "'" + text + "' is no whole number from 2, all or auto";
+          },
+          ""};
+}
+
+Eta parse_eta(const std::string& text) {
+  Eta eta;
+  if (text == "all") {
+    eta.kind = Eta::Kind::all;
+  } else if (text == "auto") {
+    eta.kind = Eta::Kind::estimated;
+  } else {
+    eta.count = std::stoi(text);
+  }
+  return eta;
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "linalg/dense.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace trussmap {
+
+SymmetricModes symmetric_modes(const Eigen::MatrixXd& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(A);
+  return {modes.eigenvalues(), modes.eigenvectors()};
+}
+
+PlanarModes planar_modes(const Matrix2& A) {
+  const Eigen::SelfAdjointEigenSolver<Matrix2> modes(A);
+  return {modes.eigenvalues(), modes.eigenvectors()};
+}
+
+Vector2 symmetric_eigenvalues(const Matrix2& A) {
+  return Eigen::SelfAdjointEigenSolver<Matrix2>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Eigen::Vector3d symmetric_eigenvalues(const Matrix3& A) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3>(A, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+DenseCholesky::DenseCholesky(const Eigen::MatrixXd& A) : factor_(A) {}
+
+Eigen::MatrixXd DenseCholesky::inverse() const {
+  return factor_.solve(Eigen::MatrixXd::Identity(factor_.rows(), factor_.cols()));
+}
+
+Eigen::MatrixXd DenseCholesky::inverse_factor() const {
+  return factor_.matrixL().solve(Eigen::MatrixXd::Identity(factor_.rows(), factor_.cols()));
+}
+
+double DenseCholesky::log_determinant() const {
+  return 2.0 * factor_.matrixLLT().diagonal().array().log().sum();
+}
+
+DenseLdlt::DenseLdlt(const Eigen::MatrixXd& A) : factor_(A) {}
+
+Eigen::VectorXd DenseLdlt::solve(const Eigen::VectorXd& b) const {
+  return factor_.solve(b);
+}
+
+Eigen::MatrixXd DenseLdlt::inverse() const {
+  return factor_.solve(Eigen::MatrixXd::Identity(factor_.rows(), factor_.cols()));
+}
+
+double DenseLdlt::log_determinant() const {
+  return factor_.vectorD().array().abs().log().sum();
+}
+
+Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns, std::optional<double> threshold) {
+  if (columns.cols() == 0) return columns;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(columns.rows(), columns.cols());
+  if (threshold) factor.setThreshold(*threshold);
+  factor.compute(columns);
+  return factor.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factor.rank());
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(A).solve(b);
+}
+
+}  // namespace trussmap
