@@ -97,7 +97,8 @@ struct BuiltMap {
 
 /// Builds one map from the sessions. Throws InputError where a recording has no sightings or there
 /// is no leg, SolveError where a session or a landmark is tied to nothing, std::invalid_argument on
-/// options out of range and, naming it, on an effect that cannot be applied.
+/// options out of range, on a recording that is not as recording.hpp has it and, naming it, on an
+/// effect that cannot be applied.
 [[nodiscard]] BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
                                  const BuildMapOptions& options = {});
 

@@ -8,6 +8,21 @@
 //   Arrival a = builder.arrive("door", {displacement, covariance});   // by this leg
 //   a.kind, a.landmarks_moved, a.largest_move   // what was corrected, by how much
 //
+// A leg is given in map axes. From the wheels (arc.hpp), with the heading h at its start and h's
+// variance v, a compass's or what turning has left of it:
+//
+//   Motion leg;
+//   for (const WheelTravel& row : rows) leg = then(leg, arc_motion(row, wheelbase, noise));
+//   const Matrix2 R = rotation(h);
+//   const Vector2 d = R * leg.displacement.position();
+//   const Matrix2 C = R * leg.covariance.topLeftCorner<2, 2>() * R.transpose() +
+//                     v * quarter_turn(d) * quarter_turn(d).transpose();
+//   builder.arrive("door", {d, C});
+//   h += leg.displacement.heading;
+//
+// The builder takes legs as independent; those that share a drifting heading are not, and a map of
+// them is better adjusted as a whole (build_map.hpp).
+//
 // Methods (their names stand in every output):
 //   elastic          the paper's two phases, the gain of a refinement limited to one half
 //   elastic_printed  the paper's two phases as printed: diverges on unequal routes
@@ -50,7 +65,7 @@ struct MapBuilderOptions {
   double gain_limit = 0.5;  ///< of `elastic`: part of the desired change reached at most, (0, 1]
   bool refine = true;       ///< false: first sight only (a known route only updates its averages)
   bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
-                            ///< traversal's own (exact_increments.hpp)
+                            ///< traversal's own
 };
 
 /// What an arrival did to the map.
@@ -67,7 +82,7 @@ struct Arrival {
   int landmarks_moved = 0;           ///< displaced by more than 1e-12 m
   double largest_move = 0.0;         ///< m
   Vector2 misfit = Vector2::Zero();  ///< measured displacement - the map's before, m
-  int eta = 0;                       ///< landmarks in the structure that was solved
+  int eta = 0;  ///< landmarks in the structure that a refinement solved, else 0
 };
 
 class MapBuilder {
@@ -110,13 +125,15 @@ class MapBuilder {
   [[nodiscard]] int landmarks() const;
   [[nodiscard]] std::optional<int> find(const std::string& landmark) const;
 
-  /// Present position, m.
+  /// Present position, m. Throws std::invalid_argument on a number that no landmark has.
   [[nodiscard]] Vector2 position(int landmark) const;
 
   /// Averages of the route between two landmarks, if it was ever driven.
   [[nodiscard]] std::optional<Route> route_between(int a, int b) const;
 
-  /// The map: present positions, and the routes with their averages.
+  /// The map: present positions, and the routes with their averages. A builder knows no covariances
+  /// of positions: marginal_covariances (pose_graph.hpp) has them, of a graph with a displacement
+  /// edge per route; build_map's adjustment as well.
   [[nodiscard]] LandmarkGraph map() const;
 
  private:

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>  // inverse and determinant of the small matrices
 
 namespace trussmap {
 

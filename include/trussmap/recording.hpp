@@ -73,6 +73,9 @@ struct TruthRow {
 /// Shortest leg: two stops that are nearer to each other, m of driven path, end none.
 inline constexpr double kDefaultMinDrive = 0.25;
 
+/// What reads a recording of a caller's own making (build_map, fit_model, calibrate_wheels) throws
+/// std::invalid_argument where its columns differ in length, its times leave their order or the
+/// drive, or a number is not finite that must be.
 struct Recording {
   std::string name;  ///< where it came from, for messages
   Drive drive;

@@ -36,6 +36,7 @@ class CompiledShape;
 class Shape {
  public:
   /// Throws std::invalid_argument, in a sentence that names the expression, on what cannot be read.
+  /// Reading takes a parser: link trussmap::trussmap.
   Shape(const char* text);         // NOLINT(google-explicit-constructor): a shape is its text
   Shape(const std::string& text);  // NOLINT(google-explicit-constructor)
   /// The pattern with its "{name}"s filled in.

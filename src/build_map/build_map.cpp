@@ -5,6 +5,7 @@
 #include "build_map/adjusted_map.hpp"
 #include "build_map/leg_by_leg.hpp"
 #include "build_map/map_doubts.hpp"
+#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
@@ -18,6 +19,7 @@ constexpr int kFewestSurveyed = 3;
 
 void check(const std::vector<Recording>& recordings, const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
+  require_well_formed(recordings);
   if (!(options.gate.value_or(kMapGate) > 0.0) || !(options.map_sd >= 0.0) || options.looks < 1 ||
       options.settle < 0 || options.confirmations < 1 || !(options.bearing_slack >= 0.0) ||
       !(options.min_drive >= 0.0)) {

@@ -7,6 +7,7 @@
 #include "calibration/truth_alignment.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
+#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -245,6 +246,7 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
                                   const WheelCalibrationOptions& options) {
   constexpr int kRounds = 4;
   constexpr double kSettled = 1e-10;
+  require_well_formed(recordings);
   WheelCalibration result;
   std::array<double, 3> g = in_force(model);
   result.model = with(model, g);

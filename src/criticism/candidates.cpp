@@ -274,6 +274,7 @@ class Gatherer {
     const double high = u.quantile(0.97);
     const double width = (high - low) / 3.0;
     if (!(width > 0.0)) return;
+    bells.reserve(4);
     for (int k = 0; k < 4; ++k) {
       bells.emplace_back(
           "exp(-((" + n + "-{centre})/{width})^2)",

@@ -65,7 +65,8 @@ class Diagnostician {
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Eigen::VectorXd& moved) const {
-    if (moved.size() == 0) return result_.held_out;
+    const HeldOutMetrics& now = result_.held_out;
+    if (moved.size() == 0) return now;
     return legs_.moved(moved);
   }
 

@@ -180,6 +180,7 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
     append(nuisance, event->projected);
     dof -= event->dof;
     std::vector<double> p_before;
+    p_before.reserve(still.size());
     for (const Tested& one : still) p_before.push_back(one.p_adjusted);
     test_again(ground, left, still, significant);
     judge(still, left.residuals().squaredNorm(), dof, tried_);

@@ -105,7 +105,9 @@ class Scorer {
     for (const std::size_t e : waiting) {
       const Eigen::Index count = width(events[e]);
       for (const Dummies& dummies : events[e].places) {
-        for (const auto& [k, M] : dummies.parts) {
+        for (const DummyRows& part : dummies.parts) {
+          const std::size_t k = part.measurement;
+          const Eigen::MatrixXd& M = part.rows;
           const Measurement& one = fit_.problem.measurements[k];
           const int first = system_.first_row(k);
           const auto add = [&](int node, const RowsByNode& J) {

@@ -114,6 +114,7 @@ std::vector<LandmarkMisfit> landmarks_of(const RecordingProblem& problem,
     landmark.chi2 += squared(system, one, k);
   }
   std::vector<LandmarkMisfit> result;
+  result.reserve(landmarks.size());
   for (auto& [node, landmark] : landmarks) result.push_back(std::move(landmark));
   return result;
 }

@@ -246,6 +246,7 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
 
   const auto adjust_p = [&result] {
     std::vector<double> p_values;
+    p_values.reserve(result.size());
     for (const NoiseTest& test : result) p_values.push_back(test.p_value);
     const std::vector<double> adjusted = holm(p_values);
     for (std::size_t k = 0; k < result.size(); ++k) result[k].p_adjusted = adjusted[k];
@@ -269,6 +270,7 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return claim(a) > claim(b); });
   std::vector<NoiseTest> sorted;
+  sorted.reserve(order.size());
   for (const std::size_t k : order) sorted.push_back(std::move(result[k]));
   return sorted;
 }

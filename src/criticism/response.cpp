@@ -144,8 +144,10 @@ std::vector<Vector2> effect_curve(const Effect& effect, const std::string& varia
                                   double high) {
   if (effect.coefficients.size() != effect.shape.size()) return {};
   std::vector<double> at;
+  at.reserve(kCurvePoints);
   for (int k = 0; k < kCurvePoints; ++k) at.push_back(low + (high - low) * k / (kCurvePoints - 1));
   std::vector<Vector2> curve;
+  curve.reserve(at.size());
   for (const double value : at) curve.emplace_back(value, 0.0);
   const std::optional<Vector2> place = variable == kPlace ? place_of(effect) : std::nullopt;
   RowVariables variables;

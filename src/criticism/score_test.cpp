@@ -155,10 +155,11 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
 
 Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
   const BlockSystem& normal = clean_system_->normal_equations();
-  const int count = fit_.problem.landmark_count();
+  const Eigen::Index count = fit_.problem.landmark_count();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count, nodes.cols());
   for (int k = 0; k < count; ++k) {
-    if (normal.size(k) == 2) rows.middleRows(2 * k, 2) = nodes.middleRows(normal.offset(k), 2);
+    if (normal.size(k) == 2)
+      rows.middleRows(Eigen::Index{2} * k, 2) = nodes.middleRows(normal.offset(k), 2);
   }
   return rows;
 }

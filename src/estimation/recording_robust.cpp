@@ -52,6 +52,8 @@ RobustFit reduce_nonconvexity(RecordingSystem& system, const RecordingProblem& p
   constexpr double kNearlyTruncated = 1e3;
   constexpr int kSteps = 2;  // of descent per bend
   RobustFit fit{std::move(state), std::move(coefficients), {}};
+  fit.weights.assign(problem.measurements.size(), 1.0);
+  system.set_weights(fit.weights);  // those that led to the start were soft
   system.linearise(fit.state, fit.coefficients);
   double largest = 0.0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
@@ -59,7 +61,6 @@ RobustFit reduce_nonconvexity(RecordingSystem& system, const RecordingProblem& p
       largest = std::max(largest, system.squared_errors()[k]);
     }
   }
-  fit.weights.assign(problem.measurements.size(), 1.0);
   if (largest <= gate) return fit;
   const auto weigh = [&](double mu) {
     for (std::size_t k = 0; k < fit.weights.size(); ++k) {

@@ -99,6 +99,7 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
   for (const Recording& recording : timed) result.push_back(as_recorded(recording));
   for (int pass = 0; pass < kPasses; ++pass) {
     std::vector<SessionPath> paths;
+    paths.reserve(result.size());
     for (const ClearedRecording& one : result) paths.push_back(reckoned_path(one, model));
     const ShapeContext context(timed, model.robot, paths);
     const EffectColumns columns = effect_columns(effects, context);

@@ -220,6 +220,7 @@ std::vector<Recording> retimed(const std::vector<Recording>& recordings,
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const auto shift = [&](auto& events) {
       std::vector<double> instants;
+      instants.reserve(events.size());
       for (const auto& event : events) instants.push_back(event.t);
       instants = retimed(instants, recordings[s], s, recordings.size(), effects, robot);
       for (std::size_t n = 0; n < events.size(); ++n) events[n].t = instants[n];

@@ -13,6 +13,7 @@ Model read_model(const std::filesystem::path& file, const std::vector<Recording>
   Model model = read_model(file);
   if (model.effects.empty()) return model;
   std::vector<SessionPath> paths;
+  paths.reserve(recordings.size());
   for (const Recording& recording : recordings) {
     paths.push_back({Pose(), dead_reckoned_path(recording.drive, model.robot, model.noise)});
   }

@@ -105,7 +105,7 @@ void ExactIncrements::take_back() noexcept {
 std::vector<Vector2> ExactIncrements::pull(int i, int j, const Vector2& force) {
   check(i, j);
   if (!factored_) factorise();
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(2 * (places_ - 1));
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(Eigen::Index{2} * (places_ - 1));
   if (j > 0) u.segment<2>(unknown(j)) += force;
   if (i > 0) u.segment<2>(unknown(i)) -= force;
   cholesky_.solve_updated(u);

@@ -9,6 +9,7 @@
 #include "map/first_sight.hpp"
 #include "map/nearest_landmarks.hpp"
 #include "map/refinement.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/stiffness_law.hpp"
 #include "trussmap/truss.hpp"
@@ -138,6 +139,7 @@ class MapBuilder::State {
   double settle(double gain_limit) {
     check_gain_limit(gain_limit);
     std::vector<Vector2> before;
+    before.reserve(idx(graph_.landmarks()));
     for (int k = 0; k < graph_.landmarks(); ++k) before.push_back(stored(k));
     const Vector2 offset_before = offset_;
     double largest = 0.0;
@@ -485,6 +487,10 @@ std::optional<int> MapBuilder::find(const std::string& landmark) const {
 }
 
 Vector2 MapBuilder::position(int landmark) const {
+  if (landmark < 0 || landmark >= landmarks()) {
+    throw std::invalid_argument(
+        joined("the map has no landmark number ", landmark, ", expected 0 to ", landmarks() - 1));
+  }
   return state_->position(landmark);
 }
 

@@ -72,7 +72,8 @@ std::vector<Leg> legs_of(const Recording& recording, const std::vector<Stop>& st
 bool is_held_out(std::size_t leg, double share) {
   constexpr std::size_t kBlock = 5;
   constexpr double kRounding = 1e-9;  // 10 x 0.29 is to be 2.9
-  const auto block = static_cast<double>(leg / kBlock);
+  const std::size_t number = leg / kBlock;
+  const auto block = static_cast<double>(number);
   return std::floor((block + 1.0) * share + kRounding) > std::floor(block * share + kRounding);
 }
 

@@ -43,6 +43,7 @@ Chart interval_chart(const char* id, const char* title, const char* caption, con
 
 std::vector<double> in_millimetres(const std::vector<double>& metres) {
   std::vector<double> result;
+  result.reserve(metres.size());
   for (const double value : metres) result.push_back(1000.0 * value);
   return result;
 }

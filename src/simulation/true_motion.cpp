@@ -246,7 +246,7 @@ class Path {
   /// From here to where the axle must stop for the sensor to be on the target: that depends on the
   /// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
   [[nodiscard]] Vector2 way_to(const Vector2& target, const LegShape& shape) const {
-    const Vector2 straight = target - pose_.position();
+    Vector2 straight = target - pose_.position();
     const Vector2 ahead = arriving_ ? sensor() : Vector2::Zero();
     if (ahead.isZero(0.0)) return straight;
     Vector2 way = straight;

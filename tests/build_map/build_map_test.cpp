@@ -45,6 +45,7 @@ Recording from_sighting(const Recording& whole, std::size_t first) {
   cut(part.drive.left);
   cut(part.drive.right);
   cut(part.drive.heading);
+  for (Covariate& one : part.drive.covariates) cut(one.values);
   return part;
 }
 

@@ -45,6 +45,22 @@ TEST(RecordingAdjustment, ExactRecordingsGiveTheExactMap) {
   }
 }
 
+/// Soft weights lead to the start of an adjustment with a gate; what stays in counts in full.
+TEST(RecordingAdjustment, AGateThatLeavesNothingOutChangesNothing) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    const SimulatedRecording one = simulate_recording({true, true, false}, seed);
+    const RecordingProblem problem = make_problem({one.recording}, one.model);
+    const RecordingAdjustment plain = adjust(problem);
+    RecordingAdjustmentOptions options;
+    options.gate = 400.0;  // twenty standard deviations
+    const RecordingAdjustment gated = adjust(problem, {}, options);
+    EXPECT_TRUE(gated.left_out.empty());
+    EXPECT_GT(plain.chi2, 1.0);
+    EXPECT_NEAR(gated.chi2, plain.chi2, 1e-6 * plain.chi2);
+    EXPECT_EQ(gated.dof, plain.dof);
+  }
+}
+
 TEST(RecordingAdjustment, PosesStandAtSightingsAndBetweenSpinAndDrive) {
   const SimulatedRecording one = simulate_exactly({true, true, false, 1}, 11);
   const RecordingProblem problem = make_problem({one.recording}, one.model);

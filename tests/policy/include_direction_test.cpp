@@ -128,7 +128,8 @@ std::vector<std::string> wrong_in_room(const fs::path& file, const std::string& 
   std::vector<std::string> wrong;
   for (const Include& one : includes_of(text)) {
     // <map> is the standard library's.
-    const std::optional<std::string> other = one.quoted ? room_of(one.target) : std::nullopt;
+    const bool ours = one.quoted || one.target.find('/') != std::string::npos;
+    const std::optional<std::string> other = ours ? room_of(one.target) : std::nullopt;
     if (one.quoted && !other) {
       wrong.push_back(file.string() + ":" + std::to_string(one.line) + ": " + one.target +
                       " is in no room, expected ROOM/name.hpp or trussmap/name.hpp");

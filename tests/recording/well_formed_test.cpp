@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "recording/well_formed.hpp"
+
+#include "trussmap/build_map.hpp"
+#include "trussmap/calibrate.hpp"
+#include "trussmap/fit_model.hpp"
+
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+/// Ten rows straight ahead, from landmark A to landmark B.
+Recording straight() {
+  Recording recording;
+  recording.name = "mine";
+  for (int row = 1; row <= 10; ++row) {
+    recording.drive.t.push_back(row);
+    recording.drive.left.push_back(0.5);
+    recording.drive.right.push_back(0.5);
+    recording.drive.heading.push_back(row == 4 ? kAbsent : 0.0);
+  }
+  recording.drive.covariates = {{"load", std::vector<double>(10, 1.0)}};
+  recording.sightings = {{0.0, "A"}, {5.0, "C", 2.0, 0.1}, {10.0, "B"}};
+  recording.truth = {{1.0, 0.0, 0.0, 0.0}, {9.0, 4.0, 0.0, 0.0}};
+  return recording;
+}
+
+std::string refusal(const std::function<void(Recording&)>& spoil) {
+  Recording recording = straight();
+  spoil(recording);
+  try {
+    require_well_formed(recording);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(WellFormed, ARecordingAsDescribedIs) {
+  EXPECT_EQ(refusal([](Recording&) {}), "accepted");
+  EXPECT_EQ(refusal([](Recording& r) { r.drive.heading.clear(); }), "accepted");
+}
+
+TEST(WellFormed, WhatIsWrongIsNamed) {
+  struct Spoilt {
+    const char* expected;
+    std::function<void(Recording&)> by;
+  };
+  const std::vector<Spoilt> all = {
+      {"column left of the drive has 9 rows, expected 10",
+       [](Recording& r) { r.drive.left.pop_back(); }},
+      {"column right of the drive has 0 rows", [](Recording& r) { r.drive.right.clear(); }},
+      {"column heading of the drive has 3 rows", [](Recording& r) { r.drive.heading.resize(3); }},
+      {"column load of the drive has 11 rows",
+       [](Recording& r) { r.drive.covariates[0].values.push_back(1.0); }},
+      {"column left of the drive is not finite in row 2",
+       [](Recording& r) { r.drive.left[2] = kAbsent; }},
+      {"t of the drive does not increase in row 6",
+       [](Recording& r) { std::swap(r.drive.t[5], r.drive.t[6]); }},
+      {"sightings are not in order of time",
+       [](Recording& r) { std::swap(r.sightings[0], r.sightings[1]); }},
+      {"sightings are not in order of time", [](Recording& r) { r.sightings[0].t = -50.0; }},
+      {"of the sightings that of t = 1e+06 s comes after the drive",
+       [](Recording& r) { r.sightings[2].t = 1e6; }},
+      {"truth rows are not in order of time",
+       [](Recording& r) { r.truth[1].t = std::numeric_limits<double>::quiet_NaN(); }},
+      {"the sighting of C at t = 5 s has a range alone",
+       [](Recording& r) { r.sightings[1].bearing = kAbsent; }},
+      {"the sighting of C at t = 5 s has a bearing alone",
+       [](Recording& r) { r.sightings[1].range = kAbsent; }},
+  };
+  for (const Spoilt& one : all) {
+    const std::string said = refusal(one.by);
+    EXPECT_EQ(said.rfind("recording \"mine\": ", 0), 0U) << said;
+    EXPECT_NE(said.find(one.expected), std::string::npos) << said << "\n" << one.expected;
+  }
+}
+
+TEST(WellFormed, EveryCallThatReadsRecordingsAsksForIt) {
+  Recording recording = straight();
+  recording.drive.left.clear();
+  EXPECT_THROW(static_cast<void>(build_map({recording}, Model())), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(build_map({recording}, Model(), {.method = Method::adjustment})),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(fit_model({recording}, Model())), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(calibrate_wheels({recording}, Model())), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace trussmap
