@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Speed and scale, as ratios measured in one run: see README.md beside this file.
+#include "scale/measure.hpp"
+#include "scale/parts.hpp"
+
 #include <ceres/version.h>
 #include <cstdio>
 #include <cstdlib>
@@ -14,9 +17,6 @@
 #include <Eigen/Core>
 #include <cholmod.h>
 #include <fmt/format.h>
-
-#include "scale/measure.hpp"
-#include "scale/parts.hpp"
 
 // What OpenBLAS says of itself, if that is the BLAS.
 extern "C" __attribute__((weak)) char* openblas_get_config();

@@ -36,9 +36,9 @@ struct DiscoveryStep {
 
 enum class StopReason {
   nothing_significant,
-  limit_reached,    ///< of the number of effects
-  cannot_be_fitted, ///< `effect` beside what the model has
-  predicts_worse    ///< `effect` fits these legs, but predicts others worse
+  limit_reached,     ///< of the number of effects
+  cannot_be_fitted,  ///< `effect` beside what the model has
+  predicts_worse     ///< `effect` fits these legs, but predicts others worse
 };
 
 struct Stopped {

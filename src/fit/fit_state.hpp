@@ -10,8 +10,8 @@
 // Shapes see the path of the fit itself, so the two are repeated in turn until the coefficients
 // stay. Time stamps are moved back by a delay before each round.
 //
-// Nothing is fitted that the data cannot show: a coefficient keeps its value, and is named, where no
-// measurement tells it from the unknowns, or too little does (kLeastShare, kLargestUncertainty).
+// Nothing is fitted that the data cannot show: a coefficient keeps its value, and is named, where
+// no measurement tells it from the unknowns, or too little does (kLeastShare, kLargestUncertainty).
 #pragma once
 
 #include "estimation/recording_adjustment.hpp"
@@ -53,7 +53,7 @@ struct FitState {
 /// Throws SolveError as adjust does (but not for coefficients), std::invalid_argument on effects
 /// that cannot be applied.
 [[nodiscard]] FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
-                                 const FitterOptions& options = {});
+                                      const FitterOptions& options = {});
 
 [[nodiscard]] FitterOptions fitter_options(const FitOptions& options);
 

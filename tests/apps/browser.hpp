@@ -4,6 +4,8 @@
 // A page looked at by a real browser: headless Chromium, without which these tests are skipped.
 #pragma once
 
+#include "policy/source_files.hpp"
+
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -14,8 +16,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "policy/source_files.hpp"
 
 namespace trussmap::testing {
 

@@ -5,11 +5,11 @@
 // the channels, from what was recorded.
 #pragma once
 
+#include "criticism/inverted_recordings.hpp"
+
 #include <ostream>
 #include <string>
 #include <vector>
-
-#include "criticism/inverted_recordings.hpp"
 
 namespace trussmap::testing {
 

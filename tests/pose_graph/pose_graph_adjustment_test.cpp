@@ -3,8 +3,8 @@
 #include "pose_graph/pose_graph_descent.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
 #include "pose_graph/synthetic_graph.hpp"
-#include "trussmap/truss.hpp"
 #include "trussmap/pose_graph.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>
