@@ -29,7 +29,7 @@ constexpr const char* kRecordingFormat =
 std::string spelled_type(const CLI::Option& option) {
   const std::string whole = option.get_type_name();
   const std::size_t colon = whole.find(':');
-  const std::string base = whole.substr(0, colon);
+  std::string base = whole.substr(0, colon);
   const std::string check = colon == std::string::npos ? "" : whole.substr(colon + 1);
   if (check.starts_with('{')) return option.get_expected_max() > 1 ? check + ",..." : check;
   if (base == "FLOAT") return option.get_expected_min() > 1 ? "X,X" : "X";

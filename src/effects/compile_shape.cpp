@@ -72,7 +72,11 @@ void check_syntax(const std::string& expression) {
                          c == '\n' ? std::string("a line's end") : fmt::format("\"{}\"", c),
                          kLanguage));
     }
-    word = name ? word + c : "";
+    if (name) {
+      word += c;
+    } else {
+      word.clear();
+    }
   }
 }
 
