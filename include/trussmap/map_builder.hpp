@@ -19,6 +19,7 @@
 //                     v * quarter_turn(d) * quarter_turn(d).transpose();
 //   builder.arrive("door", {d, C});
 //   h += leg.displacement.heading;
+//   v += leg.covariance(2, 2);          // until a compass says better
 //
 // The builder takes legs as independent; those that share a drifting heading are not, and a map of
 // them is better adjusted as a whole (build_map.hpp).

@@ -73,9 +73,10 @@ struct TruthRow {
 /// Shortest leg: two stops that are nearer to each other, m of driven path, end none.
 inline constexpr double kDefaultMinDrive = 0.25;
 
-/// What reads a recording of a caller's own making (build_map, fit_model, calibrate_wheels) throws
-/// std::invalid_argument where its columns differ in length, its times leave their order or the
-/// drive, or a number is not finite that must be.
+/// What reads a recording of a caller's own making (build_map, fit_model, calibrate_wheels and what
+/// calls them) throws std::invalid_argument where its drive has fewer than two rows or columns that
+/// differ in length, times leave their order, sightings the drive, or a number is not finite that
+/// must be. Truth may begin before the drive and end after it.
 struct Recording {
   std::string name;  ///< where it came from, for messages
   Drive drive;

@@ -4,10 +4,10 @@
 // All of trussmap. Exploration code needs less: map_builder.hpp, or build_map.hpp.
 //
 // Two targets to link. trussmap::map has what stands in alignment, arc, build_map, channel,
-// dead_reckoning, fit_model, landmark_map, map_builder, planar, pose_graph, recording,
-// stiffness_law, survey_comparison, test_path and truss; models of effects (a shape is read from
-// its text) and all the other headers take trussmap::trussmap, which includes it. Find the first
-// alone by find_package(trussmap COMPONENTS map).
+// dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model, planar, pose_graph,
+// recording, stiffness_law, survey_comparison, test_path and truss. All the others, and effects in
+// a model (a shape is read from its text), take trussmap::trussmap, which includes it. Find the
+// first alone by find_package(trussmap COMPONENTS map).
 #pragma once
 
 #include "trussmap/alignment.hpp"

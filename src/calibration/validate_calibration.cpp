@@ -4,6 +4,7 @@
 #include "calibration/truth_holdout.hpp"
 #include "calibration/wheel_calibration.hpp"
 #include "geometry/index.hpp"
+#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
@@ -117,6 +118,7 @@ CalibrationGain CalibrationValidation::gain() const {
 
 CalibrationValidation validate_calibration(const std::vector<Recording>& recordings,
                                            const Model& model, const CalibrationOptions& options) {
+  require_well_formed(recordings);
   if (!options.truth || !(options.holdout > 0.0)) return {};
   WheelCalibrationOptions how = calibration_options(options);
   how.noise = false;

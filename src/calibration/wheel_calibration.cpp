@@ -239,6 +239,7 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
 
 WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
                                   const CalibrationOptions& options) {
+  require_well_formed(recordings);
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
 
@@ -246,7 +247,6 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
                                   const WheelCalibrationOptions& options) {
   constexpr int kRounds = 4;
   constexpr double kSettled = 1e-10;
-  require_well_formed(recordings);
   WheelCalibration result;
   std::array<double, 3> g = in_force(model);
   result.model = with(model, g);

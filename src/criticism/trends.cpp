@@ -3,6 +3,7 @@
 #include "criticism/trends.hpp"
 
 #include "effects/place_patterns.hpp"
+#include "recording/row_variables.hpp"
 #include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
 
@@ -59,7 +60,8 @@ Variable place_variable(const FitState& fit) {
   return place;
 }
 
-/// Turn rate [rad/s] that the wheels' noise does not feign: four standard deviations of a row's.
+/// Turn rate [rad/s] that the wheels' noise does not feign: four standard deviations of the mean
+/// over half a window, as shapes see it beside a change of motion.
 double faintest_turn(const FitState& fit) {
   const Noise& noise = fit.model.noise;
   std::vector<double> deviations;
@@ -69,7 +71,9 @@ double faintest_turn(const FitState& fit) {
       const double variance = noise.left * noise.left * std::abs(drive.left[row]) +
                               noise.right * noise.right * std::abs(drive.right[row]);
       if (variance == 0.0) continue;
-      deviations.push_back(std::sqrt(variance) / (fit.model.robot.wheelbase * drive.duration(row)));
+      const double duration = drive.duration(row);
+      const double window = std::max(duration, 0.5 * kRateWindow);
+      deviations.push_back(std::sqrt(variance / duration / window) / fit.model.robot.wheelbase);
     }
   }
   if (deviations.empty()) return 0.0;

@@ -3,6 +3,7 @@
 #include "trussmap/fit_model.hpp"
 
 #include "fit/fit_state.hpp"
+#include "recording/well_formed.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -63,6 +64,7 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
 
 ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
                    const FitOptions& options) {
+  require_well_formed(recordings);
   return model_fit(fit_recordings(recordings, model, fitter_options(options)), options);
 }
 

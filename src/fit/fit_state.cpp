@@ -6,7 +6,6 @@
 #include "estimation/recording_start.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_free.hpp"
-#include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -343,7 +342,6 @@ Eigen::VectorXd offsets_of(const FitState& fit) {
 
 FitState fit_recordings(const std::vector<Recording>& recordings, const Model& model,
                         const FitterOptions& options) {
-  require_well_formed(recordings);
   return Fitter(recordings, model, options).run();
 }
 

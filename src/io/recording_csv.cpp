@@ -3,6 +3,7 @@
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
 #include "recording/row_variables.hpp"
+#include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -134,9 +135,7 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
     csv.fail(std::string("column \"") + (range < 0 ? "bearing" : "range") + "\" without \"" +
              (range < 0 ? "range" : "bearing") + "\", expected both or neither");
   }
-  // Times are written in decimals: t1 - (t2 - t1) may miss the start by a rounding error.
-  const double slack =
-      1e-9 + 8.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.t.back());
+  const double slack = clock_slack(drive);
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;

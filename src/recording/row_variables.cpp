@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kStandingSpeed = 0.005;  // m/s, of the faster wheel
 constexpr double kSpinShare = 0.2;        // of the wheels' speed that the middle may have in a spin
-constexpr double kWindow = 1.0;           // s
 
 constexpr std::array<std::string_view, 3> kRates{"speed", "turn_rate", "acceleration"};
 constexpr std::array<std::string_view, 4> kEvents{"starts", "spins", "reverses_left",
@@ -33,10 +32,10 @@ std::vector<Span> windows(const Drive& drive, const std::vector<MotionKind>& kin
   std::size_t end = 0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     if (row > 0 && kinds[row] != kinds[row - 1]) first = row;
-    while (middle(row) - middle(first) > 0.5 * kWindow + 1e-9) ++first;
+    while (middle(row) - middle(first) > 0.5 * kRateWindow + 1e-9) ++first;
     end = std::max(end, row + 1);
     while (end < drive.rows() && kinds[end] == kinds[row] &&
-           middle(end) - middle(row) <= 0.5 * kWindow + 1e-9) {
+           middle(end) - middle(row) <= 0.5 * kRateWindow + 1e-9) {
       ++end;
     }
     spans[row] = {first, end};

@@ -26,6 +26,10 @@
 
 namespace trussmap {
 
+/// Rates are means over so much time about a row, s; over half of it where the kind of motion
+/// changes.
+inline constexpr double kRateWindow = 1.0;
+
 enum class MotionKind { standing, spinning, driving };
 
 /// Kind of motion of each row.

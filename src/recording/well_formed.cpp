@@ -4,7 +4,9 @@
 
 #include "text/number_text.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -33,6 +35,9 @@ void require_finite(const Recording& recording, const std::string& name,
 
 void require_drive(const Recording& recording) {
   const Drive& drive = recording.drive;
+  if (drive.rows() < 2) {
+    refuse(recording, joined("the drive has ", drive.rows(), " rows, expected two at least"));
+  }
   require_finite(recording, "t", drive.t);
   for (std::size_t row = 1; row < drive.rows(); ++row) {
     if (drive.t[row] > drive.t[row - 1]) continue;
@@ -43,51 +48,67 @@ void require_drive(const Recording& recording) {
   require_rows(recording, "right", drive.right);
   require_finite(recording, "right", drive.right);
   if (drive.has_compass()) require_rows(recording, "heading", drive.heading);
+  if (std::any_of(drive.heading.begin(), drive.heading.end(),
+                  [](double reading) { return std::isinf(reading); })) {
+    refuse(recording, "column heading of the drive is infinite in a row");
+  }
   for (const Covariate& one : drive.covariates) {
     require_rows(recording, one.name, one.values);
     require_finite(recording, one.name, one.values);
   }
 }
 
-/// In order of time, and within the drive but for a row's rounding of the clock.
 template <typename Rows>
-void require_times(const Recording& recording, const char* name, const Rows& rows) {
-  const Drive& drive = recording.drive;
-  if (rows.empty()) return;
-  if (drive.rows() == 0) refuse(recording, joined("has ", name, " and no drive"));
-  const double slack = drive.duration(0);
-  double last = drive.start() - slack;
-  for (const auto& row : rows) {
-    if (!(row.t >= last)) {
-      refuse(recording, joined(name, " are not in order of time from the drive's start on, at t = ",
-                               short_text(row.t), " s"));
-    }
-    last = row.t;
-  }
-  if (last > drive.t.back() + slack) {
+void require_order(const Recording& recording, const char* name, const Rows& rows) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (std::isfinite(rows[k].t) && (k == 0 || rows[k].t >= rows[k - 1].t)) continue;
     refuse(recording,
-           joined("of the ", name, " that of t = ", short_text(last),
-                  " s comes after the drive, which ends at ", short_text(drive.t.back()), " s"));
+           joined(name, " are not in order of time, at t = ", short_text(rows[k].t), " s"));
   }
 }
 
-void require_pairs(const Recording& recording) {
+void require_sightings(const Recording& recording) {
+  const Drive& drive = recording.drive;
+  require_order(recording, "sightings", recording.sightings);
+  const double slack = clock_slack(drive);
   for (const Sighting& one : recording.sightings) {
-    if (std::isnan(one.range) == std::isnan(one.bearing)) continue;
-    refuse(recording, joined("the sighting of ", one.landmark, " at t = ", short_text(one.t),
-                             " s has a ", std::isnan(one.range) ? "bearing" : "range",
-                             " alone, "
-                             "expected both or neither"));
+    const std::string which =
+        joined("the sighting of ", one.landmark, " at t = ", short_text(one.t), " s ");
+    if (one.t < drive.start() - slack || one.t > drive.t.back() + slack) {
+      refuse(recording, joined(which, "is outside the drive, expected ", short_text(drive.start()),
+                               " to ", short_text(drive.t.back()), " s"));
+    }
+    if (std::isnan(one.range) && !std::isnan(one.bearing)) {
+      refuse(recording, which + "has a bearing without a range");
+    }
+    if (std::isinf(one.range) || one.range < 0.0 || std::isinf(one.bearing)) {
+      refuse(recording, which + "has a range or a bearing that is negative or infinite");
+    }
+  }
+}
+
+void require_places(const Recording& recording) {
+  require_order(recording, "truth rows", recording.truth);
+  for (const TruthRow& row : recording.truth) {
+    if (std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.heading)) continue;
+    refuse(recording, joined("the truth at t = ", short_text(row.t), " s is not finite"));
+  }
+  for (const SurveyPoint& point : recording.survey) {
+    if (std::isfinite(point.x) && std::isfinite(point.y)) continue;
+    refuse(recording, joined("the survey of ", point.landmark, " is not finite"));
   }
 }
 
 }  // namespace
 
+double clock_slack(const Drive& drive) {
+  return 1e-9 + 8.0 * std::numeric_limits<double>::epsilon() * std::abs(drive.t.back());
+}
+
 void require_well_formed(const Recording& recording) {
   require_drive(recording);
-  require_times(recording, "sightings", recording.sightings);
-  require_times(recording, "truth rows", recording.truth);
-  require_pairs(recording);
+  require_sightings(recording);
+  require_places(recording);
 }
 
 void require_well_formed(const std::vector<Recording>& recordings) {

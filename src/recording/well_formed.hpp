@@ -10,9 +10,14 @@
 
 namespace trussmap {
 
-/// Throws std::invalid_argument, naming the recording, the column and the place, where columns of
-/// the drive differ in length, times do not increase (of sightings and truth: decrease) or leave
-/// the drive, a travel, covariate or time is not finite, or a range has no bearing.
+/// How far a time may lie outside a drive, s: times are written in decimals, so that what is
+/// reckoned from them misses a start or an end by a rounding error.
+[[nodiscard]] double clock_slack(const Drive& drive);
+
+/// Throws std::invalid_argument, naming the recording, the column and the place, where a drive has
+/// fewer than two rows or columns that differ in length, times do not increase (of sightings and
+/// truth: decrease), a sighting lies outside the drive or has a bearing without a range, or a
+/// number is not finite that must be.
 void require_well_formed(const Recording& recording);
 void require_well_formed(const std::vector<Recording>& recordings);
 

@@ -7,9 +7,14 @@
 #include "calibration/truth_holdout.hpp"
 #include "estimation/drawn_drive.hpp"
 #include "estimation/simulated_recordings.hpp"
+#include "shared_data.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -41,6 +46,17 @@ WheelCalibrationOptions without_noise() {
   WheelCalibrationOptions options;
   options.noise = false;
   return options;
+}
+
+/// Wheels explain the twist of a, not the compass of b, which pulls the estimates to and fro.
+TEST(WheelCalibration, SaysWhereItHasNotSettled) {
+  TRUSSMAP_NEEDS_SHARED("data/hidden");
+  for (const auto& [name, settled] : {std::pair{"a", true}, std::pair{"b", false}}) {
+    const std::filesystem::path folder = testing::shared("data/hidden") / name;
+    const WheelCalibration found =
+        calibrate_wheels({read_recording(folder)}, read_model(folder / "model.toml"));
+    EXPECT_EQ(found.settled, settled) << name;
+  }
 }
 
 TEST(WheelCalibration, ExactRecordingsGiveTheWheelsExactly) {

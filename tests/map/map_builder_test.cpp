@@ -76,6 +76,14 @@ TEST(MapBuilder, NoiseFreeLegsGiveTheExactMapByEveryMethod) {
   }
 }
 
+TEST(MapBuilder, ALandmarkThatIsNotThereHasNoPosition) {
+  MapBuilder builder;
+  EXPECT_THROW(static_cast<void>(builder.position(builder.here())), std::invalid_argument);
+  builder.start("A");
+  EXPECT_EQ(builder.position(0), Vector2(0.0, 0.0));
+  EXPECT_THROW(static_cast<void>(builder.position(1)), std::invalid_argument);
+}
+
 TEST(MapBuilder, GaussMarkovIsTheBatchLeastSquaresMap) {
   const Walk walk = random_walk(15, 200, 1.0, 4);
   MapBuilderOptions options;

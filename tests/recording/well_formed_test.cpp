@@ -45,6 +45,10 @@ std::string refusal(const std::function<void(Recording&)>& spoil) {
 TEST(WellFormed, ARecordingAsDescribedIs) {
   EXPECT_EQ(refusal([](Recording&) {}), "accepted");
   EXPECT_EQ(refusal([](Recording& r) { r.drive.heading.clear(); }), "accepted");
+  EXPECT_EQ(refusal([](Recording& r) {
+              r.truth = {{-5.0, 0.0, 0.0, 0.0}, {99.0, 4.0, 0.0, 0.0}};
+            }),
+            "accepted");
 }
 
 TEST(WellFormed, WhatIsWrongIsNamed) {
@@ -65,15 +69,25 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
        [](Recording& r) { std::swap(r.drive.t[5], r.drive.t[6]); }},
       {"sightings are not in order of time",
        [](Recording& r) { std::swap(r.sightings[0], r.sightings[1]); }},
-      {"sightings are not in order of time", [](Recording& r) { r.sightings[0].t = -50.0; }},
-      {"of the sightings that of t = 1e+06 s comes after the drive",
+      {"the sighting of A at t = -50 s is outside the drive, expected 0 to 10 s",
+       [](Recording& r) { r.sightings[0].t = -50.0; }},
+      {"the sighting of B at t = 1e+06 s is outside the drive",
        [](Recording& r) { r.sightings[2].t = 1e6; }},
       {"truth rows are not in order of time",
        [](Recording& r) { r.truth[1].t = std::numeric_limits<double>::quiet_NaN(); }},
-      {"the sighting of C at t = 5 s has a range alone",
-       [](Recording& r) { r.sightings[1].bearing = kAbsent; }},
-      {"the sighting of C at t = 5 s has a bearing alone",
+      {"the truth at t = 9 s is not finite", [](Recording& r) { r.truth[1].y = kAbsent; }},
+      {"the survey of A is not finite",
+       [](Recording& r) {
+         r.survey = {{"A", 1.0, kAbsent}};
+       }},
+      {"the sighting of C at t = 5 s has a bearing without a range",
        [](Recording& r) { r.sightings[1].range = kAbsent; }},
+      {"the sighting of C at t = 5 s has a range or a bearing that is negative",
+       [](Recording& r) { r.sightings[1].range = -2.0; }},
+      {"the drive has 1 rows, expected two at least",
+       [](Recording& r) {
+         r.drive = {{1.0}, {0.5}, {0.5}, {}, {}};
+       }},
   };
   for (const Spoilt& one : all) {
     const std::string said = refusal(one.by);
