@@ -13,6 +13,9 @@
 namespace trussmap {
 namespace {
 
+constexpr const char* kTurnSense = "turn sense";
+constexpr const char* kSignedTurnRate = "signed turn rate";
+
 struct Variable {
   std::string name;
   std::vector<Shape> shapes;
@@ -91,9 +94,9 @@ Shape turn_sense(const FitState& fit) {
 std::vector<Variable> variables_of(const FitState& fit) {
   std::vector<Variable> variables{{"all", {"1"}},
                                   {"heading", {"sin(heading)", "cos(heading)"}},
-                                  {"turn sense", {turn_sense(fit)}},
+                                  {kTurnSense, {turn_sense(fit)}},
                                   {"turn rate", {"abs(turn_rate)"}},
-                                  {"signed turn rate", {"turn_rate"}},
+                                  {kSignedTurnRate, {"turn_rate"}},
                                   {"direction of travel", {"sign(speed)"}},
                                   {"speed", {"abs(speed)"}},
                                   {"acceleration", {"acceleration"}},
@@ -135,6 +138,13 @@ std::vector<Kind> kinds_of(const FitState& fit) {
   return kinds;
 }
 
+/// Whether the variable holds the very noise of this residual. The difference of the wheels is the
+/// turn rate: where the robot weaves, its noise decides many a sign.
+bool is_its_own_noise(const Kind& kind, const Variable& variable) {
+  return kind.channel == Channel::difference &&
+         (variable.name == kTurnSense || variable.name == kSignedTurnRate);
+}
+
 double rms_of(const std::vector<double>& coefficients,
               const std::vector<std::vector<std::vector<double>>>& values) {
   double squares = 0.0;
@@ -158,6 +168,7 @@ std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
   const std::vector<Variable> variables = variables_of(fit);
   for (const Kind& kind : kinds_of(fit)) {
     for (const Variable& variable : variables) {
+      if (is_its_own_noise(kind, variable)) continue;
       Trend trend;
       trend.kind = kind.name;
       trend.against = variable.name;
