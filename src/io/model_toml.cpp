@@ -134,7 +134,7 @@ class ModelReader {
   }
 
   [[nodiscard]] Effect read_effect(const toml::table& table) const {
-    const Effect effect = spelt_out(table);
+    Effect effect = spelt_out(table);
     const std::size_t shapes = effect.shape.size();
     const std::size_t coefficients = effect.coefficients.size();
     const bool fits = effect.per_session ? coefficients % shapes == 0
@@ -157,7 +157,9 @@ class ModelReader {
     const toml::node* shape = table.get("shape");
     Effect effect;
     std::vector<double> coefficients;
-    for (const auto& [key, node] : table) {
+    for (const auto& entry : table) {
+      const toml::key& key = entry.first;
+      const toml::node& node = entry.second;
       if (key == "channel") {
         effect.channel = told(node, name, [&] { return channel_named(text(node, "channel")); });
       } else if (key == "shape") {

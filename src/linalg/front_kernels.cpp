@@ -104,7 +104,7 @@ TRUSSMAP_INLINE double dot(const double* a, const double* b, int m) {
   Four sums[2] = {};
   int i = 0;
   for (; i + 8 <= m; i += 8) {
-    for (int h = 0; h < 2; ++h) {
+    for (std::ptrdiff_t h = 0; h < 2; ++h) {
       Four x;
       Four y;
       std::memcpy(&x, a + i + 4 * h, sizeof x);

@@ -18,7 +18,7 @@ std::size_t area(int rows, int columns) {
 
 }  // namespace
 
-FrontalCholesky::FrontalCholesky(FrontTree tree, const std::vector<int>& sizes) {
+FrontalCholesky::FrontalCholesky(const FrontTree& tree, const std::vector<int>& sizes) {
   node_begin_.reserve(sizes.size() + 1);
   int unknowns = 0;
   for (const int size : sizes) {

@@ -35,7 +35,7 @@ class FrontalCholesky {
   FrontalCholesky() = default;
 
   /// `sizes`: unknowns per place of the tree.
-  FrontalCholesky(FrontTree tree, const std::vector<int>& sizes);
+  FrontalCholesky(const FrontTree& tree, const std::vector<int>& sizes);
 
   /// `lower`: in the order of the tree, its pattern within the tree's, each column's diagonal
   /// first. Throws NotPositiveDefinite.

@@ -40,6 +40,7 @@ struct NearestLandmarks::Index {
 
   void build(const LandmarkGraph& map) {
     std::vector<Entry> entries;
+    entries.reserve(static_cast<std::size_t>(map.landmarks()));
     for (int k = 0; k < map.landmarks(); ++k) entries.push_back(entry(k, map.landmark(k).position));
     tree = Tree(entries);
     follows = true;

@@ -105,7 +105,7 @@ std::string Pen::band(const ChartLayer& layer) const {
     const double high = at_y(layer, 2, row);
     if (!std::isfinite(px_x + low + high)) continue;
     upper += (upper.empty() ? "M" : "L") + px(px_x) + " " + px(high);
-    lower = "L" + px(px_x) + " " + px(low) + lower;
+    lower.insert(0, "L" + px(px_x) + " " + px(low));
   }
   return fmt::format("<path d=\"{}{}Z\" fill=\"{}\" fill-opacity=\"0.2\"/>\n", upper, lower,
                      paper(layer.colour));
