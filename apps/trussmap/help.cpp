@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "help.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <sstream>
 
@@ -66,6 +67,14 @@ class HelpFormatter : public CLI::Formatter {
     name += name.size() + 1 < kColumn ? std::string(kColumn - name.size(), ' ')
                                       : "\n" + std::string(kColumn, ' ');
     return name + wrapped(description, kWidth - kColumn, kColumn) + "\n";
+  }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    std::string name = "  " + command->get_name();
+    name.resize(std::max(name.size() + 1, kColumn), ' ');
+    std::string said = command->get_description();
+    if (said.ends_with('.')) said.pop_back();
+    return name + wrapped(said, kWidth - kColumn, kColumn) + "\n";
   }
 
   std::string make_description(const CLI::App* app) const override {
