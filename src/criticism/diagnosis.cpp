@@ -22,6 +22,10 @@ constexpr double kPractical = 0.05;    // rise of the arrival error
 constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
 
+HeldOutMetrics metrics_of(const HeldOutMetrics& metrics) {
+  return metrics;
+}
+
 /// Reports what a search has found.
 class Diagnostician {
  public:
@@ -65,9 +69,7 @@ class Diagnostician {
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Eigen::VectorXd& moved) const {
-    const HeldOutMetrics& now = result_.held_out;
-    if (moved.size() == 0) return now;
-    return legs_.moved(moved);
+    return moved.size() == 0 ? metrics_of(result_.held_out) : metrics_of(legs_.moved(moved));
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Tested& one) const {
