@@ -158,8 +158,8 @@ Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
   const Eigen::Index count = fit_.problem.landmark_count();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count, nodes.cols());
   for (int k = 0; k < count; ++k) {
-    if (normal.size(k) == 2)
-      rows.middleRows(Eigen::Index{2} * k, 2) = nodes.middleRows(normal.offset(k), 2);
+    if (normal.size(k) != 2) continue;
+    rows.middleRows(Eigen::Index{2} * k, 2) = nodes.middleRows(normal.offset(k), 2);
   }
   return rows;
 }

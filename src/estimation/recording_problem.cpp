@@ -11,8 +11,6 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/LU>
-
 namespace trussmap {
 namespace {
 

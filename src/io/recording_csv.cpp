@@ -12,7 +12,6 @@
 #include <cctype>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <string>
 #include <string_view>

@@ -72,17 +72,19 @@ void require_sightings(const Recording& recording) {
   require_order(recording, "sightings", recording.sightings);
   const double slack = clock_slack(drive);
   for (const Sighting& one : recording.sightings) {
-    const std::string which =
-        joined("the sighting of ", one.landmark, " at t = ", short_text(one.t), " s ");
+    const auto refuse_it = [&](const std::string& why) {
+      refuse(recording,
+             joined("the sighting of ", one.landmark, " at t = ", short_text(one.t), " s ", why));
+    };
     if (one.t < drive.start() - slack || one.t > drive.t.back() + slack) {
-      refuse(recording, joined(which, "is outside the drive, expected ", short_text(drive.start()),
-                               " to ", short_text(drive.t.back()), " s"));
+      refuse_it(joined("is outside the drive, expected ", short_text(drive.start()), " to ",
+                       short_text(drive.t.back()), " s"));
     }
     if (std::isnan(one.range) && !std::isnan(one.bearing)) {
-      refuse(recording, which + "has a bearing without a range");
+      refuse_it("has a bearing without a range");
     }
     if (std::isinf(one.range) || one.range < 0.0 || std::isinf(one.bearing)) {
-      refuse(recording, which + "has a range or a bearing that is negative or infinite");
+      refuse_it("has a range or a bearing that is negative or infinite");
     }
   }
 }
