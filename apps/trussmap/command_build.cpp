@@ -3,6 +3,7 @@
 //
 // trussmap build: a landmark map from recordings.
 #include "commands.hpp"
+#include "json_values.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -14,6 +15,7 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
@@ -32,18 +34,19 @@ namespace trussmap::app {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 struct BuildOptions {
   std::vector<std::string> recordings;
   std::string model;
-  std::string method = "elastic";
+  std::string method = "adjustment";
   std::string eta = "50";
   double min_drive = kDefaultMinDrive;  // m
   std::optional<double> gate;           // standard deviations; none: the method's own
   std::string out;
   std::string json_file;
   std::string svg;
+  std::string csv;
   PageOptions page;
 };
 
@@ -52,8 +55,8 @@ constexpr std::size_t kRejectedShown = 10;
 Method method_of(const std::string& option) {
   if (option == "elastic-printed") return Method::elastic_printed;
   if (option == "gauss-markov") return Method::gauss_markov;
-  if (option == "adjustment") return Method::adjustment;
-  return Method::elastic;
+  if (option == "elastic") return Method::elastic;
+  return Method::adjustment;
 }
 
 BuildMapOptions map_options(const BuildOptions& options) {
@@ -80,6 +83,44 @@ json survey_json(const MapOnSurvey& on_survey) {
           {"exchanged", exchanged}};
 }
 
+json positions_json(const LandmarkGraph& map) {
+  json positions = json::object();
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& one = map.landmark(k);
+    json at = {{"x", one.position.x()}, {"y", one.position.y()}};
+    if (one.covariance) {
+      at["c_xx"] = (*one.covariance)(0, 0);
+      at["c_xy"] = (*one.covariance)(0, 1);
+      at["c_yy"] = (*one.covariance)(1, 1);
+    }
+    positions[one.name] = std::move(at);
+  }
+  return positions;
+}
+
+json freed_json(const std::vector<FreedError>& freed) {
+  json result = nlohmann::ordered_json::array();
+  for (const FreedError& one : freed) {
+    json effect = effect_json(one.effect);
+    effect["coefficients"] = one.effect.coefficients;
+    effect["sd"] = one.sd;
+    result.push_back(std::move(effect));
+  }
+  return result;
+}
+
+json quality_json(const MapQuality& quality) {
+  return {{"median_sd_m", quality.median_sd},
+          {"worst_sd_m", quality.worst_sd},
+          {"worst_landmark", quality.worst_landmark},
+          {"dispersion", quality.dispersion},
+          {"loops", quality.loops},
+          {"misclosure_share", number_or_null(quality.misclosure_share)},
+          {"sightings", quality.sightings},
+          {"left_out_share", quality.left_out_share},
+          {"from_adjusted_rms_m", quality.from_adjusted}};
+}
+
 json result_json(const BuiltMap& built, const std::string& method) {
   json rejected = json::array();
   for (const RejectedSighting& one : built.rejected) {
@@ -89,6 +130,7 @@ json result_json(const BuiltMap& built, const std::string& method) {
                         {"misfit_m", one.misfit}});
   }
   json result = {{"method", method},
+                 {"verdict", built.good() ? "good" : "doubtful"},
                  {"legs", built.legs},
                  {"landmarks", built.map.landmarks()},
                  {"routes", built.map.routes()},
@@ -97,14 +139,16 @@ json result_json(const BuiltMap& built, const std::string& method) {
                  {"side_sightings", built.side_sightings},
                  {"rejected", rejected},
                  {"unconfirmed", built.unconfirmed},
-                 {"warnings", built.warnings}};
-  if (built.fit) {
-    result["chi2"] = built.fit->chi2;
-    result["dof"] = built.fit->dof;
-    result["p_value"] = built.fit->p_value;
-    result["iterations"] = built.fit->iterations;
-    result["converged"] = built.fit->converged;
-  }
+                 {"freed", freed_json(built.freed)},
+                 {"quality", quality_json(built.quality)},
+                 {"positions", positions_json(built.map)},
+                 {"warnings", built.warnings},
+                 {"notes", built.notes},
+                 {"chi2", built.fit.chi2},
+                 {"dof", built.fit.dof},
+                 {"p_value", built.fit.p_value},
+                 {"iterations", built.fit.iterations},
+                 {"converged", built.fit.converged}};
   if (built.on_survey) result["survey"] = survey_json(*built.on_survey);
   return result;
 }
@@ -132,36 +176,65 @@ void print_survey(const MapOnSurvey& on_survey) {
   }
 }
 
-void print_result(const BuiltMap& built, const BuildOptions& options) {
-  fmt::print("map of {} landmarks and {} routes, method {}\n\n", built.map.landmarks(),
-             built.map.routes(), options.method);
-  const auto line = [](const char* what, std::size_t number) {
-    fmt::print("  {:<28} {:>8}\n", what, number);
-  };
-  line("legs", static_cast<std::size_t>(built.legs));
-  line("loops closed at first sight", static_cast<std::size_t>(built.first_sight));
-  line("known routes driven again", static_cast<std::size_t>(built.refinements));
-  line("sightings beside a leg's end", static_cast<std::size_t>(built.side_sightings));
-  if (built.fit) {
-    fmt::print("  {:<28} {:>8.1f}  of {} degrees of freedom\n", "chi^2 of the adjustment",
-               built.fit->chi2, built.fit->dof);
-  }
-  line("sightings kept out", built.rejected.size());
+void print_left_out(const BuiltMap& built, bool several) {
+  fmt::print("  {:<28} {:>8}  of {}\n", "sightings left out", built.rejected.size(),
+             built.quality.sightings);
   for (std::size_t k = 0; k < std::min(built.rejected.size(), kRejectedShown); ++k) {
     const RejectedSighting& one = built.rejected[k];
-    const std::string where = options.recordings.size() > 1 ? one.recording + ", " : "";
+    const std::string where = several ? one.recording + ", " : "";
     fmt::print("    {}t = {:.3f} s: landmark {} seen {:.2f} m from where the map has it\n", where,
                one.t, one.landmark, one.misfit);
   }
   if (built.rejected.size() > kRejectedShown) {
     fmt::print("    and {} more (--json lists all)\n", built.rejected.size() - kRejectedShown);
   }
-  for (const std::string& name : built.unconfirmed) {
-    fmt::print("  landmark {} was sighted too seldom to be placed\n", name);
+}
+
+void print_quality(const BuiltMap& built) {
+  const MapQuality& quality = built.quality;
+  fmt::print("  {:<28} {:>8.3f} m  (median; worst {:.3f} m, landmark {})\n",
+             "standard error of landmarks", quality.median_sd, quality.worst_sd,
+             quality.worst_landmark);
+  if (built.method != Method::adjustment) {
+    fmt::print("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",
+               "off the adjusted map by", quality.from_adjusted);
   }
+  fmt::print("  {:<28} {:>8.2f}  (chi^2/dof of {} degrees of freedom; 1: as the model says)\n",
+             "dispersion of the errors", quality.dispersion, built.fit.dof);
+  if (quality.loops > 0) {
+    fmt::print("  {:<28} {:>7.2f} %  of the way, by dead reckoning (median of {})\n",
+               "loops miss their start by", 100.0 * quality.misclosure_share, quality.loops);
+  }
+}
+
+void print_result(const BuiltMap& built, const BuildOptions& options) {
+  fmt::print("map of {} landmarks and {} routes, method {}\n", built.map.landmarks(),
+             built.map.routes(), options.method);
+  fmt::print("{}\n\n", verdict_text(built.good() ? Mood::good : Mood::doubt,
+                                    verdict_in_words(built)));
+  print_quality(built);
+  const auto line = [](const char* what, int number) {
+    fmt::print("  {:<28} {:>8}\n", what, number);
+  };
+  line("legs", built.legs);
+  line("loops closed at first sight", built.first_sight);
+  line("known routes driven again", built.refinements);
+  line("sightings beside a leg's end", built.side_sightings);
+  print_left_out(built, options.recordings.size() > 1);
   if (built.on_survey) print_survey(*built.on_survey);
-  for (const std::string& warning : built.warnings) fmt::print("\n{}", warning_text(warning));
-  if (!options.out.empty()) fmt::print("\n  map written to {}\n", options.out);
+  for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
+    fmt::print("\n{}", warning_text(built.warnings[k]));
+  }
+  for (const std::string& note : built.notes) fmt::print("\nnote: {}\n", note);
+}
+
+void print_written(const Files& files) {
+  if (files.empty()) return;
+  fmt::print("\n  written: ");
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    fmt::print("{}{}", k == 0 ? "" : ", ", files[k].first.string());
+  }
+  fmt::print("\n");
 }
 
 void check_usage(const BuildOptions& options) {
@@ -179,8 +252,7 @@ void check_usage(const BuildOptions& options) {
 
 void run_build(const BuildOptions& options) {
   check_usage(options);
-  const bool at_once = options.method == "adjustment";
-  Progress progress({{"reading", 30}, {at_once ? "adjusting" : "building the map", 70}});
+  Progress progress({{"reading", 30}, {"building the map", 70}});
   progress.next();
   std::vector<Recording> recordings;
   for (const std::string& folder : options.recordings) {
@@ -208,6 +280,7 @@ void run_build(const BuildOptions& options) {
   if (!options.svg.empty()) {
     files.emplace_back(options.svg, map_picture(built, "Landmark map, " + method));
   }
+  if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(built.map));
   if (options.page.wanted()) {
     const std::string subject = subject_of(options.recordings, options.model) + ", " + method;
     add_page(files, map_page(built, subject), options.page);
@@ -215,6 +288,7 @@ void run_build(const BuildOptions& options) {
   write_files(files);
   progress.end();
   print_result(built, options);
+  print_written(files);
 }
 
 }  // namespace
@@ -232,13 +306,18 @@ void setup_build(const Command& app) {
   command
       .add_option(
           "--method", options->method,
-          "How the map is made: leg by leg, or by an adjustment of all measurements at once")
-      .check(one_of({"elastic", "elastic-printed", "gauss-markov", "adjustment"}))
+          "How the map is made: by an adjustment of all measurements at once, or leg by leg, as a "
+          "robot would on its way")
+      .check(one_of({"adjustment", "elastic", "elastic-printed", "gauss-markov"}))
       .capture_default_str();
   command.add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
       .type_name("FILE");
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
   command.add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
+      .type_name("FILE");
+  command
+      .add_option("--csv", options->csv,
+                  "Write where the landmarks are: landmark,x,y and, where known, c_xx,c_xy,c_yy")
       .type_name("FILE");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
@@ -257,10 +336,10 @@ void setup_build(const Command& app) {
   command
       .add_option(
           "--gate", options->gate,
-          fmt::format("Leave sightings out that contradict the map by more standard deviations "
-                      "than this; by default {:g}, of the sighting, the reckoning and the "
-                      "map jointly, with --method adjustment {:g}, of the sighting alone",
-                      kMapGate, kAdjustmentGate))
+          fmt::format("Leave out sightings that are off by more of their own standard deviations "
+                      "at the best fit of all others; by default {:g}, and more where too many "
+                      "would go",
+                      kAdjustmentGate))
       .check(above_zero());
   command.callback([options] { run_build(*options); });
 }

@@ -3,29 +3,24 @@
 //
 // A landmark map from recordings, in one call.
 //
-//   recordings, model --build_map--> BuiltMap: the map, what was kept out of it, how good it is
+//   recordings, model --build_map--> BuiltMap: the map, what was left out of it, how good it is
 //
+//   adjustment
+//           least squares of everything that was recorded
 //   elastic, elastic_printed, gauss_markov
 //           leg by leg, as a robot would build it on the way (map_builder.hpp): every leg is
-//           dead-reckoned, gated against the map so far and handed to the builder
-//   adjustment
-//           least squares of everything that was recorded; the routes are then laid leg by leg,
-//           with headings taken from the adjusted map
+//           dead-reckoned and handed to the builder
 //
-// The model's effects act with the coefficients that it states; nothing is fitted. Surveys judge
-// the map, and have no part in it. Its frame is that of the first session with a compass (else of
-// the first): the first landmark lies at the origin and the first heading points as its compass
-// says.
+// All methods rest on the adjustment. It tells sightings that are wrong, few, each against all
+// others, from a model that is wrong: those are left out; where the model is, the errors that
+// nearly every robot has (wheel diameters, wheelbase, heading drift, hard iron) are estimated
+// beside the map and named. The methods that go leg by leg leave out the same sightings, free the
+// same errors, and where there is no compass take the heading at every stop from the adjustment.
 //
-// Gate: a sighting whose landmark would lie too far from where the map has it is kept out and named
-// (gate.hpp). A landmark that is only seen from afar enters the map when `confirmations` sightings
-// agree on where it is: one misread label cannot place it.
-//
-// Without a compass the heading is taken from the map on every leg between landmarks that it knows.
-// While the map is young that carries its errors along; therefore the recordings are gone through
-// `looks` times, each time building the map anew, with headings and gate from the map of the look
-// before. A further session begins where it first sights a landmark of the map; without a compass
-// its heading there follows from the next landmarks of the map that it meets.
+// The model's effects act with the coefficients that it states. Surveys judge the map, and have no
+// part in it. Its frame is that of the first session with a compass (else of the first): the first
+// landmark lies at the origin and the first heading points as its compass says. Leg by leg, a
+// further session begins where it first sights a landmark of the map.
 #pragma once
 
 #include "trussmap/landmark_map.hpp"
@@ -41,18 +36,12 @@
 namespace trussmap {
 
 struct BuildMapOptions {
-  Method method = Method::elastic;
+  Method method = Method::adjustment;
   Eta eta{.hold_first = false};         ///< of the elastic methods
   double min_drive = kDefaultMinDrive;  ///< m of driven path: a shorter drive is no leg
-  std::optional<double> gate =
-      {};                 ///< standard deviations; infinity: none; absent: the method's own
-  int looks = 2;          ///< without a compass
-  int settle = 5;         ///< rounds in which an elastic map comes to rest (MapBuilder::settle)
-  int confirmations = 3;  ///< of a landmark that is only seen from afar
-  double map_sd = 0.3;    ///< m per coordinate: how wrong the map may be while it is built
-  /// rad, added to the noise of bearings where there is no compass: headings rest on single
-  /// sightings then, and one that comes late while the robot turns is off by more than its noise.
-  double bearing_slack = 0.1;
+  /// Standard deviations beyond which a sighting is left out, however many are; infinity: none is.
+  /// Absent: 4, widened where too many would go.
+  std::optional<double> gate = {};
 };
 
 struct RejectedSighting {
@@ -62,13 +51,36 @@ struct RejectedSighting {
   double misfit = 0.0;  ///< m, from where the map has the landmark
 };
 
-/// How well an adjustment's map fits what was measured.
+/// A systematic error that the model does not have, estimated beside the map.
+struct FreedError {
+  Effect effect;           ///< with its coefficients
+  std::vector<double> sd;  ///< of each
+};
+
+/// How well the adjustment fits what was measured.
 struct MapFit {
   double chi2 = 0.0;  ///< of the measurements kept
   int dof = 0;
   double p_value = 1.0;  ///< chance of a chi^2 as large where the model is right
   int iterations = 0;
   bool converged = false;
+};
+
+/// How good a map is, as far as that is known without a survey.
+struct MapQuality {
+  /// How far landmarks are from the truth, by the adjustment, after the best rotation and
+  /// translation: root mean square distances, m; the noise taken as large as it turned out to be.
+  double median_sd = 0.0;
+  double worst_sd = 0.0;
+  std::string worst_landmark;
+  double dispersion = 1.0;  ///< chi^2/dof: 1 where the model's noise explains all errors
+  int loops = 0;            ///< from a landmark back to it
+  /// By how much dead reckoning misses a loop's start, as a share of the way: median, NaN without
+  /// loops.
+  double misclosure_share = kAbsent;
+  int sightings = 0;
+  double left_out_share = 0.0;  ///< of the sightings
+  double from_adjusted = 0.0;   ///< rms distance from the adjustment's map, m
 };
 
 /// The map beside the recordings' surveys.
@@ -80,19 +92,25 @@ struct MapOnSurvey {
 
 struct BuiltMap {
   LandmarkGraph map;  ///< with covariances of the landmarks where they were adjusted
-  Method method = Method::elastic;
+  Method method = Method::adjustment;
   int legs = 0;
   int first_sight = 0;     ///< loops closed
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there
   std::vector<RejectedSighting> rejected;
-  std::vector<std::string> unconfirmed;  ///< landmarks sighted, but never often enough
+  std::vector<FreedError> freed;  ///< what was estimated beside the map; empty: nothing
+  std::vector<std::string> unconfirmed;  ///< landmarks that one sighting from afar alone has
   /// Positions by dead reckoning alone, never corrected: mean over all sightings of a landmark (of
   /// the first recording that saw it), in that recording's frame.
   LandmarkPositions dead_reckoned;
-  std::optional<MapFit> fit;             ///< of an adjustment
+  MapFit fit;  ///< of the adjustment
+  MapQuality quality;
   std::optional<MapOnSurvey> on_survey;  ///< where three landmarks of the map were surveyed
-  std::vector<std::string> warnings;     ///< in words: what speaks against the map, and the remedy
+  std::vector<std::string> warnings;  ///< in words: what speaks against the map, and the remedy
+  std::vector<std::string> notes;     ///< in words: what is worth knowing besides
+
+  /// Nothing speaks against the map.
+  [[nodiscard]] bool good() const { return warnings.empty(); }
 };
 
 /// Builds one map from the sessions. Throws InputError where a recording has no sightings or there

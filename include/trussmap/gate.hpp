@@ -5,21 +5,22 @@
 // defaults stand here.
 //
 //   estimator                  what is gated, and against what                     default
-//   map built leg by leg       a sighting, against the map as it stands; in        8 sd
-//                              standard deviations of the sighting, the
-//                              reckoning since the last leg and the map jointly
-//   map by adjustment          a sighting, against the best fit of all others;     4 sd
-//                              in its own standard deviations
-//   compare, fit, diagnose,    the same                                            0: no gate
+//   map from recordings        a sighting, against the best fit of all others;     4 sd
+//                              in its own standard deviations. More where too
+//                              many would go
+//   compare, fit, diagnose,    the same, however many go                           0: no gate
 //   discover
+//   map builder, gauss_markov  an arrival, against the map as it stands; in        8 sd
+//                              standard deviations of leg and map jointly, and
+//                              of what misfits have been lately
 //   robust pose graph          a loop closure; e' Omega e, which is squared,       16.27
 //                              against the best fit of all others
 //
 // The rule behind them: a map is wanted in spite of wrong sightings, so that building one gates by
-// default, and a map that is not yet complete needs the wider gate. A model is judged by the
-// measurements that contradict it, so that judging one leaves none out unless it is asked to: a
-// gate would hide what it looks for. 16.27 is the 0.999 quantile of chi^2 with 3 degrees of
-// freedom.
+// default, and a map that is not yet complete needs the wider gate. Neither takes a model that is
+// wrong for many wrong sightings. A model is judged by the measurements that contradict it, so that
+// judging one leaves none out unless it is asked to: a gate would hide what it looks for. 16.27 is
+// the 0.999 quantile of chi^2 with 3 degrees of freedom.
 #pragma once
 
 namespace trussmap {

@@ -38,11 +38,13 @@
 // A call that throws leaves the builder as it was.
 #pragma once
 
+#include "trussmap/gate.hpp"
 #include "trussmap/landmark_map.hpp"
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace trussmap {
 
@@ -67,6 +69,11 @@ struct MapBuilderOptions {
   bool refine = true;       ///< false: first sight only (a known route only updates its averages)
   bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
                             ///< traversal's own
+  /// `gauss_markov`: an arrival whose misfit is beyond so many standard deviations, of leg and map
+  /// together, is left out: a landmark was taken for another. Where misfits have been large lately
+  /// the gate is as much wider, and what was left out comes back: a systematic error is no wrong
+  /// landmark. Infinity: none is left out.
+  double gate = kMapGate;
 };
 
 /// What an arrival did to the map.
@@ -76,14 +83,24 @@ struct Arrival {
     first_sight,   ///< a loop closed: the chain of fresh routes was corrected
     new_route,     ///< between two settled landmarks: nothing moved, its averages began
     refinement,    ///< a known route was driven again
+    left_out,      ///< contradicts the map (MapBuilderOptions::gate): nothing moved
   };
   Kind kind = Kind::new_landmark;
-  int landmark = -1;                 ///< where the robot is now
-  int route = -1;                    ///< the route it came by
+  int landmark = -1;                 ///< where the robot is now, or was said to be
+  int route = -1;                    ///< the route it came by, -1 where it was left out
   int landmarks_moved = 0;           ///< displaced by more than 1e-12 m
   double largest_move = 0.0;         ///< m
   Vector2 misfit = Vector2::Zero();  ///< measured displacement - the map's before, m
   int eta = 0;  ///< landmarks in the structure that a refinement solved, else 0
+  int back = 0;  ///< of those left out earlier that came back now
+};
+
+/// An arrival or a side measurement that was left out and has not come back.
+struct LeftOutArrival {
+  std::string from;
+  std::string to;
+  Traversal leg;     ///< from there, map axes
+  double sds = 0.0;  ///< how far off it was, in standard deviations of leg and map together
 };
 
 class MapBuilder {
@@ -101,7 +118,8 @@ class MapBuilder {
 
   /// The robot drove from the landmark it stood on to this one; `leg` in map axes. Throws
   /// std::invalid_argument if it stood nowhere, on this landmark already, or if the leg is not
-  /// finite with a positive definite covariance.
+  /// finite with a positive definite covariance. After an arrival that is left out the robot counts
+  /// as still on its way: the next leg goes on from this one.
   Arrival arrive(const std::string& landmark, const Traversal& leg);
 
   /// A side measurement from the landmark the robot stands on, as by sighting another one from
@@ -114,13 +132,23 @@ class MapBuilder {
   /// close to the least-squares map. Cost: one refinement per route.
   double settle(double gain_limit);
 
+  /// `elastic` only: the whole truss comes to rest at once, every route pulling towards its averages
+  /// with the stiffness that it has; the first landmark stays. What settle's rounds tend to, where
+  /// every landmark may move: after the drive, when cost does not matter. Returns the largest move,
+  /// m. Cost: one solution of the whole truss.
+  double rest();
+
   [[nodiscard]] const MapBuilderOptions& options() const;
 
   /// Changes what refinements do from now on. The method and the kind of eta must stay as they
   /// are, else std::invalid_argument.
   void set_options(const MapBuilderOptions& options);
 
-  /// Landmark the robot stands on, -1 before start().
+  /// What was left out and has not come back, in the order in which it came.
+  [[nodiscard]] const std::vector<LeftOutArrival>& left_out() const;
+
+  /// Landmark the robot stands on, -1 before start(). After an arrival that was left out the one
+  /// that it stood on before.
   [[nodiscard]] int here() const;
 
   [[nodiscard]] int landmarks() const;

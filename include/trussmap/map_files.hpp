@@ -81,6 +81,9 @@ namespace trussmap {
 /// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
 [[nodiscard]] std::string format_dot(const LandmarkGraph& map);
 
+/// A table of the landmarks: landmark, x, y [m] and, where all are known, c_xx, c_xy, c_yy [m^2].
+[[nodiscard]] std::string format_positions(const LandmarkGraph& map);
+
 // Pose graphs.
 
 /// Throws InputError with file and line: a tag that is not in the table, too few or too many

@@ -17,6 +17,8 @@
 
 namespace trussmap {
 
+struct BuiltMap;
+
 // Effects.
 
 /// "the wheelbase is 2.0 +- 0.1 % larger than nominal". `effect` has coefficients;
@@ -78,6 +80,8 @@ struct Advice {
 /// "misfit: errors are 2.3 times what the model's noise allows": the verdict, then what it rests
 /// on.
 [[nodiscard]] std::string verdict_in_words(const Comparison& result);
+/// "good: landmarks are uncertain by 0.012 m (median)", "doubtful: " and the first warning.
+[[nodiscard]] std::string verdict_in_words(const BuiltMap& built);
 [[nodiscard]] std::string verdict_in_words(const Diagnosis& result);
 [[nodiscard]] std::string verdict_in_words(const Discovery& result);
 

@@ -2,15 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/build_map.hpp"
 
-#include "build_map/adjusted_map.hpp"
 #include "build_map/leg_by_leg.hpp"
 #include "build_map/map_doubts.hpp"
+#include "build_map/map_fit.hpp"
 #include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
 #include <map>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -20,24 +22,54 @@ constexpr int kFewestSurveyed = 3;
 void check(const std::vector<Recording>& recordings, const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
   require_well_formed(recordings);
-  if (!(options.gate.value_or(kMapGate) > 0.0) || !(options.map_sd >= 0.0) || options.looks < 1 ||
-      options.settle < 0 || options.confirmations < 1 || !(options.bearing_slack >= 0.0) ||
+  if (!(options.gate.value_or(kAdjustmentGate) > 0.0) ||
       !(options.min_drive >= 0.0)) {
     throw std::invalid_argument("an option of build_map is out of range");
   }
 }
 
+void require_sightings(const std::vector<Recording>& recordings) {
+  for (const Recording& one : recordings) {
+    if (!one.sightings.empty()) continue;
+    throw InputError(one.name, 0, "no landmark was sighted, expected sightings to build a map from");
+  }
+}
+
 std::vector<SightedDrive> sessions_of(const std::vector<ClearedRecording>& cleared,
-                                      const Model& model) {
+                                      const Model& model, const std::vector<SessionGuide>& guides) {
   std::vector<SightedDrive> sessions;
-  for (const ClearedRecording& one : cleared) {
-    if (one.recording.sightings.empty()) {
-      throw InputError(one.recording.name, 0,
-                       "no landmark was sighted, expected sightings to build a map from");
-    }
-    sessions.emplace_back(one, model);
+  sessions.reserve(cleared.size());
+  for (std::size_t k = 0; k < cleared.size(); ++k) {
+    sessions.emplace_back(cleared[k], model, guides[k]);
   }
   return sessions;
+}
+
+std::set<std::string> landmarks_stood_on(const std::vector<ClearedRecording>& clear,
+                                         const std::vector<SessionGuide>& guides) {
+  std::set<std::string> names;
+  for (std::size_t s = 0; s < clear.size(); ++s) {
+    const std::vector<Sighting>& sightings = clear[s].recording.sightings;
+    for (std::size_t k = 0; k < sightings.size(); ++k) {
+      if (sightings[k].standing() && !guides[s].left_out[k]) names.insert(sightings[k].landmark);
+    }
+  }
+  return names;
+}
+
+BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& clear,
+                const std::vector<SessionGuide>& guides, const BuildMapOptions& options) {
+  const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
+  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
+  if (options.method == Method::adjustment) how.build.method = Method::gauss_markov;
+  BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how);
+  built.method = options.method;
+  if (options.method == Method::adjustment) place_as(landmarks, built.map);
+  const RecordingAdjustment& fit = best.fit.adjustment;
+  built.fit = MapFit{fit.chi2, fit.dof, fit.p_value, fit.iterations, fit.converged};
+  built.freed = best.freed;
+  built.rejected = left_out_of(best.fit);
+  return built;
 }
 
 std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
@@ -67,14 +99,17 @@ std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
 BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
                    const BuildMapOptions& options) {
   check(recordings, options);
-  const std::vector<ClearedRecording> clear = cleared(recordings, model);
-  const std::vector<SightedDrive> sessions = sessions_of(clear, model);
-  BuiltMap built = options.method == Method::adjustment
-                       ? map_by_adjustment(recordings, model, sessions, options)
-                       : map_leg_by_leg(sessions, {options, options.gate.value_or(kMapGate), {}});
+  require_sightings(recordings);
+  const MapFitState best = fit_map(recordings, model, options.gate);
+  const std::vector<SessionGuide> guides = guides_of(best.fit);
+  const std::vector<ClearedRecording> believed = cleared(recordings, model);
+  BuiltMap built =
+      map_of(best, best.freed.empty() ? believed : cleared(best.fit), guides, options);
+  ReckonedMap reckoned = reckoned_map(sessions_of(believed, model, guides));
+  built.quality = quality_of(built, best, reckoned);
+  built.dead_reckoned = std::move(reckoned.places);
   built.on_survey = laid_on_survey(built, recordings);
-  const std::vector<std::string> doubts = doubts_of(built, recordings, model);
-  built.warnings.insert(built.warnings.begin(), doubts.begin(), doubts.end());
+  doubt(built, best, recordings, model);
   return built;
 }
 

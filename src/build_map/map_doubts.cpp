@@ -3,9 +3,14 @@
 #include "build_map/map_doubts.hpp"
 
 #include "text/number_text.hpp"
+#include "trussmap/alignment.hpp"
+#include "trussmap/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -34,6 +39,13 @@ void doubt_units(const std::vector<Recording>& recordings, const Model& model,
   }
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return kAbsent;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// How far the map's routes are from what was measured of them, in standard deviations, in the
 /// middle of all routes. Sound maps have 1 to 5.
 double contradiction(const LandmarkGraph& map) {
@@ -44,19 +56,177 @@ double contradiction(const LandmarkGraph& map) {
                         route.displacement;
     distances.push_back(std::sqrt(off.dot(route.covariance.inverse() * off)));
   }
-  if (distances.empty()) return 0.0;
-  std::nth_element(distances.begin(), distances.begin() + std::ssize(distances) / 2,
-                   distances.end());
-  return distances[distances.size() / 2];
+  return distances.empty() ? 0.0 : median(std::move(distances));
 }
 
-}  // namespace
+/// Rms distance of the built map from the adjusted one, after rotation and translation, m.
+double distance_from(const FitState& fit, const LandmarkGraph& map) {
+  std::vector<Vector2> here, there;
+  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
+    const std::optional<int> landmark = map.find(fit.problem.landmarks[k]);
+    if (!landmark) continue;
+    here.push_back(map.landmark(*landmark).position);
+    there.push_back(fit.adjustment.state.landmarks[k]);
+  }
+  return here.size() < 2 ? 0.0 : align_rigidly(here, there).rms;
+}
 
-std::vector<std::string> doubts_of(const BuiltMap& built, const std::vector<Recording>& recordings,
-                                   const Model& model) {
-  constexpr double kTorn = 20.0;  // standard deviations
-  std::vector<std::string> warnings;
-  doubt_units(recordings, model, warnings);
+/// Root mean square distance of landmarks from their middle, m.
+double extent_of(const LandmarkGraph& map) {
+  Vector2 middle = Vector2::Zero();
+  for (int k = 0; k < map.landmarks(); ++k) middle += map.landmark(k).position / map.landmarks();
+  double sum = 0.0;
+  for (int k = 0; k < map.landmarks(); ++k) {
+    sum += (map.landmark(k).position - middle).squaredNorm();
+  }
+  return std::sqrt(sum / std::max(1, map.landmarks()));
+}
+
+int sightings_of(const RecordingProblem& problem) {
+  return static_cast<int>(
+      std::count_if(problem.measurements.begin(), problem.measurements.end(),
+                    [](const Measurement& one) { return is_sighting(one.kind); }));
+}
+
+std::string signed_text(double value, int digits) {
+  return (value < 0.0 ? "-" : "+") + fixed_text(std::abs(value), digits);
+}
+
+std::string words_of(const FreedError& one) {
+  const double value = one.effect.coefficients.front();
+  const double sd = one.sd.front();
+  const auto percent = [&] {
+    return signed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
+  };
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  switch (one.effect.channel) {
+    case Channel::drift:
+      return "heading drift " + signed_text(60.0 * value / kDegree, 1) + " +- " +
+             fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
+    case Channel::compass:
+      return "hard iron " +
+             fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 1) + " +- " +
+             fixed_text(std::max(sd, one.sd.back()) / kDegree, 1) + " deg";
+    case Channel::turn:
+      return "turns " + percent() + " (wheelbase)";
+    default:
+      return one.effect.name + " " + percent();
+  }
+}
+
+/// Those that stand out on their own, or all where none does.
+std::string words_of(const std::vector<FreedError>& freed) {
+  constexpr double kStandsOut = 3.0;  // standard deviations
+  std::string notable, all;
+  for (const FreedError& one : freed) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < one.sd.size(); ++k) {
+      most = std::max(most, std::abs(one.effect.coefficients[k]) / one.sd[k]);
+    }
+    const std::string words = words_of(one);
+    all += (all.empty() ? "" : ", ") + words;
+    if (most > kStandsOut) notable += (notable.empty() ? "" : ", ") + words;
+  }
+  return notable.empty() ? all : notable;
+}
+
+/// Landmarks that lost more sightings than they kept, and those that hang on a single one from
+/// afar.
+struct Supports {
+  std::vector<std::string> contradicted;
+  std::vector<std::string> single;
+};
+
+Supports supports_of(const FitState& fit) {
+  const RecordingProblem& problem = fit.problem;
+  std::vector<int> kept(problem.landmarks.size());
+  std::vector<int> lost(problem.landmarks.size());
+  std::vector<bool> stood_on(problem.landmarks.size());
+  for (const Measurement& one : problem.measurements) {
+    if (!is_sighting(one.kind)) continue;
+    ++kept[idx(one.to)];
+    if (one.kind == MeasurementKind::standing) stood_on[idx(one.to)] = true;
+  }
+  for (const int k : fit.adjustment.left_out) {
+    --kept[idx(problem.measurements[idx(k)].to)];
+    ++lost[idx(problem.measurements[idx(k)].to)];
+  }
+  Supports result;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (lost[k] >= kept[k]) result.contradicted.push_back(problem.landmarks[k]);
+    if (kept[k] == 1 && lost[k] == 0 && !stood_on[k]) result.single.push_back(problem.landmarks[k]);
+  }
+  return result;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 5;
+  std::string result;
+  for (std::size_t k = 0; k < std::min(names.size(), kNamed); ++k) {
+    result += (k == 0 ? "" : ", ") + names[k];
+  }
+  return names.size() > kNamed ? joined(result, " and ", names.size() - kNamed, " more") : result;
+}
+
+void doubt_fit(BuiltMap& built, const MapFitState& best) {
+  constexpr double kManyOut = 0.08;
+  constexpr double kSurelyFreed = 1e-3;
+  constexpr double kImplausible = 1e-6;
+  constexpr double kNoticeable = 1.1;  // of the dispersion
+  const RecordingAdjustment& fit = best.fit.adjustment;
+  std::vector<std::string>& warnings = built.warnings;
+  if (!fit.converged) {
+    warnings.push_back(joined("no minimum was reached in ", fit.iterations,
+                              " iterations: the map is not the best one"));
+  }
+  if (!built.freed.empty()) {
+    const std::string words = words_of(built.freed);
+    if (best.p_freed < kSurelyFreed) {
+      warnings.push_back("the robot is not as its model says (" + words +
+                         ", estimated beside the map); run discover for what is missing");
+    } else {
+      built.notes.push_back("estimated beside the map, though hardly more than noise: " + words);
+    }
+  }
+  const double share = built.quality.left_out_share;
+  if (std::isinf(fit.gate_widened)) {
+    warnings.push_back(
+        "so many sightings contradict the rest that none was left out: the model is wrong, or its "
+        "noise is far too small; run discover");
+  } else if (fit.gate_widened > 1.0) {
+    warnings.push_back("more sightings contradict the rest than are ever wrong: only those beyond " +
+                       fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
+                       " standard deviations were left out; the model is wrong, or its noise is too "
+                       "small; run discover");
+  } else if (share > kManyOut) {
+    warnings.push_back(fixed_text(100.0 * share, 0) +
+                       " % of the sightings contradict the rest and were left out: that many are "
+                       "seldom wrong; run discover");
+  }
+  if (fit.p_value < kImplausible && built.quality.dispersion > kNoticeable) {
+    warnings.push_back("errors are " + fixed_text(std::sqrt(built.quality.dispersion), 1) +
+                       " times what the model's noise allows: its noise is too small, or an effect "
+                       "is missing; run discover");
+  }
+}
+
+void doubt_shape(BuiltMap& built, const MapFitState& best) {
+  constexpr double kTorn = 20.0;      // standard deviations
+  constexpr double kMuchWorse = 3.0;  // times the adjusted map's standard error
+  constexpr double kLoose = 0.1;      // of the map's extent
+  const double extent = extent_of(built.map);
+  std::vector<std::string>& warnings = built.warnings;
+  if (built.quality.median_sd > kLoose * extent) {
+    warnings.push_back("the landmarks are loosely tied together: half of them are uncertain by " +
+                       fixed_text(built.quality.median_sd, 2) + " m or more; drive more loops");
+  }
+  if (built.method != Method::adjustment) {
+    const double off = built.quality.from_adjusted;
+    if (off > kMuchWorse * built.quality.median_sd && off > kLoose * extent) {
+      warnings.push_back("this method's map lies " + fixed_text(off, 2) +
+                         " m (rms) from the adjusted one, which is the better one: take that");
+    }
+  }
   const double torn = contradiction(built.map);
   if (torn > kTorn) {
     warnings.push_back("the map contradicts its own routes, by " + fixed_text(torn, 0) +
@@ -66,7 +236,57 @@ std::vector<std::string> doubts_of(const BuiltMap& built, const std::vector<Reco
                             : "wrong units, a wrong wheelbase, exchanged columns or labels, or "
                               "noise that is believed too small"));
   }
-  return warnings;
+  Supports supports = supports_of(best.fit);
+  if (!supports.contradicted.empty()) {
+    warnings.push_back("at least as many sightings were left out as kept of: " +
+                       listed(supports.contradicted) + "; where they are is not certain");
+  }
+  std::vector<std::string> missing;
+  for (const std::string& name : best.fit.problem.landmarks) {
+    if (!built.map.find(name)) missing.push_back(name);
+  }
+  if (!missing.empty()) {
+    built.notes.push_back("not in the map, for no leg and no stop of a leg has them: " +
+                          listed(missing));
+  }
+  if (!supports.single.empty()) {
+    built.notes.push_back("sighted only once, so that nothing checks where they are: " +
+                          listed(supports.single));
+  }
+  built.unconfirmed = std::move(supports.single);
+}
+
+}  // namespace
+
+MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
+                      const ReckonedMap& reckoned) {
+  const RecordingAdjustment& fit = best.fit.adjustment;
+  MapQuality result;
+  result.dispersion = fit.chi2 / std::max(1, fit.dof);
+  const double scale = std::sqrt(std::max(1.0, result.dispersion));
+  std::vector<double> sds;
+  for (std::size_t k = 0; k < fit.landmark_sds.size(); ++k) {
+    sds.push_back(scale * fit.landmark_sds[k]);
+    if (sds.back() < result.worst_sd) continue;
+    result.worst_sd = sds.back();
+    result.worst_landmark = best.fit.problem.landmarks[k];
+  }
+  result.median_sd = median(std::move(sds));
+  result.loops = static_cast<int>(reckoned.misclosures.size());
+  result.misclosure_share = median(reckoned.misclosures);
+  result.sightings = sightings_of(best.fit.problem);
+  result.left_out_share =
+      static_cast<double>(fit.left_out.size()) / std::max(1, result.sightings);
+  result.from_adjusted =
+      built.method == Method::adjustment ? 0.0 : distance_from(best.fit, built.map);
+  return result;
+}
+
+void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording>& recordings,
+           const Model& model) {
+  doubt_units(recordings, model, built.warnings);
+  doubt_fit(built, best);
+  doubt_shape(built, best);
 }
 
 }  // namespace trussmap

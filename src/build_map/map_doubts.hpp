@@ -1,20 +1,23 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What speaks against a map, in words.
+// How good a map is, without a survey: its figures, and in words what speaks against it.
 #pragma once
 
+#include "build_map/map_fit.hpp"
+#include "build_map/reckoned_map.hpp"
 #include "trussmap/build_map.hpp"
 
-#include <string>
 #include <vector>
 
 namespace trussmap {
 
-/// Numbers that no wheeled robot has (other units, mostly), and a map that is torn: whose routes
-/// contradict what was measured of them.
-[[nodiscard]] std::vector<std::string> doubts_of(const BuiltMap& built,
-                                                 const std::vector<Recording>& recordings,
-                                                 const Model& model);
+/// Figures of the built map, which has its positions. `best` is the fit that it rests on.
+[[nodiscard]] MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
+                                    const ReckonedMap& reckoned);
+
+/// Fills in the warnings and notes; the map has its quality.
+void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording>& recordings,
+           const Model& model);
 
 }  // namespace trussmap

@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/sighted_drive.hpp"
 
-#include "geometry/index.hpp"
-
-#include <cmath>
-
 namespace trussmap {
 
-LandmarkOffset SightedDrive::offset_of(const Sighting& sighting, double bearing_slack) const {
-  Noise noise = model_.noise;
-  if (bearing_slack > 0.0) noise.bearing = std::hypot(noise.bearing, bearing_slack);
-  LandmarkOffset offset = landmark_offset(sighting, noise);
-  offset.offset_robot += cleared_.sensor[idx(&sighting - recording().sightings.data())];
+LandmarkOffset SightedDrive::offset_of(const Sighting& sighting) const {
+  LandmarkOffset offset = landmark_offset(sighting, model_.noise);
+  offset.offset_robot += cleared_.sensor[place_of(sighting)];
   return offset;
 }
 

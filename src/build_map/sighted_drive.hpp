@@ -8,14 +8,21 @@
 #include "trussmap/dead_reckoning.hpp"
 
 #include <limits>
+#include <vector>
 
 namespace trussmap {
 
+/// What the best fit of everything says of one session, per sighting of its cleared recording.
+struct SessionGuide {
+  std::vector<double> headings;  ///< rad, map frame: of the robot at that instant
+  std::vector<bool> left_out;
+};
+
 class SightedDrive {
  public:
-  /// Keeps references to both.
-  SightedDrive(const ClearedRecording& cleared, const Model& model)
-      : cleared_(cleared), model_(model) {}
+  /// Keeps references to all.
+  SightedDrive(const ClearedRecording& cleared, const Model& model, const SessionGuide& guide)
+      : cleared_(cleared), model_(model), guide_(guide) {}
 
   [[nodiscard]] const Recording& recording() const { return cleared_.recording; }
   [[nodiscard]] const Drive& drive() const { return recording().drive; }
@@ -33,14 +40,24 @@ class SightedDrive {
                        cleared_.slip);
   }
 
-  /// Where a sighting of this recording puts its landmark. `bearing_slack` adds to the bearing's
-  /// noise, rad.
-  [[nodiscard]] LandmarkOffset offset_of(const Sighting& sighting,
-                                         double bearing_slack = 0.0) const;
+  /// Where a sighting of this recording puts its landmark.
+  [[nodiscard]] LandmarkOffset offset_of(const Sighting& sighting) const;
+
+  [[nodiscard]] bool is_left_out(const Sighting& sighting) const {
+    return guide_.left_out[place_of(sighting)];
+  }
+  [[nodiscard]] double guided_heading(const Sighting& sighting) const {
+    return guide_.headings[place_of(sighting)];
+  }
 
  private:
+  [[nodiscard]] std::size_t place_of(const Sighting& sighting) const {
+    return static_cast<std::size_t>(&sighting - recording().sightings.data());
+  }
+
   const ClearedRecording& cleared_;
   const Model& model_;
+  const SessionGuide& guide_;
 };
 
 }  // namespace trussmap

@@ -72,6 +72,54 @@ Eigen::VectorXd initial(const RecordingAdjustmentOptions& options, Eigen::Index 
   return options.coefficients.size() == count ? options.coefficients : Eigen::VectorXd::Zero(count);
 }
 
+/// Square roots of the traces of (1 - G G') C (1 - G G'), G an orthonormal basis of the points'
+/// shifts and rotation about their middle (Baarda's S-transformation, inner constraints).
+std::vector<double> shape_sds(const std::vector<Vector2>& points, const RecordingSystem& system,
+                              const std::vector<Matrix2>& covariances) {
+  const auto count = static_cast<Eigen::Index>(points.size());
+  Vector2 middle = Vector2::Zero();
+  for (const Vector2& point : points) middle += point / static_cast<double>(count);
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(2 * count, 3);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    G.block<2, 2>(2 * k, 0).setIdentity();
+    G.block<2, 1>(2 * k, 2) = quarter_turn(Vector2(points[idx(static_cast<int>(k))] - middle));
+  }
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    const double length = G.col(c).norm();
+    if (length > 0.0) G.col(c) /= length;
+  }
+  const Eigen::MatrixXd CG = system.landmark_covariance_times(G);
+  const Eigen::Matrix3d GCG = G.transpose() * CG;
+  std::vector<double> sds;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Matrix<double, 2, 3> own = G.middleRows<2>(2 * k);
+    const Matrix2 inner = covariances[idx(static_cast<int>(k))] + own * GCG * own.transpose() -
+                          own * CG.middleRows<2>(2 * k).transpose() -
+                          CG.middleRows<2>(2 * k) * own.transpose();
+    sds.push_back(std::sqrt(std::max(0.0, inner.trace())));
+  }
+  return sds;
+}
+
+/// The system is factorised at the adjustment.
+void take_uncertainties(const RecordingSystem& system, RecordingAdjustment& result) {
+  result.landmark_covariances = system.landmark_covariances();
+  result.landmark_sds = shape_sds(result.state.landmarks, system, result.landmark_covariances);
+}
+
+RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
+                     const RecordingDescent& start, const RecordingAdjustmentOptions& options) {
+  if (options.near == nullptr) {
+    return descend_robustly(system, problem, start.state, start.coefficients,
+                            {*options.gate, options.most_left_out});
+  }
+  RobustFit before{start.state, start.coefficients, {}, 0.0};
+  before.weights.assign(problem.measurements.size(), 1.0);
+  for (const int k : options.near->left_out) before.weights[idx(k)] = 0.0;
+  before.gate = *options.gate * options.near->gate_widened * options.near->gate_widened;
+  return look_again(system, problem, std::move(before));
+}
+
 void add_warnings(RecordingAdjustment& result) {
   constexpr double kImplausible = 1e-6;
   if (!result.converged) {
@@ -96,7 +144,8 @@ RecordingAdjustment adjust(const RecordingProblem& problem, const EffectParamete
   StartOptions start;
   if (options.gate) start.gate = *options.gate;
   static_cast<void>(choose_gauge(problem));  // refuses what has no start
-  return adjust_from(start_of(problem, start), problem, border, options);
+  const EffectParameters no_effects;
+  return adjust_from(start_of(problem, no_effects, start).state, problem, border, options);
 }
 
 RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProblem& problem,
@@ -110,16 +159,13 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   int rows = system.rows();
   try {
     if (options.gate) {
-      system.linearise(fit.state, fit.coefficients);
-      system.set_weights(soft_weights(problem, system.squared_errors(), *options.gate));
-      fit = descend(system, fit.state, fit.coefficients, {30, 1e-4, kNegligibleDecrease});
-      RobustFit robust =
-          reduce_nonconvexity(system, problem, fit.state, fit.coefficients, *options.gate);
+      RobustFit robust = robust_fit(system, problem, fit, options);
       for (std::size_t k = 0; k < robust.weights.size(); ++k) {
         if (robust.weights[k] > 0.0) continue;
         result.left_out.push_back(static_cast<int>(k));
         rows -= problem.measurements[k].rows;
       }
+      result.gate_widened = std::sqrt(robust.gate / *options.gate);
       fit.state = std::move(robust.state);
       fit.coefficients = std::move(robust.coefficients);
     }
@@ -139,26 +185,38 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   result.iterations = fit.iterations;
   result.converged = fit.converged;
   result.gradient_norm = system.gradient_norm();
-  std::vector<int> landmarks(problem.landmarks.size());
-  for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = static_cast<int>(k);
-  const Eigen::MatrixXd joint = system.joint_covariance(landmarks);
-  for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(landmarks.size()); ++k) {
-    result.landmark_covariances.emplace_back(joint.block<2, 2>(2 * k, 2 * k));
-  }
-  result.coefficient_covariance = joint.bottomRightCorner(coefficients, coefficients);
+  if (options.landmark_uncertainties) take_uncertainties(system, result);
+  if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
   add_warnings(result);
   return result;
+}
+
+namespace {
+
+/// The adjustment's system, factorised there.
+void prepare(RecordingSystem& system, const RecordingProblem& problem,
+             const EffectParameters& border, const RecordingAdjustment& adjustment) {
+  std::vector<double> weights(problem.measurements.size(), 1.0);
+  for (const int k : adjustment.left_out) weights[idx(k)] = 0.0;
+  system.set_weights(weights);
+  system.linearise(adjustment.state, adjustment.coefficients);
+  check_determined(system, problem, border);
+}
+
+}  // namespace
+
+void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
+                                RecordingAdjustment& adjustment) {
+  RecordingSystem system(problem, border);
+  prepare(system, problem, border, adjustment);
+  take_uncertainties(system, adjustment);
 }
 
 Eigen::MatrixXd joint_covariance(const RecordingProblem& problem, const EffectParameters& border,
                                  const RecordingAdjustment& adjustment,
                                  const std::vector<int>& nodes) {
   RecordingSystem system(problem, border);
-  std::vector<double> weights(problem.measurements.size(), 1.0);
-  for (const int k : adjustment.left_out) weights[idx(k)] = 0.0;
-  system.set_weights(weights);
-  system.linearise(adjustment.state, adjustment.coefficients);
-  check_determined(system, problem, border);
+  prepare(system, problem, border, adjustment);
   return system.joint_covariance(nodes);
 }
 

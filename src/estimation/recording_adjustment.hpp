@@ -25,19 +25,31 @@
 
 namespace trussmap {
 
+struct RecordingAdjustment;
+
 struct RecordingAdjustmentOptions {
   int max_iterations = 100;
   double tolerance = 1e-12;  ///< relative decrease of chi^2 that a next step may still promise
   /// With a gate, sightings whose squared whitened error exceeds it at the best fit of the others
   /// are left out: 16 for one right sighting in 3000 (chi^2, 2 dof).
   std::optional<double> gate;
+  /// Share of the sightings: where more would be left out, the gate is widened, at last to none
+  /// (recording_robust.hpp).
+  double most_left_out = 1.0;
+  /// With a gate: an adjustment of the same measurements that the state comes from. Its gate holds
+  /// on, and what it left out is looked at again instead of being found anew.
+  const RecordingAdjustment* near = nullptr;
   Eigen::VectorXd coefficients;  ///< to start from, the unknown ones; empty: 0
+  bool landmark_uncertainties = true;  ///< else landmark_covariances and landmark_sds stay empty
 };
 
 struct RecordingAdjustment {
   RecordingState state;
   std::vector<Matrix2> landmark_covariances;  ///< m^2, map frame; zero where held
-  Eigen::VectorXd coefficients;               ///< the unknown ones
+  /// How far each landmark is from the truth after the best rotation and translation of them all,
+  /// root mean square, m: what does not depend on what is held.
+  std::vector<double> landmark_sds;
+  Eigen::VectorXd coefficients;  ///< the unknown ones
   Eigen::MatrixXd coefficient_covariance;
   double chi2 = 0.0;     ///< of the measurements kept, and the coefficients' priors
   int dof = 0;           ///< measured values kept less unknowns
@@ -46,6 +58,7 @@ struct RecordingAdjustment {
   double gradient_norm = 0.0;  ///< 2-norm of the gradient of chi^2, 1/m and 1/rad
   bool converged = false;
   std::vector<int> left_out;  ///< measurements, ascending
+  double gate_widened = 1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
   std::vector<std::string> warnings;
 };
 
@@ -72,6 +85,10 @@ class UndeterminedError : public SolveError {
                                               const RecordingProblem& problem,
                                               const EffectParameters& border = {},
                                               const RecordingAdjustmentOptions& options = {});
+
+/// Fills in landmark_covariances and landmark_sds of an adjustment without them.
+void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
+                                RecordingAdjustment& adjustment);
 
 /// Joint covariance of landmarks and poses (nodes, in the order given: 2 or 3 rows each) and,
 /// after them, all coefficients; map frame, zero where held.

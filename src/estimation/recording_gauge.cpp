@@ -27,11 +27,14 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
 
 }  // namespace
 
-std::vector<int> untied_poses(const RecordingProblem& problem) {
+std::vector<int> untied_poses(const RecordingProblem& problem,
+                              const std::vector<double>& weights) {
   const int map_frame = problem.nodes();  // a node of its own: what is measured in the map
   std::vector<NodePair> ties;
   bool absolute = false;
-  for (const Measurement& one : problem.measurements) {
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (!weights.empty() && weights[k] == 0.0) continue;
     absolute = absolute || in_map(one);
     if (one.to < 0 && !in_map(one)) continue;
     ties.push_back({one.from, in_map(one) ? map_frame : one.to});

@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_robust.hpp"
 
+#include "estimation/pose_reckoner.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -34,6 +39,25 @@ void keep_one_per_landmark(const RecordingProblem& problem,
   }
 }
 
+/// A session that no sighting ties to the others any more gets its best one back.
+void keep_tied(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+               std::vector<double>& weights) {
+  for (;;) {
+    const std::vector<int> untied = untied_poses(problem, weights);
+    if (untied.empty()) return;
+    const std::set<int> loose(untied.begin(), untied.end());
+    std::size_t best = weights.size();
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const Measurement& one = problem.measurements[k];
+      if (weights[k] > 0.0 || !is_sighting(one.kind)) continue;
+      if (!loose.contains(one.from - problem.landmark_count())) continue;
+      if (best == weights.size() || squared_errors[k] < squared_errors[best]) best = k;
+    }
+    if (best == weights.size()) return;  // nothing ever tied it
+    weights[best] = 1.0;
+  }
+}
+
 }  // namespace
 
 std::vector<double> soft_weights(const RecordingProblem& problem,
@@ -46,43 +70,181 @@ std::vector<double> soft_weights(const RecordingProblem& problem,
   return weights;
 }
 
-RobustFit reduce_nonconvexity(RecordingSystem& system, const RecordingProblem& problem,
-                              RecordingState state, Eigen::VectorXd coefficients, double gate) {
-  constexpr double kBendFaster = 1.4;
-  constexpr double kNearlyTruncated = 1e3;
-  constexpr int kSteps = 2;  // of descent per bend
-  RobustFit fit{std::move(state), std::move(coefficients), {}};
-  fit.weights.assign(problem.measurements.size(), 1.0);
-  system.set_weights(fit.weights);  // those that led to the start were soft
-  system.linearise(fit.state, fit.coefficients);
-  double largest = 0.0;
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    if (is_sighting(problem.measurements[k].kind)) {
-      largest = std::max(largest, system.squared_errors()[k]);
-    }
+double share_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+                    double limit) {
+  double beyond = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 0; k < squared_errors.size(); ++k) {
+    if (!is_sighting(problem.measurements[k].kind)) continue;
+    all += 1.0;
+    if (squared_errors[k] > limit) beyond += 1.0;
   }
-  if (largest <= gate) return fit;
-  const auto weigh = [&](double mu) {
-    for (std::size_t k = 0; k < fit.weights.size(); ++k) {
-      if (!is_sighting(problem.measurements[k].kind)) continue;
-      fit.weights[k] = bent_weight(system.squared_errors()[k], gate, mu);
+  return beyond / std::max(all, 1.0);
+}
+
+namespace {
+
+constexpr double kSamePlace = 0.5;  // m
+
+/// Evenly, down to a number that can be compared with one another.
+std::vector<Vector2> thinned(const std::vector<Vector2>& places) {
+  constexpr std::size_t kMost = 25;
+  if (places.size() <= kMost) return places;
+  std::vector<Vector2> result;
+  result.reserve(kMost);
+  for (std::size_t k = 0; k < kMost; ++k) result.push_back(places[k * places.size() / kMost]);
+  return result;
+}
+
+std::ptrdiff_t votes(const std::vector<Vector2>& places, const Vector2& place) {
+  return std::count_if(places.begin(), places.end(), [&place](const Vector2& other) {
+    return (other - place).norm() < kSamePlace;
+  });
+}
+
+constexpr double kRough = 1e-3;  // rad, RecordingSystem::set_slack
+constexpr double kFine = 1e-6;
+
+/// The robust fit, stage by stage.
+class RobustDescent {
+ public:
+  RobustDescent(RecordingSystem& system, const RecordingProblem& problem, RobustFit fit)
+      : system_(system), problem_(problem), fit_(std::move(fit)) {
+    system_.set_slack(kRough);
+  }
+  ~RobustDescent() { system_.set_slack(kFine); }
+  RobustDescent(const RobustDescent&) = delete;
+  RobustDescent& operator=(const RobustDescent&) = delete;
+
+  void heed() { heed_majority(problem_, fit_.state); }
+
+  /// From a wide gate down to the one wanted; then back to the narrowest that few sightings are
+  /// beyond.
+  void narrow(double wanted, double most) {
+    constexpr double kStep = 4.0;
+    constexpr int kSteps = 4;
+    RobustFit best = fit_;
+    best.gate = std::numeric_limits<double>::infinity();
+    double gate = wanted * std::pow(kStep, kSteps);
+    for (int step = 0; step <= kSteps; ++step, gate /= kStep) {
+      for (int round = 0; round < 2; ++round) {
+        system_.linearise(fit_.state, fit_.coefficients);
+        system_.set_weights(soft_weights(problem_, system_.squared_errors(), gate));
+        descend_by(10);
+      }
+      fit_.gate = gate;
+      if (share_beyond(problem_, system_.squared_errors(), gate) <= most) best = fit_;
     }
-    keep_one_per_landmark(problem, system.squared_errors(), fit.weights);
-    system.set_weights(fit.weights);
+    fit_ = std::move(best);
+  }
+
+  /// The weights are bent until each is 0 or 1.
+  void harden() {
+    constexpr double kBendFaster = 1.4;
+    constexpr double kFirst = 0.1;
+    constexpr double kNearlyTruncated = 1e3;
+    fit_.weights.assign(problem_.measurements.size(), 1.0);
+    if (std::isfinite(fit_.gate)) {
+      system_.linearise(fit_.state, fit_.coefficients);
+      for (double mu = kFirst; mu < kNearlyTruncated; mu *= kBendFaster) {
+        weigh(mu);
+        descend_by(2);
+      }
+      sort_out();
+    }
+    system_.set_weights(fit_.weights);
+  }
+
+  /// Lets in what fits and takes out what does not, until nothing changes.
+  void look_again() {
+    constexpr int kMostRounds = 5;
+    for (int round = 0; round < kMostRounds; ++round) {
+      system_.set_weights(fit_.weights);
+      descend_by(10);
+      const std::vector<double> before = fit_.weights;
+      if (std::isfinite(fit_.gate)) sort_out();
+      if (fit_.weights == before) break;
+    }
+    system_.set_weights(fit_.weights);
+  }
+
+  [[nodiscard]] RobustFit take() { return std::move(fit_); }
+
+ private:
+  void descend_by(int steps) {
+    RecordingDescent next = descend(system_, std::move(fit_.state), std::move(fit_.coefficients),
+                                    {steps, 1e-6, kNegligibleDecrease});
+    fit_.state = std::move(next.state);
+    fit_.coefficients = std::move(next.coefficients);
+  }
+
+  /// In or out.
+  void sort_out() {
+    weigh(1e9);
+    for (double& weight : fit_.weights) weight = weight > 0.0 ? 1.0 : 0.0;
+    keep_tied(problem_, system_.squared_errors(), fit_.weights);
+  }
+
+  void weigh(double mu) {
+    for (std::size_t k = 0; k < fit_.weights.size(); ++k) {
+      if (!is_sighting(problem_.measurements[k].kind)) continue;
+      fit_.weights[k] = bent_weight(system_.squared_errors()[k], fit_.gate, mu);
+    }
+    keep_one_per_landmark(problem_, system_.squared_errors(), fit_.weights);
+    system_.set_weights(fit_.weights);
+  }
+
+  RecordingSystem& system_;
+  const RecordingProblem& problem_;
+  RobustFit fit_;
+};
+
+}  // namespace
+
+void heed_majority(const RecordingProblem& problem, RecordingState& state) {
+  std::vector<std::vector<Vector2>> places(state.landmarks.size());
+  for (const Measurement& one : problem.measurements) {
+    if (!is_sighting(one.kind) || one.rows < 2) continue;
+    const Pose& pose = state.poses[idx(one.from - problem.landmark_count())];
+    places[idx(one.to)].push_back(pose.position() + rotation(pose.heading) * offset_of(one));
+  }
+  const std::vector<Vector2> before = state.landmarks;
+  const auto others = [&](std::size_t landmark, const Vector2& place) {
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      if (k != landmark && (before[k] - place).norm() < kSamePlace) return true;
+    }
+    return false;
   };
-  double mu = gate / (2.0 * largest - gate);
-  while (mu < kNearlyTruncated) {
-    weigh(mu);
-    RecordingDescent next =
-        descend(system, fit.state, fit.coefficients, {kSteps, 1e-6, kNegligibleDecrease});
-    fit.state = std::move(next.state);
-    fit.coefficients = std::move(next.coefficients);
-    mu *= kBendFaster;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::vector<Vector2> seen = thinned(places[k]);
+    const std::ptrdiff_t here = votes(seen, before[k]);
+    if (2 * here > std::ssize(seen)) continue;
+    std::ptrdiff_t most = here;
+    for (const Vector2& place : seen) {
+      const std::ptrdiff_t there = votes(seen, place);
+      const bool elsewhere = (place - state.landmarks[k]).norm() >= kSamePlace;
+      if (there < most || !elsewhere) continue;
+      if (there == most && (!others(k, state.landmarks[k]) || others(k, place))) continue;
+      most = there;
+      state.landmarks[k] = place;
+    }
   }
-  weigh(1e9);  // in or out
-  for (double& weight : fit.weights) weight = weight > 0.0 ? 1.0 : 0.0;
-  system.set_weights(fit.weights);
-  return fit;
+}
+
+RobustFit descend_robustly(RecordingSystem& system, const RecordingProblem& problem,
+                           RecordingState state, Eigen::VectorXd coefficients,
+                           const RobustOptions& options) {
+  RobustDescent descent(system, problem, {std::move(state), std::move(coefficients), {}, 0.0});
+  descent.heed();
+  descent.narrow(options.gate, options.most_left_out);
+  descent.harden();
+  return descent.take();
+}
+
+RobustFit look_again(RecordingSystem& system, const RecordingProblem& problem, RobustFit fit) {
+  RobustDescent descent(system, problem, std::move(fit));
+  descent.look_again();
+  return descent.take();
 }
 
 }  // namespace trussmap

@@ -9,8 +9,17 @@
 //
 // Minimises sum min(r^2, c^2) over the sightings plus the plain squares of all else, by graduated
 // non-convexity (Yang, Antonante, Tzoumas & Carlone, "Graduated non-convexity for robust spatial
-// perception", 2020): first all sightings pull nearly alike, then the cost is bent, step by step,
-// into the truncated one. Each landmark keeps the sighting that suits it best.
+// perception", 2020), in stages:
+//
+//   heed     landmarks go to where most of their sightings have them
+//   narrow   Geman and McClure's weights, their c from 16 times as wide (in sds) down to the one
+//            wanted. Wrong sightings are few, and each contradicts all others; where more than
+//            `most_left_out` are beyond c, it is the model that is wrong, and c stays wider: the
+//            noise counts as that much larger. Where even the widest leaves out too many, none is
+//            left out.
+//   harden   the cost is bent, step by step, into the truncated one
+//
+// Each landmark keeps the sighting that suits it best, and each session one that ties it.
 #pragma once
 
 #include "estimation/recording_descent.hpp"
@@ -24,15 +33,36 @@ namespace trussmap {
                                                const std::vector<double>& squared_errors,
                                                double gate);
 
-/// Descends with each sighting's weight bent towards 0 or 1, and leaves these weights set in the
-/// system. Returns the values reached; with the final weights descend once more.
+/// Share of the sightings whose squared error is beyond a limit.
+[[nodiscard]] double share_beyond(const RecordingProblem& problem,
+                                  const std::vector<double>& squared_errors, double limit);
+
+/// A landmark whose first sighting was wrong lies where hardly any other sighting has it: it moves
+/// to where most of them do. Where as many have it elsewhere, it leaves a place that is another
+/// landmark's: a wrong name is read at a landmark.
+void heed_majority(const RecordingProblem& problem, RecordingState& state);
+
+struct RobustOptions {
+  double gate = 0.0;           ///< c^2
+  double most_left_out = 1.0;  ///< share of the sightings
+};
+
 struct RobustFit {
   RecordingState state;
   Eigen::VectorXd coefficients;
   std::vector<double> weights;  ///< per measurement, 0 or 1
+  double gate = 0.0;            ///< c^2 at last; infinity: none left out, whatever it is like
 };
-[[nodiscard]] RobustFit reduce_nonconvexity(RecordingSystem& system,
-                                            const RecordingProblem& problem, RecordingState state,
-                                            Eigen::VectorXd coefficients, double gate);
+
+/// Descends with each sighting's weight bent towards 0 or 1, and leaves these weights set in the
+/// system; with them descend once more.
+[[nodiscard]] RobustFit descend_robustly(RecordingSystem& system, const RecordingProblem& problem,
+                                         RecordingState state, Eigen::VectorXd coefficients,
+                                         const RobustOptions& options);
+
+/// From a fit by nearly the same system, with its gate: sightings go out and come back in until
+/// nothing changes.
+[[nodiscard]] RobustFit look_again(RecordingSystem& system, const RecordingProblem& problem,
+                                   RobustFit fit);
 
 }  // namespace trussmap

@@ -2,20 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_start.hpp"
 
+#include "estimation/pose_reckoner.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
 #include "trussmap/alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include <Eigen/LU>
 
 namespace trussmap {
 namespace {
-
-using Landmarks = std::vector<std::optional<Vector2>>;
 
 /// Measurements by the poses that they belong to.
 struct ByPose {
@@ -40,139 +36,23 @@ ByPose by_pose(const RecordingProblem& problem) {
   return result;
 }
 
-Eigen::MatrixXd covariance_of(const Measurement& one) {
-  const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
-  return (W.transpose() * W).inverse();
-}
-
-Vector2 offset_of(const Measurement& one) {
-  switch (one.kind) {
-    case MeasurementKind::view:
-      return one.rows == 1 ? Vector2(one.value[0], 0.0)
-                           : Vector2(one.value[0] * rotation(one.value[1]).col(0));
-    case MeasurementKind::cartesian_view:
-      return one.value.head<2>();
-    default:
-      return Vector2::Zero();
-  }
-}
-
-/// A robot that is reckoned from pose to pose.
-class Reckoner {
- public:
-  Reckoner(const RecordingProblem& problem, const StartOptions& options, Landmarks& landmarks)
-      : problem_(problem), options_(options), landmarks_(landmarks) {}
-
-  void place(const Pose& pose, const Matrix3& covariance) {
-    pose_ = pose;
-    covariance_ = covariance;
-  }
-  [[nodiscard]] const Pose& pose() const { return pose_; }
-
-  void read_compass(const Measurement& segment) {
-    if (segment.rows < 4) return;
-    Eigen::Matrix<double, 1, 3> H(0.0, 0.0, 1.0);
-    Eigen::VectorXd innovation(1);
-    innovation << wrap_angle(segment.value[3] - pose_.heading);
-    update(H, innovation, covariance_of(segment).bottomRightCorner(1, 1));
-  }
-
-  void drive(const Measurement& segment) {
-    const Matrix3 T = pose_rotation(pose_.heading);
-    const Vector2 step = T.topLeftCorner<2, 2>() * segment.value.head<2>();
-    Matrix3 F = Matrix3::Identity();
-    F.topRightCorner<2, 1>() = quarter_turn(step);
-    const Matrix3 own = covariance_of(segment).topLeftCorner(3, 3);
-    covariance_ = symmetrised(F * covariance_ * F.transpose() + T * own * T.transpose());
-    pose_ = {pose_.x + step.x(), pose_.y + step.y(), pose_.heading + segment.value[2]};
-  }
-
-  /// Corrects by truth and landmarks that have a place, if wanted; then places the others.
-  void look(const std::vector<const Measurement*>& seen, bool correct) {
-    for (const Measurement* one : seen) {
-      if (one->kind == MeasurementKind::truth) meet_truth(*one);
-    }
-    if (correct) {
-      for (const Measurement* one : seen) {
-        if (is_sighting(one->kind) && landmarks_[idx(one->to)]) meet_landmark(*one);
-      }
-    }
-    for (const Measurement* one : seen) {
-      if (!is_sighting(one->kind)) continue;
-      std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
-      if (!landmark) landmark = sighted(*one);
-    }
-  }
-
-  [[nodiscard]] Vector2 sighted(const Measurement& one) const {
-    return pose_.position() + rotation(pose_.heading) * offset_of(one);
-  }
-
- private:
-  void meet_truth(const Measurement& one) {
-    Eigen::Vector3d innovation = one.value.head<3>();
-    innovation -= Eigen::Vector3d(pose_.x, pose_.y, pose_.heading);
-    innovation[2] = wrap_angle(innovation[2]);
-    update(Matrix3::Identity(), innovation, covariance_of(one));
-  }
-
-  void meet_landmark(const Measurement& one) {
-    RecordingState state;
-    state.landmarks.assign(problem_.landmarks.size(), Vector2::Zero());
-    Measurement here = one;
-    here.from = problem_.landmark_count();
-    state.landmarks[idx(one.to)] = *landmarks_[idx(one.to)];
-    state.poses = {pose_};
-    const MeasurementRows rows = measurement_rows(problem_, here, state, one.value, {});
-    const Eigen::MatrixXd by_landmark = rows.by_to.topLeftCorner(one.rows, 2);
-    const Eigen::MatrixXd R = covariance_of(one) + options_.map_sd * options_.map_sd * by_landmark *
-                                                       by_landmark.transpose();
-    update(rows.by_from.topRows(one.rows), -rows.error.head(one.rows), R);
-  }
-
-  void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
-              const Eigen::MatrixXd& R) {
-    const Eigen::MatrixXd S = H * covariance_ * H.transpose() + R;
-    const Eigen::MatrixXd inverse = S.inverse();
-    if (innovation.dot(inverse * innovation) > options_.gate) {
-      doubt();
-      return;
-    }
-    const Eigen::MatrixXd gain = covariance_ * H.transpose() * inverse;
-    const Eigen::Vector3d change = gain * innovation;
-    pose_.x += change[0];
-    pose_.y += change[1];
-    pose_.heading += change[2];
-    covariance_ = symmetrised(covariance_ - gain * H * covariance_);
-  }
-
-  /// After several contradictions it is the robot that is lost, not the sightings that are wrong.
-  void doubt() {
-    constexpr double kDoubt = 0.05;  // m and rad
-    covariance_.diagonal().array() += kDoubt * kDoubt;
-  }
-
-  const RecordingProblem& problem_;
-  StartOptions options_;
-  Landmarks& landmarks_;
-  Pose pose_;
-  Matrix3 covariance_ = Matrix3::Zero();
-};
-
 /// Poses of one problem part, laid down one after the other.
 class Layer {
  public:
-  Layer(const RecordingProblem& problem, const StartOptions& options)
+  Layer(const RecordingProblem& problem, const EffectParameters& border,
+        const StartOptions& options)
       : problem_(problem),
+        border_(border),
         options_(options),
         links_(by_pose(problem)),
         landmarks_(problem.landmarks.size()),
-        poses_(problem.poses.size()) {}
+        poses_(problem.poses.size()),
+        coefficients_(prior_of(border)) {}
 
   /// Poses first ... last, from a pose that is known that well.
   void lay(int first, int last, const Pose& start, const Matrix3& covariance, bool correct) {
-    Reckoner robot(problem_, options_, landmarks_);
-    robot.place(start, covariance);
+    PoseReckoner robot(problem_, border_, {options_.map_sd, options_.gate}, landmarks_);
+    robot.place(start, covariance, coefficients_);
     for (int k = first; k <= last; ++k) {
       const int segment = links_.segment_from[idx(k)];
       if (segment >= 0) robot.read_compass(problem_.measurements[idx(segment)]);
@@ -180,6 +60,7 @@ class Layer {
       poses_[idx(k)] = robot.pose();
       if (k < last) robot.drive(problem_.measurements[idx(segment)]);
     }
+    coefficients_ = robot.coefficients();
   }
 
   /// Poses before `first`, backwards, by the motions alone.
@@ -225,16 +106,32 @@ class Layer {
     return nullptr;
   }
 
+  struct Laid {
+    PlacedLandmarks landmarks;
+    std::vector<Pose> poses;
+    KnownCoefficients coefficients;
+  };
+  [[nodiscard]] Laid laid() const { return {landmarks_, poses_, coefficients_}; }
+  void take_back(const Laid& before) {
+    landmarks_ = before.landmarks;
+    poses_ = before.poses;
+    coefficients_ = before.coefficients;
+  }
+
   [[nodiscard]] int pose_count() const { return static_cast<int>(poses_.size()); }
-  Landmarks& landmarks() { return landmarks_; }
+  PlacedLandmarks& landmarks() { return landmarks_; }
   std::vector<Pose>& poses() { return poses_; }
+  KnownCoefficients& coefficients() { return coefficients_; }
+  [[nodiscard]] const EffectParameters& border() const { return border_; }
 
  private:
   const RecordingProblem& problem_;
+  const EffectParameters& border_;
   StartOptions options_;
   ByPose links_;
-  Landmarks landmarks_;
+  PlacedLandmarks landmarks_;
   std::vector<Pose> poses_;
+  KnownCoefficients coefficients_;
 };
 
 bool has_compass(const RecordingProblem& problem) {
@@ -243,40 +140,57 @@ bool has_compass(const RecordingProblem& problem) {
       [](const Measurement& one) { return one.kind == MeasurementKind::segment && one.rows == 4; });
 }
 
-/// Adjusts the poses laid down so far and the landmarks they see.
-void adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
+/// Adjusts the poses laid down so far, the landmarks they see and the coefficients. Returns the
+/// share of the sightings that are beyond the gate then.
+double adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
                     Layer& layer) {
   const ProblemPart part = part_of(session, 0, count);
-  RecordingState state;
-  for (const int landmark : part.landmarks) {
-    state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
-  }
-  state.poses.assign(layer.poses().begin(), layer.poses().begin() + count);
-  const EffectParameters no_effects;
-  RecordingSystem system(part.problem, no_effects);
-  const Eigen::VectorXd none;
-  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
   RecordingDescent fit;
+  for (const int landmark : part.landmarks) {
+    fit.state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
+  }
+  fit.state.poses.assign(layer.poses().begin(), layer.poses().begin() + count);
+  fit.coefficients = layer.coefficients().values;
+  RecordingSystem system(part.problem, layer.border());
+  system.set_slack(1e-3);
+  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
   if (std::isfinite(options.gate)) {
+    heed_majority(part.problem, fit.state);
     for (int round = 0; round < 4; ++round) {
-      system.linearise(state, none);
+      system.linearise(fit.state, fit.coefficients);
       system.set_weights(soft_weights(part.problem, system.squared_errors(), options.gate));
-      fit = descend(system, state, none, {5, 1e-4, kNegligibleDecrease});
-      state = fit.state;
+      fit = descend(system, fit.state, fit.coefficients, {5, 1e-4, kNegligibleDecrease});
     }
   } else {
-    fit = descend(system, state, none, kRough);
+    fit = descend(system, fit.state, fit.coefficients, kRough);
   }
   for (std::size_t k = 0; k < part.landmarks.size(); ++k) {
     layer.landmarks()[idx(part.landmarks[k])] = fit.state.landmarks[k];
   }
   std::copy(fit.state.poses.begin(), fit.state.poses.end(), layer.poses().begin());
+  const double lost = share_beyond(part.problem, system.squared_errors(), options.gate);
+  if (fit.coefficients.size() == 0) return lost;
+  system.factorise();
+  // A misfit makes them less certain, but never less than they were at first.
+  const double dispersion =
+      std::max(1.0, fit.chi2 / std::max(1, system.rows() - system.unknowns()));
+  const KnownCoefficients prior = prior_of(layer.border());
+  Eigen::MatrixXd covariance = dispersion * system.coefficient_covariance();
+  for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
+    const double ratio = std::sqrt(std::min(1.0, prior.covariance(k, k) / covariance(k, k)));
+    covariance.col(k) *= ratio;
+    covariance.row(k) *= ratio;
+  }
+  layer.coefficients() = {fit.coefficients, covariance};
+  return lost;
 }
 
 /// One session in a frame of its own (with truth rows: theirs).
 void lay_session(const RecordingProblem& session, const StartOptions& options, Layer& layer) {
   constexpr int kFirstStretch = 30;  // poses
   constexpr int kLeastStretch = 20;
+  constexpr int kShortestStretch = 7;
+  constexpr double kLost = 0.12;  // share of the sightings: the robot took a wrong turn
   const int poses = layer.pose_count();
   for (int k = 0; k < poses; ++k) {
     if (const Measurement* truth = layer.truth_at(k)) {
@@ -288,23 +202,30 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
   }
   const Matrix3 unknown_heading =
       Eigen::Vector3d(0.0, 0.0, has_compass(session) ? 10.0 : 0.0).asDiagonal();
-  if (has_compass(session)) {
-    layer.lay(0, poses - 1, layer.first_pose(), unknown_heading, true);
-    return;
-  }
   const Matrix3 adjusted = Eigen::Vector3d(1e-2, 1e-2, 1e-3).asDiagonal();
   int laid = std::min(poses, kFirstStretch);
-  layer.lay(0, laid - 1, Pose(), Matrix3::Zero(), true);
+  layer.lay(0, laid - 1, layer.first_pose(), unknown_heading, true);
+  if (laid < poses) adjust_stretch(session, options, laid, layer);
+  int longest = poses;
   while (laid < poses) {
-    adjust_stretch(session, options, laid, layer);
-    const int next = std::min(poses, laid + std::max(kLeastStretch, laid / 3));
+    const Layer::Laid before = layer.laid();
+    const int stretch = std::min(longest, std::max(kLeastStretch, laid / 3));
+    const int next = std::min(poses, laid + stretch);
     layer.lay(laid - 1, next - 1, layer.poses()[idx(laid - 1)], adjusted, true);
-    laid = next;
+    if (next == poses && !options.careful) return;
+    const double lost = adjust_stretch(session, options, next, layer);
+    if (options.careful && lost > kLost && stretch > kShortestStretch) {
+      layer.take_back(before);
+      longest = std::max(kShortestStretch, stretch / 3);
+    } else {
+      laid = next;
+      longest = std::min(poses, 2 * longest);
+    }
   }
 }
 
 /// Lays a session over landmarks that have their place.
-void lay_over(const Landmarks& known, bool turn, Layer& layer) {
+void lay_over(const PlacedLandmarks& known, bool turn, Layer& layer) {
   std::vector<Vector2> here;
   std::vector<Vector2> there;
   for (std::size_t k = 0; k < known.size(); ++k) {
@@ -352,8 +273,8 @@ ProblemPart session_of(const RecordingProblem& problem, int first, int count) {
   return part;
 }
 
-Landmarks surveyed(const RecordingProblem& problem) {
-  Landmarks known(problem.landmarks.size());
+PlacedLandmarks surveyed(const RecordingProblem& problem) {
+  PlacedLandmarks known(problem.landmarks.size());
   for (const Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey) known[idx(one.from)] = one.value.head<2>();
   }
@@ -395,20 +316,24 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count) {
   return part;
 }
 
-RecordingState start_of(const RecordingProblem& problem, const StartOptions& options) {
-  Landmarks known = surveyed(problem);
+RecordingStart start_of(const RecordingProblem& problem, const EffectParameters& border,
+                        const StartOptions& options) {
+  PlacedLandmarks known = surveyed(problem);
   const bool frame_given = std::any_of(
       problem.measurements.begin(), problem.measurements.end(), [](const Measurement& one) {
         return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
       });
   RecordingState state;
   state.poses.resize(problem.poses.size());
+  KnownCoefficients coefficients = prior_of(border);
   for (const auto& [first, count] : session_spans(problem)) {
     if (count == 0) continue;
     const ProblemPart part = session_of(problem, first, count);
-    Layer layer(part.problem, options);
+    Layer layer(part.problem, border, options);
+    layer.coefficients() = coefficients;
     lay_session(part.problem, options, layer);
-    Landmarks in_part;
+    coefficients = layer.coefficients();
+    PlacedLandmarks in_part;
     for (const int landmark : part.landmarks) in_part.push_back(known[idx(landmark)]);
     const bool in_truth_frame = part.problem.measurements.back().kind == MeasurementKind::truth;
     if (!in_truth_frame) lay_over(in_part, !has_compass(part.problem), layer);
@@ -429,7 +354,7 @@ RecordingState start_of(const RecordingProblem& problem, const StartOptions& opt
       pose.y -= origin.y();
     }
   }
-  return state;
+  return {std::move(state), std::move(coefficients.values)};
 }
 
 RecordingState dead_reckoned(const RecordingProblem& problem) {
@@ -440,7 +365,8 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
   for (const auto& [first, count] : session_spans(problem)) {
     if (count == 0) continue;
     const ProblemPart part = part_of(problem, first, count);
-    Layer layer(part.problem, {});
+    const EffectParameters no_effects;
+    Layer layer(part.problem, no_effects, {});
     const Matrix3 start =
         Eigen::Vector3d(0.0, 0.0, has_compass(part.problem) ? 10.0 : 0.0).asDiagonal();
     layer.lay(0, count - 1, layer.first_pose(), start, false);

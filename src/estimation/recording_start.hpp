@@ -4,20 +4,24 @@
 // A start for the adjustment of recordings that is near enough to the best fit.
 //
 // Session by session: the robot is reckoned from pose to pose; the compass, truth rows and
-// landmarks already placed correct it on the way (extended Kalman filter over the one pose, with
-// landmarks as they are); a landmark is placed when it is first seen.
+// landmarks already placed correct it on the way, and with it the coefficients of effects
+// (pose_reckoner.hpp); a landmark is placed when it is first seen.
 //
-// Without a compass that drifts too far to descend from. So a session is adjusted while it is laid
-// down, first a stretch, then that stretch with the next one, each a third longer than the last:
+// That drifts too far to descend from. So a session is adjusted while it is laid down, first a
+// stretch, then that stretch with the next one, each a third longer than the last:
 //
 //   |----|      reckon, adjust
 //   |----|--|   reckon on from there, with the landmarks as adjusted; adjust all
 //   |-------|---|  ...
 //
+// A careful start looks whether a stretch leaves many sightings beyond the gate: the robot was lost
+// on it then; it is taken back, and a shorter one is laid. That costs much more.
+//
 // At last the session is laid over the landmarks that are known by then (survey, other sessions):
 // shifted, and without a compass turned.
 #pragma once
 
+#include "estimation/effect_parameters.hpp"
 #include "estimation/recording_problem.hpp"
 
 #include <limits>
@@ -29,9 +33,17 @@ struct StartOptions {
   /// Squared standard deviations beyond which a sighting does not correct the reckoning, and
   /// counts less in the stretches' adjustments; infinity: all sightings are believed.
   double gate = std::numeric_limits<double>::infinity();
+  bool careful = false;
 };
 
-[[nodiscard]] RecordingState start_of(const RecordingProblem& problem,
+struct RecordingStart {
+  RecordingState state;
+  Eigen::VectorXd coefficients;  ///< of the border's unknown ones
+};
+
+/// The border's unknown coefficients have finite priors.
+[[nodiscard]] RecordingStart start_of(const RecordingProblem& problem,
+                                      const EffectParameters& border,
                                       const StartOptions& options = {});
 
 /// Dead reckoning alone, with the compass if there is one: no landmark corrects it, and each lies

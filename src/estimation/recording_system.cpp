@@ -98,19 +98,14 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
   M_.setZero();
   const bool with_drives = touches_drives(border_);
+  if (with_drives) motions_.resize(problem_.measurements.size());
   const Eigen::VectorXd all = offsets(coefficients);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    Vector4 value = one.value;
-    Eigen::Matrix<double, 4, Eigen::Dynamic> slopes(4, 0);
-    if (one.kind == MeasurementKind::segment && with_drives) {
-      const SegmentWithEffects segment = segment_with(problem_, border_, all, one);
-      const Pose& d = segment.motion.displacement;
-      value.head<3>() = Eigen::Vector3d(d.x, d.y, d.heading);
-      if (one.rows == 4) value[3] = segment.motion.mean_heading;
-      slopes = segment.derivatives;
-    }
-    value += one.linearization_offset;
+    const Vector4 value =
+        (one.kind == MeasurementKind::segment && with_drives ? moved_by_effects(k, all)
+                                                             : one.value) +
+        one.linearization_offset;
     const MeasurementRows rows =
         measurement_rows(problem_, one, state, value, view_of(border_, all, one));
     const Matrix4 W = root_weights_[k] * one.whitener;
@@ -123,7 +118,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
     add_to_normal(k, J, error);
-    evaluate_effect_parameters(k, rows, slopes);
+    evaluate_effect_parameters(k, rows);
   }
   Matrix3 held = Matrix3::Zero();
   held(2, 2) = 1.0;
@@ -169,15 +164,30 @@ void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const V
   }
 }
 
-void RecordingSystem::evaluate_effect_parameters(
-    std::size_t k, const MeasurementRows& rows,
-    const Eigen::Matrix<double, 4, Eigen::Dynamic>& segment_slopes) {
+Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets) {
+  Motion& motion = motions_[k];
+  if (motion.at.size() == offsets.size()) {
+    const Vector4 change = motion.slopes * (offsets - motion.at);
+    if (std::abs(change[2]) <= slack_ && std::abs(change[3]) <= slack_) {
+      return motion.value + change;
+    }
+  }
+  const Measurement& one = problem_.measurements[k];
+  const SegmentWithEffects segment = segment_with(problem_, border_, offsets, one);
+  const Pose& d = segment.motion.displacement;
+  motion.at = offsets;
+  motion.value << d.x, d.y, d.heading, one.rows == 4 ? segment.motion.mean_heading : one.value[3];
+  motion.slopes = segment.derivatives;
+  return motion.value;
+}
+
+void RecordingSystem::evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows) {
   const Measurement& one = problem_.measurements[k];
   const Matrix4 W = root_weights_[k] * one.whitener;
   auto M = M_.middleRows(first_row_[k], one.rows);
-  if (segment_slopes.cols() > 0) {
+  if (one.kind == MeasurementKind::segment && !motions_.empty()) {
     for (std::size_t c = 0; c < unknown_.size(); ++c) {
-      const Vector4 column = -(W * segment_slopes.col(unknown_[c]));
+      const Vector4 column = -(W * motions_[k].slopes.col(unknown_[c]));
       M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
     }
     return;
@@ -323,6 +333,36 @@ Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes)
   selection.bottomRightCorner(B_.cols(), B_.cols()).setIdentity();
   const Eigen::MatrixXd covariance = selection.transpose() * solve(selection);
   return 0.5 * (covariance + covariance.transpose());
+}
+
+std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
+  const Eigen::MatrixXd blocks = normal_.inverse_blocks();
+  std::vector<Matrix2> result(idx(problem_.landmark_count()), Matrix2::Zero());
+  for (int node = 0; node < problem_.landmark_count(); ++node) {
+    if (normal_.size(node) == 0) continue;
+    const Eigen::Index at = normal_.offset(node);
+    Matrix2& covariance = result[idx(node)];
+    covariance = blocks.block<2, 2>(0, at);
+    if (B_.cols() == 0) continue;
+    const auto own = A_inverse_B_.middleRows(at, 2);
+    covariance += own * schur_inverse_ * own.transpose();
+  }
+  return result;
+}
+
+Eigen::MatrixXd RecordingSystem::landmark_covariance_times(const Eigen::MatrixXd& b) const {
+  Eigen::MatrixXd lifted = Eigen::MatrixXd::Zero(normal_.unknowns() + B_.cols(), b.cols());
+  for (int node = 0; node < problem_.landmark_count(); ++node) {
+    if (normal_.size(node) == 0) continue;
+    lifted.middleRows(normal_.offset(node), 2) = b.middleRows(2 * node, 2);
+  }
+  const Eigen::MatrixXd solved = solve(lifted);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(b.rows(), b.cols());
+  for (int node = 0; node < problem_.landmark_count(); ++node) {
+    if (normal_.size(node) == 0) continue;
+    result.middleRows(2 * node, 2) = solved.middleRows(normal_.offset(node), 2);
+  }
+  return result;
 }
 
 Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {

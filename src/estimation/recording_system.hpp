@@ -35,8 +35,9 @@ struct RecordingGauge {
 [[nodiscard]] RecordingGauge choose_gauge(const RecordingProblem& problem);
 
 /// Poses that no common landmark, survey or truth ties to the map's frame or, where nothing gives
-/// one, to the first pose.
-[[nodiscard]] std::vector<int> untied_poses(const RecordingProblem& problem);
+/// one, to the first pose. Measurements of weight 0 tie nothing (no weights: all count).
+[[nodiscard]] std::vector<int> untied_poses(const RecordingProblem& problem,
+                                            const std::vector<double>& weights = {});
 
 class RecordingSystem {
  public:
@@ -49,6 +50,9 @@ class RecordingSystem {
   /// these values. With headings held, a step moves positions (and coefficients) only.
   double linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
                    bool hold_headings = false);
+  /// Segments' motions count as linear in the coefficients as long as these turn no segment by more
+  /// than this since it was last reckoned, rad. An error e leaves a leg off by e^2/2 of its length.
+  void set_slack(double turn) { slack_ = turn; }
   /// Multiplies the information of each measurement from the next linearise on.
   void set_weights(const std::vector<double>& weights);
 
@@ -68,6 +72,10 @@ class RecordingSystem {
   /// Joint covariance of nodes and, after them, all coefficients. Zero where held.
   [[nodiscard]] Eigen::MatrixXd joint_covariance(const std::vector<int>& nodes) const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
+  /// Of each landmark alone; zero where held. Cost: about two factorisations.
+  [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
+  /// The landmarks' joint covariance times the columns of b, two rows per landmark.
+  [[nodiscard]] Eigen::MatrixXd landmark_covariance_times(const Eigen::MatrixXd& b) const;
   /// Of the whole normal matrix, border included. Call after factorise.
   [[nodiscard]] double log_determinant() const;
   /// Inverse normal matrix (with border) times the columns of b (nodes, then coefficients).
@@ -103,11 +111,17 @@ class RecordingSystem {
   struct Whitened {
     RowsByNode from, to;
   };
+  /// A segment's four numbers with the effects, and where they were reckoned.
+  struct Motion {
+    Eigen::VectorXd at;  ///< offsets of the border; empty: never
+    Vector4 value = Vector4::Zero();
+    Eigen::Matrix<double, 4, Eigen::Dynamic> slopes{4, 0};
+  };
+  [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   /// How far every coefficient of the border is from its reference.
   [[nodiscard]] Eigen::VectorXd offsets(const Eigen::VectorXd& coefficients) const;
-  void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows,
-                                  const Eigen::Matrix<double, 4, Eigen::Dynamic>& segment_slopes);
+  void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
   void build_schur(double damping);
 
   const RecordingProblem& problem_;
@@ -120,6 +134,8 @@ class RecordingSystem {
   int rows_ = 0;
   BlockSystem normal_;
   std::vector<Whitened> J_;
+  std::vector<Motion> motions_;  ///< per measurement, of segments; none without effects on drives
+  double slack_ = 1e-6;
   Eigen::MatrixXd M_;
   Eigen::VectorXd residuals_;
   std::vector<double> squared_errors_;

@@ -82,6 +82,15 @@ void clear_sightings(const Recording& recorded, const EffectParameters& border,
   }
 }
 
+void clear(const std::vector<Recording>& timed, const EffectParameters& border,
+           const Eigen::VectorXd& offsets, double wheelbase,
+           std::vector<ClearedRecording>& result) {
+  for (std::size_t s = 0; s < timed.size(); ++s) {
+    clear_drive(timed[s], border, offsets, s, wheelbase, result[s]);
+    clear_sightings(timed[s], border, offsets, static_cast<int>(s), result[s]);
+  }
+}
+
 }  // namespace
 
 std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
@@ -109,14 +118,18 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
       offsets[static_cast<Eigen::Index>(k)] =
           effects[one.effect].coefficients[one.place] - columns.border[k].reference;
     }
-    for (std::size_t s = 0; s < timed.size(); ++s) {
-      clear_drive(timed[s], columns.border, offsets, s, model.robot.wheelbase, result[s]);
-      clear_sightings(timed[s], columns.border, offsets, static_cast<int>(s), result[s]);
-    }
+    clear(timed, columns.border, offsets, model.robot.wheelbase, result);
   }
   for (std::size_t s = 0; s < timed.size(); ++s) {
     result[s].recording.truth = recordings[s].truth;
   }
+  return result;
+}
+
+std::vector<ClearedRecording> cleared(const FitState& fit) {
+  std::vector<ClearedRecording> result;
+  for (const Recording& recording : fit.recordings) result.push_back(as_recorded(recording));
+  clear(fit.recordings, fit.columns.border, offsets_of(fit), fit.model.robot.wheelbase, result);
   return result;
 }
 

@@ -15,6 +15,7 @@
 // dead-reckoned from the cleared recording itself, which two passes give.
 #pragma once
 
+#include "fit/fit_state.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
@@ -32,5 +33,8 @@ struct ClearedRecording {
 /// One per recording. Throws std::invalid_argument, naming the effect, where one cannot be applied.
 [[nodiscard]] std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
                                                     const Model& model);
+
+/// A fit's recordings, freed from its effects as it has them; truth at the fit's times.
+[[nodiscard]] std::vector<ClearedRecording> cleared(const FitState& fit);
 
 }  // namespace trussmap

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_state.hpp"
 
+#include "estimation/common_errors.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/segment_noise.hpp"
+#include "fit/cleared_recording.hpp"
 #include "fit/noise_free.hpp"
 #include "text/number_text.hpp"
 
@@ -24,6 +26,10 @@ class Fitter {
   Fitter(const std::vector<Recording>& recordings, const Model& model, const FitterOptions& options)
       : recorded_(recordings), options_(options) {
     fit_.model = model;
+    if (options.free_common_errors) {
+      for (const Effect& effect : common_errors(recordings)) fit_.model.effects.push_back(effect);
+      fit_.common_errors = fit_.model.effects.size() - model.effects.size();
+    }
     for (Effect& effect : fit_.model.effects) {
       effect.coefficients = coefficients_of(effect, recordings.size());
     }
@@ -35,26 +41,32 @@ class Fitter {
 
   FitState run() {
     lay_out();
-    start();
+    start(false);
     for (int round = 0; round < options_.max_rounds; ++round) {
       if (round > 0 && has_delays()) lay_out_again();
       build_columns();
-      if (round == 0) hold_unobservable();
-      adjust_once();
+      if (round == 0 && options_.fit_effects) hold_unobservable();
+      adjust_once(round == 0);
+      if (round == 0 && lost()) start_again();
       fit_.settled = settled();
       const bool last = fit_.settled || round + 1 == options_.max_rounds;
-      if ((round == 0 || last) && fix_unobservable()) {
+      if ((round == 0 || last) && options_.fit_effects && fix_unobservable()) {
         fit_.settled = false;
         continue;
       }
       if (fit_.settled) break;
     }
-    if (fit_.model.effects.empty()) lay_paths();
+    if (options_.paths && (fit_.model.effects.empty() || only_common())) lay_paths();
     report();
     return std::move(fit_);
   }
 
  private:
+  /// Whether it is one of the common errors, which have a prior and so are always determined.
+  [[nodiscard]] bool is_common(std::size_t effect) const {
+    return effect + fit_.common_errors >= fit_.model.effects.size();
+  }
+
   [[nodiscard]] bool has_delays() const {
     return std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
                        [](const Effect& effect) { return effect.channel == Channel::delay; });
@@ -103,13 +115,41 @@ class Fitter {
     }
   }
 
-  void start() {
+  /// More sightings contradict the rest than are ever wrong: perhaps the start was lost.
+  [[nodiscard]] bool lost() const {
+    return options_.near == nullptr && options_.most_left_out < 1.0 &&
+           fit_.adjustment.gate_widened > 1.0;
+  }
+
+  /// From a careful start, unless that leads to nothing better.
+  void start_again() {
+    const FitState before = fit_;
+    const RecordingState state_before = state_;
+    for (Effect& effect : fit_.model.effects) {
+      if (is_common(idx(static_cast<int>(&effect - fit_.model.effects.data())))) {
+        std::fill(effect.coefficients.begin(), effect.coefficients.end(), 0.0);
+      }
+    }
+    start(true);
+    build_columns();
+    adjust_once(true);
+    if (fit_.adjustment.gate_widened < before.adjustment.gate_widened) return;
+    fit_ = before;
+    state_ = state_before;
+  }
+
+  void start(bool careful) {
     if (options_.near != nullptr) {
       fit_.paths = options_.near->paths;
-      place(landmark_places(*options_.near));
+      if (has_nodes_of(*options_.near)) {
+        state_ = options_.near->adjustment.state;
+      } else {
+        place(landmark_places(*options_.near));
+      }
       return;
     }
     StartOptions how;
+    how.careful = careful;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
     // A start is laid along unbroken drives.
@@ -118,7 +158,15 @@ class Fitter {
     const bool whole = options_.problem.left_out.empty();
     const RecordingProblem unbroken =
         whole ? fit_.problem : make_problem(fit_.recordings, fit_.model, all);
-    state_ = start_of(unbroken, how);
+    if (fit_.common_errors > 0 && !only_common()) {
+      start_cleared(how);
+      return;
+    }
+    const EffectParameters common = common_error_columns(fit_.recordings, fit_.model.robot);
+    RecordingStart start = start_of(unbroken, common, how);
+    state_ = std::move(start.state);
+    if (only_common()) take_common_errors(0, start.coefficients);
+    if (whole && !needs_paths()) return;
     fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, unbroken, {}, {}, state_);
     if (whole) return;
     std::map<std::string, Vector2> landmarks;
@@ -128,13 +176,84 @@ class Fitter {
     place(landmarks);
   }
 
+  /// Common errors alone need no path: their columns follow from the record.
+  [[nodiscard]] bool only_common() const {
+    return fit_.common_errors > 0 && fit_.common_errors == fit_.model.effects.size();
+  }
+
+  [[nodiscard]] bool needs_paths() const {
+    return options_.paths || (!fit_.model.effects.empty() && !only_common());
+  }
+
+  [[nodiscard]] bool has_nodes_of(const FitState& other) const {
+    const auto same = [](const PoseNode& a, const PoseNode& b) {
+      return a.session == b.session && a.t == b.t;
+    };
+    return fit_.problem.landmarks == other.problem.landmarks &&
+           std::equal(fit_.problem.poses.begin(), fit_.problem.poses.end(),
+                      other.problem.poses.begin(), other.problem.poses.end(), same);
+  }
+
+  [[nodiscard]] bool reads_compass() const {
+    return std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
+                       [](const Effect& effect) { return effect.channel == Channel::compass; });
+  }
+
+  void build_common_columns() {
+    Eigen::VectorXd values;
+    fit_.columns = {};
+    for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
+      const Effect& effect = fit_.model.effects[e];
+      for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
+        fit_.columns.coefficients.push_back({e, k, k, 1.0});
+        values.conservativeResize(values.size() + 1);
+        values[values.size() - 1] = effect.coefficients[k];
+      }
+    }
+    fit_.columns.border = common_error_columns(fit_.recordings, fit_.model.robot, values);
+  }
+
+  void take_common_errors(std::size_t first, const Eigen::VectorXd& coefficients) {
+    Eigen::Index next = 0;
+    for (std::size_t e = first; e < fit_.model.effects.size(); ++e) {
+      for (double& one : fit_.model.effects[e].coefficients) one = coefficients[next++];
+    }
+  }
+
+  /// The model's own effects act from the beginning: the start is that of the recordings without
+  /// them, and the common errors are what is left.
+  void start_cleared(const StartOptions& how) {
+    Model known = fit_.model;
+    known.effects.resize(fit_.model.effects.size() - fit_.common_errors);
+    std::vector<Recording> clear;
+    for (ClearedRecording& one : cleared(recorded_, known)) {
+      clear.push_back(std::move(one.recording));
+    }
+    const Robot& robot = fit_.model.robot;
+    const RecordingProblem problem = make_problem(clear, known, options_.problem);
+    const RecordingStart start = start_of(problem, common_error_columns(clear, robot), how);
+    fit_.paths = fitted_paths(clear, robot, problem, {}, {}, start.state);
+    std::map<std::string, Vector2> landmarks;
+    for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
+      landmarks[problem.landmarks[k]] = start.state.landmarks[k];
+    }
+    place(landmarks);
+    take_common_errors(known.effects.size(), start.coefficients);
+  }
+
   void build_columns() {
     if (fit_.model.effects.empty()) return;
+    if (only_common()) {
+      build_common_columns();
+      return;
+    }
     const ShapeContext context(fit_.recordings, fit_.model.robot, fit_.paths);
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[k];
-      if (!options_.fit_effects || not_fitted_[one.effect][one.place]) {
+      if (is_common(one.effect)) {
+        fit_.columns.border[k].prior_sd = common_error_sd(fit_.model.effects[one.effect]);
+      } else if (!options_.fit_effects || not_fitted_[one.effect][one.place]) {
         fit_.columns.border[k].held = fit_.model.effects[one.effect].coefficients[one.place];
       }
     }
@@ -201,14 +320,24 @@ class Fitter {
   /// The one added last gives way: the others may be determined without it.
   void give_way(int coefficient) { hold(coefficient, NotFitted::undetermined); }
 
-  void adjust_once() {
+  /// What the first time left out is only looked at again later.
+  void adjust_once(bool first) {
     RecordingAdjustmentOptions how;
     how.gate = options_.gate;
+    how.most_left_out = options_.most_left_out;
+    how.landmark_uncertainties = options_.landmark_uncertainties;
+    if (!first) {
+      how.near = &fit_.adjustment;
+    } else if (options_.near != nullptr && options_.near->problem.measurements.size() ==
+                                               fit_.problem.measurements.size()) {
+      how.near = &options_.near->adjustment;
+    }
     // What misfit without the effects hid may show only now, at the best fit with them.
     for (;;) {
       how.coefficients = unknown_values();
       try {
-        fit_.adjustment = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+        RecordingAdjustment next = adjust_from(state_, fit_.problem, fit_.columns.border, how);
+        fit_.adjustment = std::move(next);
         break;
       } catch (const UndeterminedError& error) {
         give_way(unknown_coefficients(fit_.columns.border)[idx(error.coefficients().back())]);
@@ -233,7 +362,7 @@ class Fitter {
   void take_paths() {
     // Without effects nothing depends on the path but what asks for it afterwards.
     const std::vector<SessionPath> before = std::move(fit_.paths);
-    if (!fit_.model.effects.empty()) lay_paths();
+    if (!fit_.model.effects.empty() && !only_common()) lay_paths();
     // The residuals of a misfit are no estimate of noise.
     const bool noise = options_.relinearise &&
                        fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
@@ -241,7 +370,7 @@ class Fitter {
                                          fit_.columns.border, offsets_of(fit_), state_)
                            : 0.0;
     moved_ = 0.0;
-    for (std::size_t s = 0; s < fit_.paths.size(); ++s) {
+    for (std::size_t s = 0; s < std::min(before.size(), fit_.paths.size()); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
         const Pose& a = before[s].ends[row];
         const Pose& b = fit_.paths[s].ends[row];
@@ -280,7 +409,7 @@ class Fitter {
   [[nodiscard]] bool settled() const {
     constexpr double kStill = 1e-6;  // m and rad
     if (offset_change_ > 1e-3) return false;
-    if (fit_.columns.border.empty()) return true;
+    if (fit_.columns.border.empty() || (only_common() && !reads_compass())) return true;
     return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill : change_ < 1.0;
   }
 

@@ -30,9 +30,15 @@ struct FitterOptions {
   /// What is left out is given in the recordings' own times; delays move it with its sightings.
   ProblemOptions problem;
   std::optional<double> gate;  ///< against wrong sightings, as RecordingAdjustmentOptions
+  double most_left_out = 1.0;  ///< by the gate, as RecordingAdjustmentOptions
+  /// Frees the systematic errors that nearly every robot has (common_errors.hpp): they come after
+  /// the model's effects, and are fitted whether or not those are.
+  bool free_common_errors = false;
   /// Segments linearised at the noise that the fit believes (segment_noise.hpp), else along the
   /// path as recorded.
   bool relinearise = true;
+  bool landmark_uncertainties = true;  ///< as RecordingAdjustmentOptions
+  bool paths = true;                   ///< else they are only laid where the model's effects need them
   int max_rounds = 30;
   double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
   /// Start from this fit of the same recordings (to more or fewer of their measurements).
@@ -45,8 +51,9 @@ struct FitState {
   std::vector<Recording> recordings;  ///< as fitted: moved back by the delays
   RecordingProblem problem;
   EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
+  std::size_t common_errors = 0;  ///< how many of the last effects are freed common errors
   RecordingAdjustment adjustment;
-  std::vector<SessionPath> paths;
+  std::vector<SessionPath> paths;  ///< may be empty where the options ask for none
   bool settled = true;  ///< shapes and path agree
 };
 

@@ -80,4 +80,21 @@ std::string format_dot(const LandmarkGraph& map) {
   return text + "}\n";
 }
 
+std::string format_positions(const LandmarkGraph& map) {
+  bool certain = map.landmarks() > 0;
+  for (int k = 0; k < map.landmarks(); ++k) certain = certain && map.landmark(k).covariance;
+  std::string text = certain ? "landmark,x,y,c_xx,c_xy,c_yy\n" : "landmark,x,y\n";
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& one = map.landmark(k);
+    text += csv_field(one.name) + ',' + csv_number(one.position.x()) + ',' +
+            csv_number(one.position.y());
+    if (certain) {
+      const Matrix2& C = *one.covariance;
+      text += ',' + csv_number(C(0, 0)) + ',' + csv_number(C(0, 1)) + ',' + csv_number(C(1, 1));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace trussmap

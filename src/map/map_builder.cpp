@@ -5,6 +5,7 @@
 #include "geometry/index.hpp"
 #include "linalg/connected_parts.hpp"
 #include "linalg/dense.hpp"
+#include "map/arrival_gate.hpp"
 #include "map/exact_increments.hpp"
 #include "map/first_sight.hpp"
 #include "map/nearest_landmarks.hpp"
@@ -77,7 +78,9 @@ void require_finite(const Moves& moves) {
 
 class MapBuilder::State {
  public:
-  explicit State(const MapBuilderOptions& options) : options_(options) { check_options(); }
+  explicit State(const MapBuilderOptions& options) : options_(options), gate_(options.gate) {
+    check_options();
+  }
 
   void set_options(const MapBuilderOptions& options) {
     if (options.method != options_.method || options.eta.kind != options_.eta.kind) {
@@ -85,9 +88,11 @@ class MapBuilder::State {
     }
     State(options).check_options();
     options_ = options;
+    gate_.set_gate(options.gate);
   }
 
   void check_options() const {
+    if (!(options_.gate > 0.0)) throw std::invalid_argument("the gate must be above 0");
     if (options_.method == Method::adjustment) {
       throw std::invalid_argument("an adjustment is no method of a map builder, but of build_map");
     }
@@ -119,7 +124,32 @@ class MapBuilder::State {
     }
     here_ = known.value_or(0);
     chain_.restart(here_);
+    carried_.reset();
   }
+
+  /// Drives there; the leg goes on from one that was left out.
+  Arrival arrive(const std::string& landmark, const Traversal& leg) {
+    check(leg);
+    const Traversal whole = carried_ ? Traversal{carried_->displacement + leg.displacement,
+                                                 carried_->covariance + leg.covariance}
+                                     : leg;
+    const Arrival arrival = travel(landmark, whole);
+    if (arrival.kind == Arrival::Kind::left_out) {
+      carried_ = whole;
+    } else {
+      carried_.reset();
+      here_ = arrival.landmark;
+    }
+    return arrival;
+  }
+
+  Arrival observe(const std::string& landmark, const Traversal& from_here) {
+    if (!carried_) return travel(landmark, from_here);
+    return travel(landmark, {carried_->displacement + from_here.displacement,
+                             carried_->covariance + from_here.covariance});
+  }
+
+  [[nodiscard]] const std::vector<LeftOutArrival>& left_out() const { return left_out_; }
 
   Arrival travel(const std::string& landmark, const Traversal& leg) {
     if (here_ < 0) throw std::invalid_argument("the robot must start on a landmark first");
@@ -131,7 +161,7 @@ class MapBuilder::State {
     Arrival arrival;
     arrival.landmark = *known;
     arrival.misfit = leg.displacement - (stored(*known) - stored(here_));
-    if (options_.method == Method::gauss_markov) return increment(arrival, leg);
+    if (options_.method == Method::gauss_markov) return increment_gated(arrival, leg);
     if (!graph_.route_between(here_, *known)) return close(arrival, leg);
     return refine(arrival, leg);
   }
@@ -158,7 +188,33 @@ class MapBuilder::State {
     return largest;
   }
 
-  void stand_on(int landmark) { here_ = landmark; }
+  double rest() {
+    std::vector<Bar> bars;
+    std::vector<Load> loads;
+    bars.reserve(idx(graph_.routes()));
+    for (int number = 0; number < graph_.routes(); ++number) {
+      const Route& route = graph_.route(number);
+      const Matrix2 B = stiffness(route);
+      const Vector2 force =
+          B * (route.mean_vector() - (stored(route.target) - stored(route.source)));
+      bars.push_back({route.source, route.target, B});
+      loads.push_back({route.source, -force});
+      loads.push_back({route.target, force});
+    }
+    if (bars.empty()) return 0.0;
+    Moves moves;
+    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
+    try {
+      moves.displacements =
+          solve_truss(graph_.landmarks(), bars, {{0, Vector2::Zero()}}, loads).displacements;
+    } catch (const UnsupportedJoint& error) {
+      throw SolveError("landmark " + graph_.landmark(error.joint()).name + " " + error.why());
+    }
+    require_finite(moves);
+    Arrival arrival;
+    make(moves, arrival);
+    return arrival.largest_move;
+  }
 
   [[nodiscard]] Vector2 position(int landmark) const { return stored(landmark) + offset_; }
 
@@ -207,14 +263,70 @@ class MapBuilder::State {
     return arrival;
   }
 
-  Arrival increment(Arrival arrival, const Traversal& leg) {
-    const std::optional<int> known_route = graph_.route_between(here_, arrival.landmark);
+  /// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map.
+  [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg) {
+    const Vector2 misfit = leg.displacement - (stored(j) - stored(i));
+    const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
+    if (gate_.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
+    Matrix2 of_map;
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const std::vector<Vector2> u = increments_.pull(i, j, Matrix2::Identity().col(c));
+      of_map.col(c) = u[idx(j)] - u[idx(i)];
+    }
+    const Matrix2 both = leg.covariance + 0.5 * (of_map + of_map.transpose());
+    return misfit.dot(both.inverse() * misfit);
+  }
+
+  Arrival increment_gated(Arrival arrival, const Traversal& leg) {
+    if (std::isinf(options_.gate)) return increment(here_, arrival, leg);
+    left_out_.reserve(left_out_.size() + 1);
+    const double misfit = squared_misfit(here_, arrival.landmark, leg);
+    ArrivalGate gate = gate_;
+    gate.remember(misfit);
+    if (gate.lets_in(misfit)) {
+      arrival = increment(here_, arrival, leg);
+    } else {
+      arrival.kind = Arrival::Kind::left_out;
+      left_out_.push_back({graph_.landmark(here_).name, graph_.landmark(arrival.landmark).name, leg,
+                           std::sqrt(misfit)});
+    }
+    gate_ = std::move(gate);
+    try {
+      take_back_in(arrival);
+    } catch (const std::exception&) {
+      // The arrival is in; what could not come back stays out for now.
+    }
+    return arrival;
+  }
+
+  /// Order does not matter to least squares: what fits by now is taken in late.
+  void take_back_in(Arrival& arrival) {
+    for (std::size_t k = 0; k < left_out_.size();) {
+      const LeftOutArrival& one = left_out_[k];
+      const int from = *graph_.find(one.from);
+      Arrival late;
+      late.landmark = *graph_.find(one.to);
+      late.misfit = one.leg.displacement - (stored(late.landmark) - stored(from));
+      const bool this_one = arrival.kind == Arrival::Kind::left_out && k + 1 == left_out_.size();
+      if (this_one || !gate_.lets_in(squared_misfit(from, late.landmark, one.leg))) {
+        ++k;
+        continue;
+      }
+      late = increment(from, late, one.leg);
+      arrival.largest_move = std::max(arrival.largest_move, late.largest_move);
+      ++arrival.back;
+      left_out_.erase(left_out_.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+
+  Arrival increment(int from, Arrival arrival, const Traversal& leg) {
+    const std::optional<int> known_route = graph_.route_between(from, arrival.landmark);
     arrival.kind = known_route ? Arrival::Kind::refinement : Arrival::Kind::first_sight;
     Route route = known_route ? graph_.route(*known_route) : Route();
-    average_in(route, known_route && route.source != here_ ? reversed(leg) : leg);
+    average_in(route, known_route && route.source != from ? reversed(leg) : leg);
     const Matrix2 one = options_.pooled ? route.covariance.inverse() : leg.covariance.inverse();
     if (!known_route) {
-      increments_.add_bar(here_, arrival.landmark, one);
+      increments_.add_bar(from, arrival.landmark, one);
     } else {
       increments_.set_stiffness(
           *known_route, options_.pooled ? Matrix2(route.traversals * one)
@@ -223,8 +335,8 @@ class MapBuilder::State {
     Moves moves;
     try {
       for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
-      moves.displacements = increments_.pull(here_, arrival.landmark, one * arrival.misfit);
-      arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+      moves.displacements = increments_.pull(from, arrival.landmark, one * arrival.misfit);
+      arrival.route = graph_.add_traversal(from, arrival.landmark, leg);
     } catch (...) {
       increments_.take_back();
       throw;
@@ -441,6 +553,9 @@ class MapBuilder::State {
   OpenChain chain_;
   ExactIncrements increments_;
   NearestLandmarks nearest_;
+  ArrivalGate gate_;
+  std::vector<LeftOutArrival> left_out_;
+  std::optional<Traversal> carried_;  ///< driven since here_, by legs whose ends were left out
   int here_ = -1;
 };
 
@@ -455,17 +570,23 @@ void MapBuilder::start(const std::string& landmark, const Vector2& position) {
 }
 
 Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
-  Arrival arrival = state_->travel(landmark, leg);
-  state_->stand_on(arrival.landmark);
-  return arrival;
+  return state_->arrive(landmark, leg);
 }
 
 Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_here) {
-  return state_->travel(landmark, from_here);
+  return state_->observe(landmark, from_here);
 }
 
 double MapBuilder::settle(double gain_limit) {
   return state_->options().method == Method::elastic ? state_->settle(gain_limit) : 0.0;
+}
+
+double MapBuilder::rest() {
+  return state_->options().method == Method::elastic ? state_->rest() : 0.0;
+}
+
+const std::vector<LeftOutArrival>& MapBuilder::left_out() const {
+  return state_->left_out();
 }
 
 const MapBuilderOptions& MapBuilder::options() const {

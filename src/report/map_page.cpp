@@ -3,8 +3,10 @@
 #include "plot/layers.hpp"
 #include "plot/map_picture.hpp"
 #include "report/page.hpp"
+#include "report/page_words.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -228,15 +230,6 @@ PageTable survey_table(const SurveyErrors& errors) {
   return table;
 }
 
-std::string verdict(const BuiltMap& built) {
-  const std::string size =
-      fmt::format("A map of {} landmarks and {} routes", built.map.landmarks(), built.map.routes());
-  if (!built.on_survey) return size + ", from " + std::to_string(built.legs) + " legs.";
-  return fmt::format("{}, {:.2g} m off the survey (rms); dead reckoning alone is {:.2g} m off.",
-                     size, built.on_survey->comparison.rigid.rms,
-                     built.on_survey->rms_dead_reckoning);
-}
-
 }  // namespace
 
 Page map_page(const BuiltMap& built, const std::string& subject) {
@@ -244,24 +237,31 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   PageContent page;
   page.command = "build";
   page.subject = subject;
-  page.verdict = verdict(built);
+  page.verdict = capitalised(verdict_in_words(built)) + ".";
+  page.tone = built.good() ? Tone::good : Tone::bad;
+  page.facts.push_back({fmt::format("{:.3f} m", built.quality.median_sd),
+                        "standard error of landmarks (median)", page.tone});
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;
-    const double reckoned = built.on_survey->rms_dead_reckoning;
-    page.tone = survey.rigid.rms <= reckoned ? Tone::good : Tone::bad;
-    page.facts.push_back(
-        {fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)", page.tone});
-    page.facts.push_back(
-        {fmt::format("{:.3f} m", reckoned), "dead reckoning off the survey (rms)"});
-    page.facts.push_back({fmt::format("{:+.1f} %", 100.0 * (1.0 / survey.similarity.scale - 1.0)),
-                          "map too large by"});
+    const double scale = 1.0 / survey.similarity.scale;
+    page.facts.push_back({fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)"});
+    page.facts.push_back({fmt::format("{:.3f} m", built.on_survey->rms_dead_reckoning),
+                          "dead reckoning off the survey (rms)"});
+    page.facts.push_back({fmt::format("{:.1f} %", 100.0 * std::abs(scale - 1.0)),
+                          scale < 1.0 ? "map too small by" : "map too large by"});
+  }
+  page.facts.push_back(
+      {fmt::format("{:.2f}", built.quality.dispersion), "dispersion (1: as the model says)"});
+  if (built.quality.loops > 0) {
+    page.facts.push_back({fmt::format("{:.2f} %", 100.0 * built.quality.misclosure_share),
+                          "of the way: what loops of dead reckoning miss their start by"});
   }
   page.facts.push_back({std::to_string(built.legs), "legs"});
   page.facts.push_back({std::to_string(built.first_sight), "loops closed at first sight"});
   page.facts.push_back({std::to_string(built.refinements), "known routes driven again"});
-  page.facts.push_back({std::to_string(built.rejected.size()), "sightings kept out",
-                        built.rejected.empty() ? Tone::neutral : Tone::bad});
-  page.notes = built.warnings;
+  page.facts.push_back({std::to_string(built.rejected.size()), "sightings left out"});
+  if (!built.good()) page.notes.assign(built.warnings.begin() + 1, built.warnings.end());
+  page.notes.insert(page.notes.end(), built.notes.begin(), built.notes.end());
   if (built.on_survey) {
     for (const std::string& name : built.on_survey->comparison.contradicting) {
       page.notes.push_back("Landmark " + name + " contradicts the survey and does not count.");

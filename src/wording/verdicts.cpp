@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "trussmap/build_map.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
 
@@ -167,6 +168,16 @@ std::string fit_in_words(double chi2, int dof, int coefficients) {
                      : coefficients == 1
                          ? std::string(" (1 coefficient estimated)")
                          : fmt::format(" ({} coefficients estimated)", coefficients));
+}
+
+std::string verdict_in_words(const BuiltMap& built) {
+  if (!built.good()) return "doubtful: " + built.warnings.front();
+  if (built.method == Method::adjustment) {
+    return fmt::format("good: nothing speaks against this map, certain to {:.3f} m (median)",
+                       built.quality.median_sd);
+  }
+  return fmt::format("good: nothing speaks against this map, {:.3f} m off the adjusted one (rms)",
+                     built.quality.from_adjusted);
 }
 
 }  // namespace trussmap

@@ -59,10 +59,10 @@ std::string help_in_one_line(const std::string& command) {
 
 TEST(Command, HelpStatesTheDefaultOfEveryGate) {
   const std::string build = help_in_one_line("build");
-  EXPECT_NE(build.find(fmt::format("by default {:g}, of the sighting", kMapGate)),
-            std::string::npos);
-  EXPECT_NE(build.find(fmt::format("with --method adjustment {:g},", kAdjustmentGate)),
-            std::string::npos);
+  EXPECT_NE(build.find(fmt::format("by default {:g}, and more where too many would go",
+                                   kAdjustmentGate)),
+            std::string::npos)
+      << build;
   for (const std::string command : {"compare", "diagnose", "discover", "fit"}) {
     const std::string help = help_in_one_line(command);
     EXPECT_NE(help.find(fmt::format("--gate X={:g} ", kModelGate)), std::string::npos) << help;
@@ -124,10 +124,22 @@ TEST(Command, SimulateBuildAndConvertGoTogether) {
       run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --seed 5 --out " + at + "/r").status,
       0);
   const Ran built = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
-                                 "/m.graphml --json " + at + "/m.json --svg " + at + "/m.svg");
+                                 "/m.graphml --json " + at + "/m.json --svg " + at + "/m.svg --csv " + at + "/p.csv");
   ASSERT_EQ(built.status, 0) << built.output;
   const json result = read_json(scratch.path() / "m.json");
-  EXPECT_EQ(result["method"], "elastic");
+  EXPECT_EQ(result["method"], "adjustment");
+  EXPECT_EQ(result["verdict"], "good") << result["warnings"];
+  EXPECT_EQ(result["warnings"], json::array());
+  EXPECT_EQ(result["positions"].size(), 16U);
+  EXPECT_TRUE(result["positions"]["L3_3"].contains("c_xy"));
+  EXPECT_EQ(built.output.find("doubtful"), std::string::npos);
+  const auto places = scratch.contents().at("p.csv");
+  EXPECT_EQ(places.substr(0, places.find('\n')), "landmark,x,y,c_xx,c_xy,c_yy");
+  EXPECT_EQ(std::count(places.begin(), places.end(), '\n'), 17);
+  for (const char* file : {"m.graphml", "m.json", "m.svg", "p.csv"}) {
+    EXPECT_NE(built.output.find(at + "/" + file, built.output.find("written:")), std::string::npos)
+        << built.output;
+  }
   EXPECT_EQ(result["landmarks"], 16);
   EXPECT_EQ(result["routes"], 24);
   EXPECT_LT(result["survey"]["rms_m"].get<double>(),
@@ -138,7 +150,7 @@ TEST(Command, SimulateBuildAndConvertGoTogether) {
   const auto files = scratch.contents();
   const auto graph_of = [](const std::string& text) { return text.substr(text.find("<graphml")); };
   EXPECT_EQ(graph_of(files.at("m.graphml")), graph_of(files.at("c.graphml")));
-  EXPECT_NE(files.at("m.graphml").find("method elastic"), std::string::npos);
+  EXPECT_NE(files.at("m.graphml").find("method adjustment"), std::string::npos);
   EXPECT_NE(files.at("m.svg").find("</svg>"), std::string::npos);
 }
 
@@ -200,8 +212,7 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
   const Ran ran = run_trussmap("build " + at + "/one " + at + "/two --model " + at + "/m.toml");
   EXPECT_EQ(ran.status, 1) << ran.output;
   EXPECT_EQ(ran.output, "trussmap: " + at +
-                            "/two is tied to nothing: expected sightings of a landmark of the "
-                            "other sessions, and without a compass of two\n");
+                            "/two stands apart: no landmark ties it to " + at + "/one\n");
 }
 
 TEST(Command, AWordThatIsNoCommandIsNamed) {

@@ -27,12 +27,10 @@ MrclamRecording robot(int set, int number) {
 MapOnSurvey mapped(const std::vector<Recording>& recordings, const Model& model, Method method) {
   const BuiltMap built = build_map(recordings, model, {.method = method});
   EXPECT_TRUE(built.on_survey);
-  if (built.fit) {
-    EXPECT_TRUE(built.fit->converged);
-    std::size_t sightings = 0;
-    for (const Recording& one : recordings) sightings += one.sightings.size();
-    EXPECT_LE(built.rejected.size(), sightings / 100);  // misread labels are few
-  }
+  EXPECT_TRUE(built.fit.converged);
+  std::size_t sightings = 0;
+  for (const Recording& one : recordings) sightings += one.sightings.size();
+  EXPECT_LE(built.rejected.size(), sightings / 100);  // misread labels are few
   return built.on_survey.value_or(MapOnSurvey());
 }
 
@@ -130,12 +128,11 @@ TEST(Mrclam, WithoutTheGateMisreadLabelsSpoilAMap) {
   const MrclamRecording read = robot(4, 5);
   BuildMapOptions open;
   open.gate = 1e9;
-  open.confirmations = 1;
   const auto rms = [&](const BuildMapOptions& options) {
     const BuiltMap built = build_map({read.recording}, read.model, options);
     return survey_rms(positions_of(built.map), read.recording.survey, {});
   };
-  EXPECT_GT(rms(open), 1.5 * rms({}));
+  EXPECT_GT(rms(open), 1.2 * rms({}));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ Eigen::MatrixXd dense_rows(const RecordingSystem& system, const RecordingProblem
 TEST(RecordingEffectParameters, StepAndCovarianceAreThoseOfADenseJointSolve) {
   const Case one = two_effects(1, -0.02, 0.05);
   RecordingSystem system(one.problem, one.border);
-  system.linearise(start_of(one.problem), Eigen::Vector2d(0.01, 0.02));
+  system.linearise(start_of(one.problem, {}).state, Eigen::Vector2d(0.01, 0.02));
   const RecordingSystem::Step step = system.solve_step();
   const Eigen::MatrixXd rows = dense_rows(system, one.problem);
   const Eigen::MatrixXd normal = rows.transpose() * rows;

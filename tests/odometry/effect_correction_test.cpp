@@ -30,14 +30,15 @@ Recording drive_about(bool compass) {
   return recording;
 }
 
+/// Of dead reckoning: a map has the commonest faults estimated beside it.
 double error_of(const std::vector<Recording>& recordings) {
   const BuiltMap built = build_map(recordings, Model{});
-  return compare_with_survey(positions_of(built.map), recordings.front().survey).rigid.rms;
+  return survey_rms(built.dead_reckoned, recordings.front().survey, {});
 }
 
 /// A wheelbase 3 % larger than believed, a right wheel 0.3 % larger: what the wheels show is less
 /// of both.
-TEST(EffectCorrection, RestoresTheMapOfTheSoundRobot) {
+TEST(EffectCorrection, RestoresTheRecordOfTheSoundRobot) {
   const Recording sound = drive_about(false);
   Recording faulty = sound;
   for (std::size_t row = 0; row < faulty.drive.rows(); ++row) {
@@ -57,9 +58,9 @@ TEST(EffectCorrection, RestoresTheMapOfTheSoundRobot) {
   EXPECT_GT(error_of({faulty}), 1.5 * error_of({sound}));
 }
 
-/// The practice recording with the compass's hard iron: with its answer as a model the map is
-/// better than without.
-TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsMap) {
+/// The practice recording with the compass's hard iron: with its answer as a model dead reckoning
+/// is better than without.
+TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsReckoning) {
   TRUSSMAP_NEEDS_SHARED("data/hidden/b");
   const Recording recording = read_recording(testing::shared("data/hidden/b"));
   Model model;

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "build_map/map_fit.hpp"
+
+#include "estimation/measurement_rows.hpp"
+#include "statistics/distributions.hpp"
+#include "trussmap/gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFreed = 0.05;        // p-value below which common errors stay
+constexpr double kMostLeftOut = 0.12;  // share of the sightings
+
+FitterOptions options_for(const std::optional<double>& gate) {
+  FitterOptions how;
+  how.fit_effects = false;
+  how.relinearise = false;
+  how.problem.survey = false;
+  how.problem.truth = false;
+  how.max_rounds = 4;
+  how.still = 0.1;
+  how.landmark_uncertainties = false;
+  how.paths = false;
+  const double sds = gate.value_or(kAdjustmentGate);
+  if (std::isfinite(sds)) how.gate = sds * sds;
+  if (!gate) how.most_left_out = kMostLeftOut;
+  return how;
+}
+
+/// Wald's test of all common errors at once, by the scatter that there is.
+double p_value_of_common_errors(const FitState& fit) {
+  const Eigen::VectorXd& values = fit.adjustment.coefficients;
+  if (values.size() == 0) return 1.0;
+  const double dispersion =
+      std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
+  const double statistic =
+      values.dot(fit.adjustment.coefficient_covariance.inverse() * values) / dispersion;
+  return chi2_p_value(statistic, static_cast<int>(values.size()));
+}
+
+std::vector<FreedError> freed_of(const FitState& fit) {
+  std::vector<FreedError> result;
+  for (std::size_t k = fit.effects.size() - fit.common_errors; k < fit.effects.size(); ++k) {
+    result.push_back({fit.effects[k].effect, fit.effects[k].sd});
+  }
+  return result;
+}
+
+/// How far from its landmark a sighting points, m.
+double misfit_of(const FitState& fit, const Measurement& one) {
+  const RecordingState& state = fit.adjustment.state;
+  const Pose& pose = state.poses[idx(one.from - fit.problem.landmark_count())];
+  const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
+  const Matrix2 R = rotation(pose.heading);
+  const Vector2 to =
+      state.landmarks[idx(one.to)] - pose.position() - R * Vector2(view.ahead, view.left);
+  if (one.kind == MeasurementKind::standing) return to.norm();
+  if (one.kind == MeasurementKind::cartesian_view) {
+    return (to - R * rotation(view.heading) * one.value.head<2>()).norm();
+  }
+  const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
+  if (one.rows == 1) return std::abs(to.norm() - range);
+  const double bearing = one.value[1] - view.bearing + view.heading;
+  return (to - R * (range * rotation(bearing).col(0))).norm();
+}
+
+}  // namespace
+
+MapFitState fit_map(const std::vector<Recording>& recordings, const Model& model,
+                    const std::optional<double>& gate) {
+  FitterOptions how = options_for(gate);
+  how.free_common_errors = true;
+  MapFitState result;
+  result.fit = fit_recordings(recordings, model, how);
+  result.p_freed = p_value_of_common_errors(result.fit);
+  if (result.p_freed < kFreed) {
+    result.freed = freed_of(result.fit);
+  } else {
+    how.free_common_errors = false;
+    how.near = &result.fit;
+    FitState plain = fit_recordings(recordings, model, how);
+    result.fit = std::move(plain);
+  }
+  add_landmark_uncertainties(result.fit.problem, result.fit.columns.border, result.fit.adjustment);
+  return result;
+}
+
+std::vector<RejectedSighting> left_out_of(const FitState& fit) {
+  std::vector<RejectedSighting> result;
+  const RecordingProblem& problem = fit.problem;
+  for (const int k : fit.adjustment.left_out) {
+    const Measurement& one = problem.measurements[idx(k)];
+    result.push_back({problem.sessions[idx(one.session)],
+                      problem.poses[idx(one.from - problem.landmark_count())].t,
+                      problem.landmarks[idx(one.to)], misfit_of(fit, one)});
+  }
+  return result;
+}
+
+std::vector<SessionGuide> guides_of(const FitState& fit) {
+  std::vector<SessionGuide> guides(fit.recordings.size());
+  for (std::size_t s = 0; s < guides.size(); ++s) {
+    guides[s].headings.resize(fit.recordings[s].sightings.size());
+    guides[s].left_out.resize(fit.recordings[s].sightings.size());
+  }
+  for (const Measurement& one : fit.problem.measurements) {
+    if (!is_sighting(one.kind)) continue;
+    const std::size_t pose = idx(one.from - fit.problem.landmark_count());
+    guides[idx(one.session)].headings[one.source] = fit.adjustment.state.poses[pose].heading;
+  }
+  for (const int k : fit.adjustment.left_out) {
+    const Measurement& one = fit.problem.measurements[idx(k)];
+    guides[idx(one.session)].left_out[one.source] = true;
+  }
+  return guides;
+}
+
+LandmarkGraph adjusted_landmarks(const FitState& fit) {
+  LandmarkGraph result;
+  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
+    const int landmark =
+        result.add_landmark(fit.problem.landmarks[k], fit.adjustment.state.landmarks[k]);
+    result.set_covariance(landmark, fit.adjustment.landmark_covariances[k]);
+  }
+  return result;
+}
+
+void place_as(const LandmarkGraph& adjusted, LandmarkGraph& map) {
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const Landmark& best = adjusted.landmark(*adjusted.find(map.landmark(k).name));
+    map.set_position(k, best.position);
+    map.set_covariance(k, *best.covariance);
+  }
+  for (int k = 0; k < adjusted.landmarks(); ++k) {
+    const Landmark& best = adjusted.landmark(k);
+    if (map.find(best.name)) continue;
+    map.set_covariance(map.add_landmark(best.name, best.position), *best.covariance);
+  }
+}
+
+}  // namespace trussmap

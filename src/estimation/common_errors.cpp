@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/common_errors.hpp"
+
+#include "trussmap/catalogue.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// The heading that a reading shows, with a sin + b cos of hard iron in it.
+double heading_under(double reading, double a, double b) {
+  constexpr int kRounds = 4;
+  double heading = reading;
+  for (int round = 0; round < kRounds; ++round) {
+    heading = reading - a * std::sin(heading) - b * std::cos(heading);
+  }
+  return heading;
+}
+
+/// One column each for sine and cosine.
+std::vector<EffectPattern> hard_iron(const std::vector<Recording>& recordings, double a, double b) {
+  std::vector<EffectPattern> result(2);
+  for (EffectPattern& one : result) one.name = "hard iron";
+  for (const Recording& recording : recordings) {
+    const Drive& drive = recording.drive;
+    std::vector<DrivePattern> sine(drive.rows());
+    std::vector<DrivePattern> cosine(drive.rows());
+    for (std::size_t row = 0; row < drive.heading.size(); ++row) {
+      if (!std::isfinite(drive.heading[row])) continue;
+      const double heading = heading_under(drive.heading[row], a, b);
+      sine[row].compass = std::sin(heading);
+      cosine[row].compass = std::cos(heading);
+    }
+    result[0].drives.push_back(std::move(sine));
+    result[1].drives.push_back(std::move(cosine));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
+  std::vector<Effect> result{catalogue_effect("wheel diameter ratio"),
+                             catalogue_effect("wheelbase"), catalogue_effect("heading drift")};
+  const bool compass =
+      std::any_of(recordings.begin(), recordings.end(),
+                  [](const Recording& recording) { return recording.drive.has_compass(); });
+  if (compass) result.push_back(catalogue_effect("hard iron"));
+  for (Effect& effect : result) effect.coefficients.assign(effect.shape.size(), 0.0);
+  return result;
+}
+
+double common_error_sd(const Effect& effect) {
+  switch (effect.channel) {
+    case Channel::difference:
+      return 0.01;
+    case Channel::turn:
+      return 0.05;
+    case Channel::drift:
+      return 0.01;
+    case Channel::compass:
+      return 0.2;
+    default:
+      throw std::invalid_argument(effect.name + " is no common error");
+  }
+}
+
+EffectParameters common_error_columns(const std::vector<Recording>& recordings, const Robot& robot,
+                                      const Eigen::VectorXd& coefficients) {
+  EffectParameters border;
+  for (const Effect& effect : common_errors(recordings)) {
+    const double sd = common_error_sd(effect);
+    if (effect.channel == Channel::compass) {
+      const auto at = static_cast<Eigen::Index>(border.size());
+      const bool known = coefficients.size() > at + 1;
+      for (EffectPattern& one : hard_iron(recordings, known ? coefficients[at] : 0.0,
+                                          known ? coefficients[at + 1] : 0.0)) {
+        border.push_back(std::move(one));
+        border.back().prior_sd = sd;
+      }
+    } else {
+      border.push_back(plain_effect(effect.channel, recordings, robot));
+      border.back().prior_sd = sd;
+    }
+  }
+  return border;
+}
+
+}  // namespace trussmap
