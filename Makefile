@@ -3,7 +3,8 @@
 #
 # A short way to the usual things; CMake does the work (see CMakePresets.json).
 #   make               configure and build into build/
-#   make demo          install what is missing (Debian), build the command, run the worked examples
+#   make demo          install what is missing (Debian), build the command, run the worked example
+#                      (VERBOSE=1: with every command's tables)
 #   make check         install what is missing (Debian), build everything, run the fast tests: those
 #                      of pages in a browser and the slow ones are left to make test
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
@@ -33,7 +34,7 @@ command: configure
 	@cmake --build build --parallel $(JOBS) --target trussmap_command
 
 demo: install-deps command
-	@maps/demo.sh
+	@maps/demo.sh $(if $(VERBOSE),--verbose)
 
 check: install-deps build
 	@.ci/test build --parallel $(JOBS) --label-exclude 'slow|browser'

@@ -19,6 +19,7 @@
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -153,15 +154,23 @@ json result_json(const BuiltMap& built, const std::string& method) {
   return result;
 }
 
+/// `scale`: what the map has to be multiplied by.
+std::string scale_in_words(double scale) {
+  constexpr double kNothing = 0.0005;
+  const double error = 1.0 / scale - 1.0;
+  if (std::abs(error) < kNothing) return "the map's size is right within 0.05 %";
+  return fmt::format("the map is {:.1f} % too {}", 100.0 * std::abs(error),
+                     error > 0.0 ? "large" : "small");
+}
+
 void print_survey(const MapOnSurvey& on_survey) {
   const SurveyComparison& map = on_survey.comparison;
   fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
              map.landmarks);
   fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the map", map.rigid.rms);
   fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
-  fmt::print("  {:<28} {:>8.3f} m  (the map is {:.1f} % too {})\n", "rms with a scale as well",
-             map.similarity.rms, 100.0 * std::abs(1.0 / map.similarity.scale - 1.0),
-             map.similarity.scale < 1.0 ? "large" : "small");
+  fmt::print("  {:<28} {:>8.3f} m  ({})\n", "rms with a scale as well", map.similarity.rms,
+             scale_in_words(map.similarity.scale));
   if (map.contradicting.empty()) return;
   fmt::print(
       "\n  These landmarks contradict the survey and do not count above (with them the rms "
@@ -210,8 +219,8 @@ void print_quality(const BuiltMap& built) {
 void print_result(const BuiltMap& built, const BuildOptions& options) {
   fmt::print("map of {} landmarks and {} routes, method {}\n", built.map.landmarks(),
              built.map.routes(), options.method);
-  fmt::print("{}\n\n", verdict_text(built.good() ? Mood::good : Mood::doubt,
-                                    verdict_in_words(built)));
+  fmt::print("{}\n\n",
+             verdict_text(built.good() ? Mood::good : Mood::doubt, verdict_in_words(built)));
   print_quality(built);
   const auto line = [](const char* what, int number) {
     fmt::print("  {:<28} {:>8}\n", what, number);

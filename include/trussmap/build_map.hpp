@@ -98,7 +98,7 @@ struct BuiltMap {
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there
   std::vector<RejectedSighting> rejected;
-  std::vector<FreedError> freed;  ///< what was estimated beside the map; empty: nothing
+  std::vector<FreedError> freed;         ///< what was estimated beside the map; empty: nothing
   std::vector<std::string> unconfirmed;  ///< landmarks that one sighting from afar alone has
   /// Positions by dead reckoning alone, never corrected: mean over all sightings of a landmark (of
   /// the first recording that saw it), in that recording's frame.
@@ -106,8 +106,8 @@ struct BuiltMap {
   MapFit fit;  ///< of the adjustment
   MapQuality quality;
   std::optional<MapOnSurvey> on_survey;  ///< where three landmarks of the map were surveyed
-  std::vector<std::string> warnings;  ///< in words: what speaks against the map, and the remedy
-  std::vector<std::string> notes;     ///< in words: what is worth knowing besides
+  std::vector<std::string> warnings;     ///< in words: what speaks against the map, and the remedy
+  std::vector<std::string> notes;        ///< in words: what is worth knowing besides
 
   /// Nothing speaks against the map.
   [[nodiscard]] bool good() const { return warnings.empty(); }

@@ -91,7 +91,7 @@ struct Arrival {
   int landmarks_moved = 0;           ///< displaced by more than 1e-12 m
   double largest_move = 0.0;         ///< m
   Vector2 misfit = Vector2::Zero();  ///< measured displacement - the map's before, m
-  int eta = 0;  ///< landmarks in the structure that a refinement solved, else 0
+  int eta = 0;   ///< landmarks in the structure that a refinement solved, else 0
   int back = 0;  ///< of those left out earlier that came back now
 };
 
@@ -132,10 +132,10 @@ class MapBuilder {
   /// close to the least-squares map. Cost: one refinement per route.
   double settle(double gain_limit);
 
-  /// `elastic` only: the whole truss comes to rest at once, every route pulling towards its averages
-  /// with the stiffness that it has; the first landmark stays. What settle's rounds tend to, where
-  /// every landmark may move: after the drive, when cost does not matter. Returns the largest move,
-  /// m. Cost: one solution of the whole truss.
+  /// `elastic` only: the whole truss comes to rest at once, every route pulling towards its
+  /// averages with the stiffness that it has; the first landmark stays. What settle's rounds tend
+  /// to, where every landmark may move: after the drive, when cost does not matter. Returns the
+  /// largest move, m. Cost: one solution of the whole truss.
   double rest();
 
   [[nodiscard]] const MapBuilderOptions& options() const;

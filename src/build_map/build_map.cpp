@@ -22,8 +22,7 @@ constexpr int kFewestSurveyed = 3;
 void check(const std::vector<Recording>& recordings, const BuildMapOptions& options) {
   if (recordings.empty()) throw std::invalid_argument("a map needs a recording");
   require_well_formed(recordings);
-  if (!(options.gate.value_or(kAdjustmentGate) > 0.0) ||
-      !(options.min_drive >= 0.0)) {
+  if (!(options.gate.value_or(kAdjustmentGate) > 0.0) || !(options.min_drive >= 0.0)) {
     throw std::invalid_argument("an option of build_map is out of range");
   }
 }
@@ -31,7 +30,8 @@ void check(const std::vector<Recording>& recordings, const BuildMapOptions& opti
 void require_sightings(const std::vector<Recording>& recordings) {
   for (const Recording& one : recordings) {
     if (!one.sightings.empty()) continue;
-    throw InputError(one.name, 0, "no landmark was sighted, expected sightings to build a map from");
+    throw InputError(one.name, 0,
+                     "no landmark was sighted, expected sightings to build a map from");
   }
 }
 
@@ -103,8 +103,7 @@ BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);
   const std::vector<ClearedRecording> believed = cleared(recordings, model);
-  BuiltMap built =
-      map_of(best, best.freed.empty() ? believed : cleared(best.fit), guides, options);
+  BuiltMap built = map_of(best, best.freed.empty() ? believed : cleared(best.fit), guides, options);
   ReckonedMap reckoned = reckoned_map(sessions_of(believed, model, guides));
   built.quality = quality_of(built, best, reckoned);
   built.dead_reckoned = std::move(reckoned.places);

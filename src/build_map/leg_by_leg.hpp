@@ -8,8 +8,8 @@
 //                   routes from that reference
 //
 // What the best fit of everything left out is left out here too, and where there is no compass the
-// heading at each stop is that fit's (SessionGuide). Sessions with a compass come first. At the end an
-// elastic map comes to rest as a whole.
+// heading at each stop is that fit's (SessionGuide). Sessions with a compass come first. At the end
+// an elastic map comes to rest as a whole.
 #pragma once
 
 #include "build_map/sighted_drive.hpp"

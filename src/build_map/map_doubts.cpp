@@ -105,8 +105,8 @@ std::string words_of(const FreedError& one) {
              fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
     case Channel::compass:
       return "hard iron " +
-             fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 1) + " +- " +
-             fixed_text(std::max(sd, one.sd.back()) / kDegree, 1) + " deg";
+             fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 2) + " +- " +
+             fixed_text(std::max(sd, one.sd.back()) / kDegree, 2) + " deg";
     case Channel::turn:
       return "turns " + percent() + " (wheelbase)";
     default:
@@ -194,10 +194,11 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
         "so many sightings contradict the rest that none was left out: the model is wrong, or its "
         "noise is far too small; run discover");
   } else if (fit.gate_widened > 1.0) {
-    warnings.push_back("more sightings contradict the rest than are ever wrong: only those beyond " +
-                       fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
-                       " standard deviations were left out; the model is wrong, or its noise is too "
-                       "small; run discover");
+    warnings.push_back(
+        "more sightings contradict the rest than are ever wrong: only those beyond " +
+        fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
+        " standard deviations were left out; the model is wrong, or its noise is too "
+        "small; run discover");
   } else if (share > kManyOut) {
     warnings.push_back(fixed_text(100.0 * share, 0) +
                        " % of the sightings contradict the rest and were left out: that many are "
@@ -258,8 +259,7 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
 
 }  // namespace
 
-MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
-                      const ReckonedMap& reckoned) {
+MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const ReckonedMap& reckoned) {
   const RecordingAdjustment& fit = best.fit.adjustment;
   MapQuality result;
   result.dispersion = fit.chi2 / std::max(1, fit.dof);
@@ -275,8 +275,7 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
   result.loops = static_cast<int>(reckoned.misclosures.size());
   result.misclosure_share = median(reckoned.misclosures);
   result.sightings = sightings_of(best.fit.problem);
-  result.left_out_share =
-      static_cast<double>(fit.left_out.size()) / std::max(1, result.sightings);
+  result.left_out_share = static_cast<double>(fit.left_out.size()) / std::max(1, result.sightings);
   result.from_adjusted =
       built.method == Method::adjustment ? 0.0 : distance_from(best.fit, built.map);
   return result;

@@ -37,8 +37,7 @@ FitterOptions options_for(const std::optional<double>& gate) {
 double p_value_of_common_errors(const FitState& fit) {
   const Eigen::VectorXd& values = fit.adjustment.coefficients;
   if (values.size() == 0) return 1.0;
-  const double dispersion =
-      std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
+  const double dispersion = std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
   const double statistic =
       values.dot(fit.adjustment.coefficient_covariance.inverse() * values) / dispersion;
   return chi2_p_value(statistic, static_cast<int>(values.size()));

@@ -124,8 +124,8 @@ void Session::settle(const Stop& stop, const Accepted& at, const HeadingEstimate
 /// than traversals would only spoil a route, and a landmark that the robot stands on elsewhere does
 /// better without them.
 bool Session::dilutes(const std::string& landmark, const Matrix2& covariance) const {
-  const bool plain = options_.build.method == Method::elastic ||
-                     options_.build.method == Method::elastic_printed;
+  const bool plain =
+      options_.build.method == Method::elastic || options_.build.method == Method::elastic_printed;
   if (plain && options_.stood_on.contains(landmark)) return true;
   const std::optional<int> known = builder_.find(landmark);
   if (!known) return false;

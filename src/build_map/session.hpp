@@ -36,7 +36,8 @@ class Session {
   void observe(const std::vector<Accepted>& others);
   [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
   void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
-  [[nodiscard]] HeadingEstimate first_heading(const Sighting& at, const InitialHeading& first) const;
+  [[nodiscard]] HeadingEstimate first_heading(const Sighting& at,
+                                              const InitialHeading& first) const;
   [[nodiscard]] HeadingEstimate heading_after(const Accepted& at,
                                               const PositionEstimate& place) const;
 

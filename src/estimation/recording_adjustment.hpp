@@ -39,7 +39,7 @@ struct RecordingAdjustmentOptions {
   /// With a gate: an adjustment of the same measurements that the state comes from. Its gate holds
   /// on, and what it left out is looked at again instead of being found anew.
   const RecordingAdjustment* near = nullptr;
-  Eigen::VectorXd coefficients;  ///< to start from, the unknown ones; empty: 0
+  Eigen::VectorXd coefficients;        ///< to start from, the unknown ones; empty: 0
   bool landmark_uncertainties = true;  ///< else landmark_covariances and landmark_sds stay empty
 };
 
@@ -58,7 +58,8 @@ struct RecordingAdjustment {
   double gradient_norm = 0.0;  ///< 2-norm of the gradient of chi^2, 1/m and 1/rad
   bool converged = false;
   std::vector<int> left_out;  ///< measurements, ascending
-  double gate_widened = 1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
+  double gate_widened =
+      1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
   std::vector<std::string> warnings;
 };
 

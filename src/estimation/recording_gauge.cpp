@@ -27,8 +27,7 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
 
 }  // namespace
 
-std::vector<int> untied_poses(const RecordingProblem& problem,
-                              const std::vector<double>& weights) {
+std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector<double>& weights) {
   const int map_frame = problem.nodes();  // a node of its own: what is measured in the map
   std::vector<NodePair> ties;
   bool absolute = false;

@@ -143,7 +143,7 @@ bool has_compass(const RecordingProblem& problem) {
 /// Adjusts the poses laid down so far, the landmarks they see and the coefficients. Returns the
 /// share of the sightings that are beyond the gate then.
 double adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
-                    Layer& layer) {
+                      Layer& layer) {
   const ProblemPart part = part_of(session, 0, count);
   RecordingDescent fit;
   for (const int landmark : part.landmarks) {

@@ -41,7 +41,7 @@ class Fitter {
 
   FitState run() {
     lay_out();
-    start(false);
+    start(StartKind::common_errors);
     for (int round = 0; round < options_.max_rounds; ++round) {
       if (round > 0 && has_delays()) lay_out_again();
       build_columns();
@@ -115,30 +115,45 @@ class Fitter {
     }
   }
 
-  /// More sightings contradict the rest than are ever wrong: perhaps the start was lost.
+  /// More sightings contradict the rest than are ever wrong or, where none may go and no compass
+  /// led the start, the errors are far too large: perhaps the start was lost.
   [[nodiscard]] bool lost() const {
-    return options_.near == nullptr && options_.most_left_out < 1.0 &&
-           fit_.adjustment.gate_widened > 1.0;
+    constexpr double kFarTooLarge = 10.0;  // chi^2/dof
+    if (options_.near != nullptr) return false;
+    if (options_.most_left_out < 1.0) return fit_.adjustment.gate_widened > 1.0;
+    const bool led = std::any_of(recorded_.begin(), recorded_.end(),
+                                 [](const Recording& one) { return one.drive.has_compass(); });
+    return !led && fit_.adjustment.chi2 > kFarTooLarge * std::max(1, fit_.adjustment.dof);
   }
 
-  /// From a careful start, unless that leads to nothing better.
+  /// How a start may be laid down, in the order in which they are tried.
+  enum class StartKind { common_errors, none_wrong, careful };
+
+  /// From other starts, unless they lead to nothing better.
   void start_again() {
-    const FitState before = fit_;
-    const RecordingState state_before = state_;
-    for (Effect& effect : fit_.model.effects) {
-      if (is_common(idx(static_cast<int>(&effect - fit_.model.effects.data())))) {
-        std::fill(effect.coefficients.begin(), effect.coefficients.end(), 0.0);
+    FitState best = fit_;
+    RecordingState best_state = state_;
+    for (const StartKind kind : {StartKind::none_wrong, StartKind::careful}) {
+      for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
+        std::vector<double>& values = fit_.model.effects[e].coefficients;
+        if (is_common(e)) std::fill(values.begin(), values.end(), 0.0);
       }
+      start(kind);
+      build_columns();
+      adjust_once(true);
+      if (fit_.adjustment.gate_widened < best.adjustment.gate_widened ||
+          (fit_.adjustment.gate_widened == best.adjustment.gate_widened &&
+           fit_.adjustment.chi2 < best.adjustment.chi2)) {
+        best = fit_;
+        best_state = state_;
+      }
+      if (!lost() || !options_.gate) break;  // without a gate a careful start is like any other
     }
-    start(true);
-    build_columns();
-    adjust_once(true);
-    if (fit_.adjustment.gate_widened < before.adjustment.gate_widened) return;
-    fit_ = before;
-    state_ = state_before;
+    fit_ = std::move(best);
+    state_ = std::move(best_state);
   }
 
-  void start(bool careful) {
+  void start(StartKind kind) {
     if (options_.near != nullptr) {
       fit_.paths = options_.near->paths;
       if (has_nodes_of(*options_.near)) {
@@ -149,7 +164,7 @@ class Fitter {
       return;
     }
     StartOptions how;
-    how.careful = careful;
+    how.careful = kind == StartKind::careful;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
     // A start is laid along unbroken drives.
@@ -159,13 +174,13 @@ class Fitter {
     const RecordingProblem unbroken =
         whole ? fit_.problem : make_problem(fit_.recordings, fit_.model, all);
     if (fit_.common_errors > 0 && !only_common()) {
-      start_cleared(how);
+      start_cleared(kind, how);
       return;
     }
-    const EffectParameters common = common_error_columns(fit_.recordings, fit_.model.robot);
+    const EffectParameters common = columns_for(kind, fit_.recordings);
     RecordingStart start = start_of(unbroken, common, how);
     state_ = std::move(start.state);
-    if (only_common()) take_common_errors(0, start.coefficients);
+    if (only_common() && !common.empty()) take_common_errors(0, start.coefficients);
     if (whole && !needs_paths()) return;
     fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, unbroken, {}, {}, state_);
     if (whole) return;
@@ -220,9 +235,15 @@ class Fitter {
     }
   }
 
+  [[nodiscard]] EffectParameters columns_for(StartKind kind,
+                                             const std::vector<Recording>& recordings) const {
+    if (kind == StartKind::none_wrong) return {};
+    return common_error_columns(recordings, fit_.model.robot);
+  }
+
   /// The model's own effects act from the beginning: the start is that of the recordings without
   /// them, and the common errors are what is left.
-  void start_cleared(const StartOptions& how) {
+  void start_cleared(StartKind kind, const StartOptions& how) {
     Model known = fit_.model;
     known.effects.resize(fit_.model.effects.size() - fit_.common_errors);
     std::vector<Recording> clear;
@@ -231,14 +252,15 @@ class Fitter {
     }
     const Robot& robot = fit_.model.robot;
     const RecordingProblem problem = make_problem(clear, known, options_.problem);
-    const RecordingStart start = start_of(problem, common_error_columns(clear, robot), how);
+    const EffectParameters common = columns_for(kind, clear);
+    const RecordingStart start = start_of(problem, common, how);
     fit_.paths = fitted_paths(clear, robot, problem, {}, {}, start.state);
     std::map<std::string, Vector2> landmarks;
     for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
       landmarks[problem.landmarks[k]] = start.state.landmarks[k];
     }
     place(landmarks);
-    take_common_errors(known.effects.size(), start.coefficients);
+    if (!common.empty()) take_common_errors(known.effects.size(), start.coefficients);
   }
 
   void build_columns() {
@@ -328,8 +350,8 @@ class Fitter {
     how.landmark_uncertainties = options_.landmark_uncertainties;
     if (!first) {
       how.near = &fit_.adjustment;
-    } else if (options_.near != nullptr && options_.near->problem.measurements.size() ==
-                                               fit_.problem.measurements.size()) {
+    } else if (options_.near != nullptr &&
+               options_.near->problem.measurements.size() == fit_.problem.measurements.size()) {
       how.near = &options_.near->adjustment;
     }
     // What misfit without the effects hid may show only now, at the best fit with them.

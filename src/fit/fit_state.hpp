@@ -38,7 +38,7 @@ struct FitterOptions {
   /// path as recorded.
   bool relinearise = true;
   bool landmark_uncertainties = true;  ///< as RecordingAdjustmentOptions
-  bool paths = true;                   ///< else they are only laid where the model's effects need them
+  bool paths = true;  ///< else they are only laid where the model's effects need them
   int max_rounds = 30;
   double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
   /// Start from this fit of the same recordings (to more or fewer of their measurements).
@@ -50,11 +50,11 @@ struct FitState {
   std::vector<EffectEstimate> effects;
   std::vector<Recording> recordings;  ///< as fitted: moved back by the delays
   RecordingProblem problem;
-  EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
+  EffectColumns columns;          ///< known effects held, the others free, at `coefficients`
   std::size_t common_errors = 0;  ///< how many of the last effects are freed common errors
   RecordingAdjustment adjustment;
   std::vector<SessionPath> paths;  ///< may be empty where the options ask for none
-  bool settled = true;  ///< shapes and path agree
+  bool settled = true;             ///< shapes and path agree
 };
 
 /// Throws SolveError as adjust does (but not for coefficients), std::invalid_argument on effects

@@ -59,9 +59,9 @@ std::string help_in_one_line(const std::string& command) {
 
 TEST(Command, HelpStatesTheDefaultOfEveryGate) {
   const std::string build = help_in_one_line("build");
-  EXPECT_NE(build.find(fmt::format("by default {:g}, and more where too many would go",
-                                   kAdjustmentGate)),
-            std::string::npos)
+  EXPECT_NE(
+      build.find(fmt::format("by default {:g}, and more where too many would go", kAdjustmentGate)),
+      std::string::npos)
       << build;
   for (const std::string command : {"compare", "diagnose", "discover", "fit"}) {
     const std::string help = help_in_one_line(command);
@@ -124,7 +124,8 @@ TEST(Command, SimulateBuildAndConvertGoTogether) {
       run_trussmap("simulate --mesh 4x4 --tours 2 --no-compass --seed 5 --out " + at + "/r").status,
       0);
   const Ran built = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
-                                 "/m.graphml --json " + at + "/m.json --svg " + at + "/m.svg --csv " + at + "/p.csv");
+                                 "/m.graphml --json " + at + "/m.json --svg " + at +
+                                 "/m.svg --csv " + at + "/p.csv");
   ASSERT_EQ(built.status, 0) << built.output;
   const json result = read_json(scratch.path() / "m.json");
   EXPECT_EQ(result["method"], "adjustment");
@@ -211,8 +212,8 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
   scratch.write("m.toml", "");
   const Ran ran = run_trussmap("build " + at + "/one " + at + "/two --model " + at + "/m.toml");
   EXPECT_EQ(ran.status, 1) << ran.output;
-  EXPECT_EQ(ran.output, "trussmap: " + at +
-                            "/two stands apart: no landmark ties it to " + at + "/one\n");
+  EXPECT_EQ(ran.output,
+            "trussmap: " + at + "/two stands apart: no landmark ties it to " + at + "/one\n");
 }
 
 TEST(Command, AWordThatIsNoCommandIsNamed) {

@@ -97,7 +97,8 @@ TEST(BuildMap, ASessionThatMeetsNothingOfTheMapIsTiedToNothing) {
     (void)build_map({whole, foreign}, Model{});
     FAIL();
   } catch (const SolveError& error) {
-    EXPECT_NE(std::string(error.what()).find("abroad stands apart: no landmark ties it to"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("abroad stands apart: no landmark ties it to"),
+              std::string::npos)
         << error.what();
   }
 }

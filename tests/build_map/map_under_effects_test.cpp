@@ -115,8 +115,7 @@ TEST_P(HarmlessEffects, AreFreedAndNamed) {
       EXPECT_FALSE(built.good());
       EXPECT_TRUE(std::any_of(built.freed.begin(), built.freed.end(), [](const FreedError& one) {
         return one.effect.name == GetParam().name &&
-               std::abs(one.effect.coefficients[0] - GetParam().coefficients[0]) <
-                   5.0 * one.sd[0];
+               std::abs(one.effect.coefficients[0] - GetParam().coefficients[0]) < 5.0 * one.sd[0];
       }));
       EXPECT_TRUE(build_map({recording}, knowing(GetParam()), {.method = method}).good());
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Coefficients of effects, eliminated as a dense border.
+#include "estimation/recording_adjustment.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/simulated_recordings.hpp"
@@ -10,6 +11,7 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 namespace trussmap {
@@ -151,6 +153,51 @@ TEST(SlowRecordingEffectParameters, StandardErrorsAreTheScatterOfSimulations) {
     const double stated = std::sqrt(variances[k] / kRuns);
     EXPECT_NEAR(scatter / stated, 1.0, 0.1) << k;
     EXPECT_LT(std::abs(mean), 4.0 * stated / std::sqrt(kRuns)) << k;
+  }
+}
+
+/// Each landmark's own covariance, and products with the joint one, are those of the dense joint
+/// covariance.
+TEST(RecordingEffectParameters, LandmarkCovariancesAreBlocksOfTheJointOne) {
+  const Case one = two_effects(3, -0.02, 0.05);
+  RecordingSystem system(one.problem, one.border);
+  const RecordingDescent fit =
+      descend(system, start_of(one.problem, {}).state, Eigen::Vector2d::Zero());
+  system.factorise();
+  std::vector<int> nodes;
+  for (int k = 0; k < one.problem.landmark_count(); ++k) nodes.push_back(k);
+  const Eigen::Index rows = 2 * std::ssize(nodes);
+  const Eigen::MatrixXd joint = system.joint_covariance(nodes).topLeftCorner(rows, rows);
+  const std::vector<Matrix2> own = system.landmark_covariances();
+  for (Eigen::Index k = 0; k < rows; k += 2) {
+    const Matrix2 block = joint.block<2, 2>(k, k);
+    EXPECT_LT((own[static_cast<std::size_t>(k / 2)] - block).norm(), 1e-9 * joint.norm());
+  }
+  const Eigen::MatrixXd b = Eigen::MatrixXd::Random(rows, 3);
+  EXPECT_LT((system.landmark_covariance_times(b) - joint * b).norm(), 1e-8 * (joint * b).norm());
+}
+
+/// What is left of the landmarks' uncertainty when shifts and turns of the whole do not count, by
+/// dense projection.
+TEST(RecordingEffectParameters, StandardErrorsOfTheShapeAreThoseOfInnerConstraints) {
+  const SimulatedRecording simulated = simulate_recording({}, 4);
+  const RecordingProblem problem = make_problem({simulated.recording}, simulated.model);
+  const RecordingAdjustment fit = adjust(problem);
+  std::vector<int> nodes;
+  for (int k = 0; k < problem.landmark_count(); ++k) nodes.push_back(k);
+  const Eigen::MatrixXd joint = joint_covariance(problem, {}, fit, nodes);
+  Eigen::MatrixXd G(joint.rows(), 3);
+  for (Eigen::Index k = 0; k < joint.rows(); k += 2) {
+    const Vector2& at = fit.state.landmarks[static_cast<std::size_t>(k / 2)];
+    G.row(k) << 1.0, 0.0, -at.y();
+    G.row(k + 1) << 0.0, 1.0, at.x();
+  }
+  const Eigen::MatrixXd S = Eigen::MatrixXd::Identity(joint.rows(), joint.rows()) -
+                            G * (G.transpose() * G).inverse() * G.transpose();
+  const Eigen::MatrixXd inner = S * joint * S.transpose();
+  for (Eigen::Index k = 0; k < joint.rows(); k += 2) {
+    EXPECT_NEAR(fit.landmark_sds[static_cast<std::size_t>(k / 2)],
+                std::sqrt(inner(k, k) + inner(k + 1, k + 1)), 1e-9);
   }
 }
 

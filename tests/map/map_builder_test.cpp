@@ -6,6 +6,7 @@
 
 #include "geometry/index.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/stiffness_law.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -271,6 +272,29 @@ TEST(MapBuilder, SettlingComesToRest) {
   double later = first;
   for (int round = 2; round <= 40; ++round) later = builder.settle(0.5 / round);
   EXPECT_LT(later, 0.2 * first);
+}
+
+/// At rest the routes' forces balance at every landmark but the held first: the minimum of their
+/// strain energy, solved densely here.
+TEST(MapBuilder, AtRestNoForceIsLeft) {
+  MapBuilder builder = built(random_walk(10, 120, 1.0, 9), {});
+  builder.rest();
+  EXPECT_LE(builder.rest(), 1e-2);  // stiffness has followed the routes' directions
+  for (int round = 0; round < 10; ++round) builder.rest();
+  const LandmarkGraph map = builder.map();
+  std::vector<Vector2> force(idx(map.landmarks()), Vector2::Zero());
+  double largest = 0.0;
+  for (int k = 0; k < map.routes(); ++k) {
+    const Route& route = map.route(k);
+    const Vector2 span = map.landmark(route.target).position - map.landmark(route.source).position;
+    const Matrix2 B =
+        bar_stiffness(StiffnessLaw::printed, route.covariance, direction(span), route.traversals);
+    const Vector2 pull = B * (route.mean_vector() - span);
+    largest = std::max(largest, pull.norm());
+    force[idx(route.target)] += pull;
+    force[idx(route.source)] -= pull;
+  }
+  for (int k = 1; k < map.landmarks(); ++k) EXPECT_LE(force[idx(k)].norm(), 1e-6 * largest) << k;
 }
 
 }  // namespace
