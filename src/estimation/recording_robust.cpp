@@ -146,9 +146,11 @@ class RobustDescent {
     fit_.weights.assign(problem_.measurements.size(), 1.0);
     if (std::isfinite(fit_.gate)) {
       system_.linearise(fit_.state, fit_.coefficients);
-      for (double mu = kFirst; mu < kNearlyTruncated; mu *= kBendFaster) {
+      double mu = kFirst;
+      while (mu < kNearlyTruncated) {
         weigh(mu);
         descend_by(2);
+        mu *= kBendFaster;
       }
       sort_out();
     }

@@ -354,13 +354,13 @@ Eigen::MatrixXd RecordingSystem::landmark_covariance_times(const Eigen::MatrixXd
   Eigen::MatrixXd lifted = Eigen::MatrixXd::Zero(normal_.unknowns() + B_.cols(), b.cols());
   for (int node = 0; node < problem_.landmark_count(); ++node) {
     if (normal_.size(node) == 0) continue;
-    lifted.middleRows(normal_.offset(node), 2) = b.middleRows(2 * node, 2);
+    lifted.middleRows(normal_.offset(node), 2) = b.middleRows(Eigen::Index{2} * node, 2);
   }
   const Eigen::MatrixXd solved = solve(lifted);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(b.rows(), b.cols());
   for (int node = 0; node < problem_.landmark_count(); ++node) {
     if (normal_.size(node) == 0) continue;
-    result.middleRows(2 * node, 2) = solved.middleRows(normal_.offset(node), 2);
+    result.middleRows(Eigen::Index{2} * node, 2) = solved.middleRows(normal_.offset(node), 2);
   }
   return result;
 }

@@ -133,7 +133,7 @@ class MapBuilder::State {
     const Traversal whole = carried_ ? Traversal{carried_->displacement + leg.displacement,
                                                  carried_->covariance + leg.covariance}
                                      : leg;
-    const Arrival arrival = travel(landmark, whole);
+    Arrival arrival = travel(landmark, whole);
     if (arrival.kind == Arrival::Kind::left_out) {
       carried_ = whole;
     } else {
