@@ -187,8 +187,6 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
 
 /// One session in a frame of its own (with truth rows: theirs).
 void lay_session(const RecordingProblem& session, const StartOptions& options, Layer& layer) {
-  constexpr int kFirstStretch = 30;  // poses
-  constexpr int kLeastStretch = 20;
   constexpr int kShortestStretch = 7;
   constexpr double kLost = 0.12;  // share of the sightings: the robot took a wrong turn
   const int poses = layer.pose_count();
@@ -203,13 +201,13 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
   const Matrix3 unknown_heading =
       Eigen::Vector3d(0.0, 0.0, has_compass(session) ? 10.0 : 0.0).asDiagonal();
   const Matrix3 adjusted = Eigen::Vector3d(1e-2, 1e-2, 1e-3).asDiagonal();
-  int laid = std::min(poses, kFirstStretch);
+  int laid = std::min(poses, options.first_stretch);
   layer.lay(0, laid - 1, layer.first_pose(), unknown_heading, true);
   if (laid < poses) adjust_stretch(session, options, laid, layer);
   int longest = poses;
   while (laid < poses) {
     const Layer::Laid before = layer.laid();
-    const int stretch = std::min(longest, std::max(kLeastStretch, laid / 3));
+    const int stretch = std::min(longest, std::max(2 * options.first_stretch / 3, laid / 3));
     const int next = std::min(poses, laid + stretch);
     layer.lay(laid - 1, next - 1, layer.poses()[idx(laid - 1)], adjusted, true);
     if (next == poses && !options.careful) return;

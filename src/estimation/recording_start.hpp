@@ -33,6 +33,7 @@ struct StartOptions {
   /// Squared standard deviations beyond which a sighting does not correct the reckoning, and
   /// counts less in the stretches' adjustments; infinity: all sightings are believed.
   double gate = std::numeric_limits<double>::infinity();
+  int first_stretch = 30;  ///< poses
   bool careful = false;
 };
 

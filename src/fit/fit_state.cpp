@@ -18,6 +18,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kMostDispersion = 4.0;  // chi^2/dof
+constexpr int kShortStretch = 20;        // poses
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Rounds of fitting and looking at the path again.
@@ -127,13 +128,14 @@ class Fitter {
   }
 
   /// How a start may be laid down, in the order in which they are tried.
-  enum class StartKind { common_errors, none_wrong, careful };
+  enum class StartKind { common_errors, none_wrong, short_stretches, careful };
 
   /// From other starts, unless they lead to nothing better.
   void start_again() {
     FitState best = fit_;
     RecordingState best_state = state_;
-    for (const StartKind kind : {StartKind::none_wrong, StartKind::careful}) {
+    for (const StartKind kind :
+         {StartKind::none_wrong, StartKind::short_stretches, StartKind::careful}) {
       for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
         std::vector<double>& values = fit_.model.effects[e].coefficients;
         if (is_common(e)) std::fill(values.begin(), values.end(), 0.0);
@@ -147,7 +149,9 @@ class Fitter {
         best = fit_;
         best_state = state_;
       }
-      if (!lost() || !options_.gate) break;  // without a gate a careful start is like any other
+      if (!lost()) break;
+      // Without a gate a careful start is like any other.
+      if (!options_.gate && kind == StartKind::short_stretches) break;
     }
     fit_ = std::move(best);
     state_ = std::move(best_state);
@@ -165,6 +169,7 @@ class Fitter {
     }
     StartOptions how;
     how.careful = kind == StartKind::careful;
+    if (kind == StartKind::short_stretches) how.first_stretch = kShortStretch;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
     // A start is laid along unbroken drives.
