@@ -171,6 +171,16 @@ std::string text(const Tested& test) {
               rms_heading_per_metre(test.calibrated), "mrad/m");
 }
 
+/// "95 ms early", "20 ms early to 30 ms late" where sessions differ.
+std::string lateness(double first, double last) {
+  const auto words = [](double late) {
+    return fmt::format("{:.0f} ms {}", 1000.0 * std::abs(late), late < 0.0 ? "early" : "late");
+  };
+  const std::string one = words(first);
+  const std::string other = words(last);
+  return one == other ? one : one + " to " + other;
+}
+
 std::string text(const TruthAlignment& truth) {
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
@@ -180,9 +190,8 @@ std::string text(const TruthAlignment& truth) {
   }
   return fmt::format(
       "  truth: the point tracked is {:.1f} mm ahead and {:.1f} mm left of the axle's centre, its\n"
-      "  heading is off by {:.1f} mrad, its rows are late by {:.0f} to {:.0f} ms at the start\n",
-      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, 1000.0 * first,
-      1000.0 * last);
+      "  heading is off by {:.1f} mrad, its rows are {} at the start\n",
+      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, lateness(first, last));
 }
 
 std::string text(const WheelCalibration& found, const CalibrationValidation& held,

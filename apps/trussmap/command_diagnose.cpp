@@ -95,8 +95,10 @@ ordered_json json(const Diagnosis& result) {
           {"warnings", result.warnings}};
 }
 
-std::string length(double metres) {
-  return metres < 1.0 ? fmt::format("{:.1f} mm", 1e3 * metres) : fmt::format("{:.2f} m", metres);
+/// In the unit that suits the larger of it and what stands beside it.
+std::string length(double metres, double beside) {
+  return std::max(metres, beside) < 1.0 ? fmt::format("{:.1f} mm", 1e3 * metres)
+                                        : fmt::format("{:.3f} m", metres);
 }
 
 void print_verdict(const Diagnosis& result) {
@@ -116,9 +118,11 @@ void print_verdict(const Diagnosis& result) {
   if (!result.missing.empty() && !result.held_out.legs.empty()) {
     const bool several = result.findings.size() > 1 && !result.findings[1].joint.empty();
     const char* what = several ? "them" : "it";
+    const double without = result.held_out.arrival_rms;
+    const double with = result.with_missing.arrival_rms;
     fmt::print("  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n",
-               what, length(result.held_out.arrival_rms), what,
-               length(result.with_missing.arrival_rms), result.held_out.legs.size());
+               what, length(without, with), what, length(with, without),
+               result.held_out.legs.size());
   }
   if (result.next_drive) fmt::print("  to tell them apart: {}\n", in_words(result.next_drive));
 }
