@@ -19,6 +19,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -39,6 +40,8 @@ class Shape {
   /// Reading takes a parser: link trussmap::trussmap.
   Shape(const char* text);         // NOLINT(google-explicit-constructor): a shape is its text
   Shape(const std::string& text);  // NOLINT(google-explicit-constructor)
+  /// One that has been read: for the library's own use.
+  explicit Shape(std::shared_ptr<const CompiledShape> compiled) : compiled_(std::move(compiled)) {}
   /// The pattern with its "{name}"s filled in.
   Shape(const std::string& pattern, const std::vector<ShapeParameter>& parameters);
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/common_errors.hpp"
 
-#include "trussmap/catalogue.hpp"
+#include "effects/simple_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,13 +45,18 @@ std::vector<EffectPattern> hard_iron(const std::vector<Recording>& recordings, d
 }  // namespace
 
 std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
-  std::vector<Effect> result{catalogue_effect("wheel diameter ratio"),
-                             catalogue_effect("wheelbase"), catalogue_effect("heading drift")};
+  // The catalogue's names and shapes, written out: who only builds maps does without it.
+  std::vector<Effect> result{
+      {"wheel diameter ratio", Channel::difference, {constant_shape()}, {0.0}},
+      {"wheelbase", Channel::turn, {constant_shape()}, {0.0}},
+      {"heading drift", Channel::drift, {constant_shape()}, {0.0}}};
   const bool compass =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_compass(); });
-  if (compass) result.push_back(catalogue_effect("hard iron"));
-  for (Effect& effect : result) effect.coefficients.assign(effect.shape.size(), 0.0);
+  if (compass) {
+    result.push_back(
+        {"hard iron", Channel::compass, {sine_of("heading"), cosine_of("heading")}, {0.0, 0.0}});
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include "trussmap/shape.hpp"
 
 #include "effects/compiled_shape.hpp"
+#include "effects/simple_shapes.hpp"
 
 #include <bit>
 #include <cmath>
@@ -171,6 +172,21 @@ TEST(Shape, PatternsAreFilled) {
   EXPECT_EQ(filled("(y-{y})^2+{r}^2/{r}", {{"y", -0.1}, {"r", 1e-9}}),
             "(y-(-0.1))^2+1e-09^2/1e-09");
   EXPECT_EQ(texts_of({"1", "x"}), (std::vector<std::string>{"1", "x"}));
+}
+
+/// Shapes made without a parser are those that the parser makes.
+TEST(Shape, TheSimplestAreTheSameWithoutAParser) {
+  const RowVariables rows{{"heading", {-2.0, 0.1, 3.0}}, {"speed", {1.0, 2.0, 3.0}}};
+  const std::pair<Shape, Shape> pairs[] = {{constant_shape(), Shape("1")},
+                                           {sine_of("heading"), Shape("sin(heading)")},
+                                           {cosine_of("heading"), Shape("cos(heading)")}};
+  for (const auto& [simple, read] : pairs) {
+    EXPECT_EQ(simple, read);
+    EXPECT_EQ(simple.variables(), read.variables());
+    EXPECT_EQ(simple.parameters(), read.parameters());
+    EXPECT_EQ(simple.argument_of("sin"), read.argument_of("sin"));
+    EXPECT_EQ(simple.values(rows), read.values(rows));
+  }
 }
 
 }  // namespace
