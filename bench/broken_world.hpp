@@ -5,8 +5,10 @@
 // what their model says, and sightings with a wrong name. All drawn from a seed.
 #pragma once
 
+#include "trussmap/alignment.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/survey_comparison.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -111,6 +113,20 @@ inline BrokenWorld draw_broken_world(std::uint64_t seed, const BrokenWorldOption
                   robot.compass ? " compass" : "", robot.range_sensor ? " range" : "") +
       world.what + fmt::format(" wrong={}", world.wrong.size());
   return world;
+}
+
+/// Rigid rms error, m. Infinite where a tenth of the landmarks that were sighted is not there.
+inline double error_of(const LandmarkPositions& places, const Mesh& mesh) {
+  std::vector<Vector2> here;
+  std::vector<Vector2> there;
+  for (int k = 0; k < mesh.landmarks(); ++k) {
+    const auto place = places.find(landmark_name(mesh, k));
+    if (place == places.end()) continue;
+    here.push_back(place->second);
+    there.push_back(mesh.positions[static_cast<std::size_t>(k)]);
+  }
+  if (10 * here.size() < 9 * mesh.positions.size()) return HUGE_VAL;
+  return align_rigidly(here, there).rms;
 }
 
 }  // namespace trussmap::bench

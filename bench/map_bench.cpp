@@ -10,7 +10,6 @@
 //
 // A line per world in a CSV file, and a summary beside the bounds that are aimed at.
 #include "broken_world.hpp"
-#include "trussmap/alignment.hpp"
 #include "trussmap/build_map.hpp"
 
 #include <algorithm>
@@ -29,19 +28,6 @@
 
 namespace trussmap::bench {
 namespace {
-
-/// Rigid rms error, m. Infinite where a tenth of the landmarks that were sighted is not there.
-double error_of(const LandmarkPositions& places, const Mesh& mesh) {
-  std::vector<Vector2> here, there;
-  for (int k = 0; k < mesh.landmarks(); ++k) {
-    const auto place = places.find(landmark_name(mesh, k));
-    if (place == places.end()) continue;
-    here.push_back(place->second);
-    there.push_back(mesh.positions[static_cast<std::size_t>(k)]);
-  }
-  if (10 * here.size() < 9 * mesh.positions.size()) return HUGE_VAL;
-  return align_rigidly(here, there).rms;
-}
 
 struct Outcome {
   double error = HUGE_VAL;

@@ -45,8 +45,8 @@ ScoreTest::ScoreTest(const FitState& fit)
                                          offsets_of(fit), fit.adjustment.state)),
       system_(std::make_shared<RecordingSystem>(fit.problem, fit.columns.border)),
       clean_system_(std::make_shared<RecordingSystem>(clean_->problem, clean_->border)) {
-  std::vector<double> weights(fit.problem.measurements.size(), 1.0);
-  for (const int k : fit.adjustment.left_out) weights[idx(k)] = 0.0;
+  const std::vector<double> weights =
+      weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
   for (RecordingSystem* system : {system_.get(), clean_system_.get()}) {
     system->set_weights(weights);
     system->linearise(system == system_.get() ? fit.adjustment.state : clean_->state,

@@ -12,6 +12,26 @@ std::vector<int> unknown_coefficients(const EffectParameters& border) {
   return unknown;
 }
 
+Eigen::VectorXd offsets_at(const EffectParameters& border, const Eigen::VectorXd& unknown) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(border.size()));
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < border.size(); ++k) {
+    const double value = border[k].held ? *border[k].held : unknown[next++];
+    result[static_cast<Eigen::Index>(k)] = value - border[k].reference;
+  }
+  return result;
+}
+
+std::vector<const std::vector<DrivePattern>*> drive_patterns(const EffectParameters& border,
+                                                             std::size_t session) {
+  std::vector<const std::vector<DrivePattern>*> result;
+  result.reserve(border.size());
+  for (const EffectPattern& effect : border) {
+    result.push_back(effect.drives.empty() ? nullptr : &effect.drives[session]);
+  }
+  return result;
+}
+
 EffectPattern plain_effect(Channel channel, const std::vector<Recording>& recordings,
                            const Robot& robot) {
   EffectPattern result;

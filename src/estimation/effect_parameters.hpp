@@ -40,6 +40,14 @@ using EffectParameters = std::vector<EffectPattern>;
 /// Places in the border of the coefficients that are unknown.
 [[nodiscard]] std::vector<int> unknown_coefficients(const EffectParameters& border);
 
+/// All coefficients less their references, from the unknown ones.
+[[nodiscard]] Eigen::VectorXd offsets_at(const EffectParameters& border,
+                                         const Eigen::VectorXd& unknown);
+
+/// What each coefficient does to one session's rows, as segment_motion takes it; nullptr: nothing.
+[[nodiscard]] std::vector<const std::vector<DrivePattern>*> drive_patterns(
+    const EffectParameters& border, std::size_t session);
+
 /// A coefficient for all sessions that acts on every row alike: shape 1, of a channel that acts on
 /// drives or readings.
 [[nodiscard]] EffectPattern plain_effect(Channel channel, const std::vector<Recording>& recordings,

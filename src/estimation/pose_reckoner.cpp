@@ -14,9 +14,10 @@ KnownCoefficients prior_of(const EffectParameters& border) {
   const std::vector<int> unknown = unknown_coefficients(border);
   const auto count = static_cast<Eigen::Index>(unknown.size());
   KnownCoefficients prior{Eigen::VectorXd::Zero(count), Eigen::MatrixXd::Zero(count, count)};
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const double sd = border[idx(unknown[idx(static_cast<int>(k))])].prior_sd;
-    prior.covariance(k, k) = sd * sd;
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    const double sd = border[idx(unknown[k])].prior_sd;
+    const auto at = static_cast<Eigen::Index>(k);
+    prior.covariance(at, at) = sd * sd;
   }
   return prior;
 }
@@ -58,17 +59,9 @@ PoseReckoner::Motion PoseReckoner::motion_of(const Measurement& segment) const {
   result.value = segment.value;
   result.by_coefficients.setZero(4, coefficients_.size());
   if (border_.empty()) return result;
-  std::vector<const std::vector<DrivePattern>*> patterns;
-  Eigen::VectorXd offsets(static_cast<Eigen::Index>(border_.size()));
-  Eigen::Index next = 0;
-  for (std::size_t k = 0; k < border_.size(); ++k) {
-    const EffectPattern& effect = border_[k];
-    patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(segment.session)]);
-    offsets[static_cast<Eigen::Index>(k)] =
-        (effect.held ? *effect.held : coefficients_[next++]) - effect.reference;
-  }
-  const SegmentWithEffects with =
-      segment_motion(problem_.segments[segment.source], patterns, offsets);
+  const SegmentWithEffects with = segment_motion(problem_.segments[segment.source],
+                                                 drive_patterns(border_, idx(segment.session)),
+                                                 offsets_at(border_, coefficients_));
   const Pose& d = with.motion.displacement;
   result.value.head<3>() = Eigen::Vector3d(d.x, d.y, d.heading);
   if (segment.rows == 4) result.value[3] = with.motion.mean_heading;

@@ -114,8 +114,7 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
                             {*options.gate, options.most_left_out});
   }
   RobustFit before{start.state, start.coefficients, {}, 0.0};
-  before.weights.assign(problem.measurements.size(), 1.0);
-  for (const int k : options.near->left_out) before.weights[idx(k)] = 0.0;
+  before.weights = weights_without(options.near->left_out, problem.measurements.size());
   before.gate = *options.gate * options.near->gate_widened * options.near->gate_widened;
   return look_again(system, problem, std::move(before));
 }
@@ -196,14 +195,18 @@ namespace {
 /// The adjustment's system, factorised there.
 void prepare(RecordingSystem& system, const RecordingProblem& problem,
              const EffectParameters& border, const RecordingAdjustment& adjustment) {
-  std::vector<double> weights(problem.measurements.size(), 1.0);
-  for (const int k : adjustment.left_out) weights[idx(k)] = 0.0;
-  system.set_weights(weights);
+  system.set_weights(weights_without(adjustment.left_out, problem.measurements.size()));
   system.linearise(adjustment.state, adjustment.coefficients);
   check_determined(system, problem, border);
 }
 
 }  // namespace
+
+std::vector<double> weights_without(const std::vector<int>& left_out, std::size_t measurements) {
+  std::vector<double> weights(measurements, 1.0);
+  for (const int k : left_out) weights[idx(k)] = 0.0;
+  return weights;
+}
 
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
                                 RecordingAdjustment& adjustment) {

@@ -87,6 +87,10 @@ class UndeterminedError : public SolveError {
                                               const EffectParameters& border = {},
                                               const RecordingAdjustmentOptions& options = {});
 
+/// A weight per measurement: 0 for those left out, 1 for the others.
+[[nodiscard]] std::vector<double> weights_without(const std::vector<int>& left_out,
+                                                  std::size_t measurements);
+
 /// Fills in landmark_covariances and landmark_sds of an adjustment without them.
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
                                 RecordingAdjustment& adjustment);

@@ -102,17 +102,14 @@ std::ptrdiff_t votes(const std::vector<Vector2>& places, const Vector2& place) {
   });
 }
 
-constexpr double kRough = 1e-3;  // rad, RecordingSystem::set_slack
-constexpr double kFine = 1e-6;
-
 /// The robust fit, stage by stage.
 class RobustDescent {
  public:
   RobustDescent(RecordingSystem& system, const RecordingProblem& problem, RobustFit fit)
       : system_(system), problem_(problem), fit_(std::move(fit)) {
-    system_.set_slack(kRough);
+    system_.set_slack(RecordingSystem::kRoughSlack);
   }
-  ~RobustDescent() { system_.set_slack(kFine); }
+  ~RobustDescent() { system_.set_slack(RecordingSystem::kFineSlack); }
   RobustDescent(const RobustDescent&) = delete;
   RobustDescent& operator=(const RobustDescent&) = delete;
 

@@ -152,7 +152,7 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   fit.state.poses.assign(layer.poses().begin(), layer.poses().begin() + count);
   fit.coefficients = layer.coefficients().values;
   RecordingSystem system(part.problem, layer.border());
-  system.set_slack(1e-3);
+  system.set_slack(RecordingSystem::kRoughSlack);
   constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
   if (std::isfinite(options.gate)) {
     heed_majority(part.problem, fit.state);
@@ -206,7 +206,7 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
   if (laid < poses) adjust_stretch(session, options, laid, layer);
   int longest = poses;
   while (laid < poses) {
-    const Layer::Laid before = layer.laid();
+    const Layer::Laid before = options.careful ? layer.laid() : Layer::Laid();
     const int stretch = std::min(longest, std::max(2 * options.first_stretch / 3, laid / 3));
     const int next = std::min(poses, laid + stretch);
     layer.lay(laid - 1, next - 1, layer.poses()[idx(laid - 1)], adjusted, true);

@@ -32,16 +32,6 @@ BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge
   return {sizes_of(problem, gauge), pairs, elimination_order(problem.nodes(), pairs)};
 }
 
-SegmentWithEffects segment_with(const RecordingProblem& problem, const EffectParameters& border,
-                                const Eigen::VectorXd& coefficients, const Measurement& one) {
-  std::vector<const std::vector<DrivePattern>*> patterns;
-  patterns.reserve(border.size());
-  for (const EffectPattern& effect : border) {
-    patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
-  }
-  return segment_motion(problem.segments[one.source], patterns, coefficients);
-}
-
 bool touches_drives(const EffectParameters& border) {
   for (const EffectPattern& effect : border) {
     if (!effect.drives.empty()) return true;
@@ -70,16 +60,6 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectPa
   M_.resize(rows_, static_cast<Eigen::Index>(unknown_.size()));
 }
 
-Eigen::VectorXd RecordingSystem::offsets(const Eigen::VectorXd& coefficients) const {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(border_.size()));
-  Eigen::Index next = 0;
-  for (std::size_t k = 0; k < border_.size(); ++k) {
-    const double value = border_[k].held ? *border_[k].held : coefficients[next++];
-    result[static_cast<Eigen::Index>(k)] = value - border_[k].reference;
-  }
-  return result;
-}
-
 void RecordingSystem::set_weights(const std::vector<double>& weights) {
   for (std::size_t k = 0; k < weights.size(); ++k) root_weights_[k] = std::sqrt(weights[k]);
 }
@@ -99,7 +79,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   M_.setZero();
   const bool with_drives = touches_drives(border_);
   if (with_drives) motions_.resize(problem_.measurements.size());
-  const Eigen::VectorXd all = offsets(coefficients);
+  const Eigen::VectorXd all = offsets_at(border_, coefficients);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     const Vector4 value =
@@ -173,7 +153,8 @@ Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& 
     }
   }
   const Measurement& one = problem_.measurements[k];
-  const SegmentWithEffects segment = segment_with(problem_, border_, offsets, one);
+  const SegmentWithEffects segment = segment_motion(
+      problem_.segments[one.source], drive_patterns(border_, idx(one.session)), offsets);
   const Pose& d = segment.motion.displacement;
   motion.at = offsets;
   motion.value << d.x, d.y, d.heading, one.rows == 4 ? segment.motion.mean_heading : one.value[3];

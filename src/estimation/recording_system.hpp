@@ -53,6 +53,8 @@ class RecordingSystem {
   /// Segments' motions count as linear in the coefficients as long as these turn no segment by more
   /// than this since it was last reckoned, rad. An error e leaves a leg off by e^2/2 of its length.
   void set_slack(double turn) { slack_ = turn; }
+  static constexpr double kFineSlack = 1e-6;   ///< what it is at first
+  static constexpr double kRoughSlack = 1e-3;  ///< on the way to a fit
   /// Multiplies the information of each measurement from the next linearise on.
   void set_weights(const std::vector<double>& weights);
 
@@ -119,8 +121,6 @@ class RecordingSystem {
   };
   [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
-  /// How far every coefficient of the border is from its reference.
-  [[nodiscard]] Eigen::VectorXd offsets(const Eigen::VectorXd& coefficients) const;
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
   void build_schur(double damping);
 
@@ -135,7 +135,7 @@ class RecordingSystem {
   BlockSystem normal_;
   std::vector<Whitened> J_;
   std::vector<Motion> motions_;  ///< per measurement, of segments; none without effects on drives
-  double slack_ = 1e-6;
+  double slack_ = kFineSlack;
   Eigen::MatrixXd M_;
   Eigen::VectorXd residuals_;
   std::vector<double> squared_errors_;

@@ -126,10 +126,7 @@ double relinearise(RecordingProblem& problem, const std::vector<Recording>& reco
     if (one.kind != MeasurementKind::segment) continue;
     const std::vector<SegmentRow>& rows = problem.segments[one.source];
     const Drive& drive = recordings[idx(one.session)].drive;
-    std::vector<const std::vector<DrivePattern>*> patterns;
-    for (const EffectPattern& effect : border) {
-      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
-    }
+    const auto patterns = drive_patterns(border, idx(one.session));
     const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
     const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
     const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());

@@ -21,6 +21,15 @@ constexpr double kMostDispersion = 4.0;  // chi^2/dof
 constexpr int kShortStretch = 20;        // poses
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
+                                         const RecordingState& state) {
+  std::map<std::string, Vector2> places;
+  for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
+    places[problem.landmarks[k]] = state.landmarks[k];
+  }
+  return places;
+}
+
 /// Rounds of fitting and looking at the path again.
 class Fitter {
  public:
@@ -96,10 +105,7 @@ class Fitter {
 
   /// The poses of the new instants lie on the old path.
   void lay_out_again() {
-    std::map<std::string, Vector2> landmarks;
-    for (std::size_t k = 0; k < fit_.problem.landmarks.size(); ++k) {
-      landmarks[fit_.problem.landmarks[k]] = state_.landmarks[k];
-    }
+    const std::map<std::string, Vector2> landmarks = places_in(fit_.problem, state_);
     lay_out();
     place(landmarks);
   }
@@ -172,28 +178,40 @@ class Fitter {
     if (kind == StartKind::short_stretches) how.first_stretch = kShortStretch;
     if (options_.gate) how.gate = *options_.gate;
     static_cast<void>(choose_gauge(fit_.problem));  // refuses what has no start
-    // A start is laid along unbroken drives.
+    // A start is laid along unbroken drives and, for a map, freed from the model's own effects: the
+    // common errors are what is left.
+    const bool freed = fit_.common_errors > 0 && !only_common();
+    const bool as_fitted = options_.problem.left_out.empty() && !freed;
+    const std::vector<Recording> without = freed ? without_own_effects() : std::vector<Recording>();
+    const std::vector<Recording>& recordings = freed ? without : fit_.recordings;
     ProblemOptions all = options_.problem;
     all.left_out.clear();
-    const bool whole = options_.problem.left_out.empty();
-    const RecordingProblem unbroken =
-        whole ? fit_.problem : make_problem(fit_.recordings, fit_.model, all);
-    if (fit_.common_errors > 0 && !only_common()) {
-      start_cleared(kind, how);
-      return;
+    const RecordingProblem problem =
+        as_fitted ? fit_.problem : make_problem(recordings, fit_.model, all);
+    const Robot& robot = fit_.model.robot;
+    const EffectParameters common = kind == StartKind::none_wrong
+                                        ? EffectParameters()
+                                        : common_error_columns(recordings, robot);
+    RecordingStart start = start_of(problem, common, how);
+    if (!common.empty()) take_common_errors(start.coefficients);
+    if (!as_fitted || needs_paths()) {
+      fit_.paths = fitted_paths(recordings, robot, problem, {}, {}, start.state);
     }
-    const EffectParameters common = columns_for(kind, fit_.recordings);
-    RecordingStart start = start_of(unbroken, common, how);
-    state_ = std::move(start.state);
-    if (only_common() && !common.empty()) take_common_errors(0, start.coefficients);
-    if (whole && !needs_paths()) return;
-    fit_.paths = fitted_paths(fit_.recordings, fit_.model.robot, unbroken, {}, {}, state_);
-    if (whole) return;
-    std::map<std::string, Vector2> landmarks;
-    for (std::size_t k = 0; k < unbroken.landmarks.size(); ++k) {
-      landmarks[unbroken.landmarks[k]] = state_.landmarks[k];
+    if (as_fitted) {
+      state_ = std::move(start.state);
+    } else {
+      place(places_in(problem, start.state));
     }
-    place(landmarks);
+  }
+
+  [[nodiscard]] std::vector<Recording> without_own_effects() const {
+    Model own = fit_.model;
+    own.effects.resize(fit_.model.effects.size() - fit_.common_errors);
+    std::vector<Recording> result;
+    for (ClearedRecording& one : cleared(recorded_, own)) {
+      result.push_back(std::move(one.recording));
+    }
+    return result;
   }
 
   /// Common errors alone need no path: their columns follow from the record.
@@ -233,39 +251,12 @@ class Fitter {
     fit_.columns.border = common_error_columns(fit_.recordings, fit_.model.robot, values);
   }
 
-  void take_common_errors(std::size_t first, const Eigen::VectorXd& coefficients) {
+  void take_common_errors(const Eigen::VectorXd& coefficients) {
     Eigen::Index next = 0;
-    for (std::size_t e = first; e < fit_.model.effects.size(); ++e) {
+    for (std::size_t e = 0; e < fit_.model.effects.size(); ++e) {
+      if (!is_common(e)) continue;
       for (double& one : fit_.model.effects[e].coefficients) one = coefficients[next++];
     }
-  }
-
-  [[nodiscard]] EffectParameters columns_for(StartKind kind,
-                                             const std::vector<Recording>& recordings) const {
-    if (kind == StartKind::none_wrong) return {};
-    return common_error_columns(recordings, fit_.model.robot);
-  }
-
-  /// The model's own effects act from the beginning: the start is that of the recordings without
-  /// them, and the common errors are what is left.
-  void start_cleared(StartKind kind, const StartOptions& how) {
-    Model known = fit_.model;
-    known.effects.resize(fit_.model.effects.size() - fit_.common_errors);
-    std::vector<Recording> clear;
-    for (ClearedRecording& one : cleared(recorded_, known)) {
-      clear.push_back(std::move(one.recording));
-    }
-    const Robot& robot = fit_.model.robot;
-    const RecordingProblem problem = make_problem(clear, known, options_.problem);
-    const EffectParameters common = columns_for(kind, clear);
-    const RecordingStart start = start_of(problem, common, how);
-    fit_.paths = fitted_paths(clear, robot, problem, {}, {}, start.state);
-    std::map<std::string, Vector2> landmarks;
-    for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
-      landmarks[problem.landmarks[k]] = start.state.landmarks[k];
-    }
-    place(landmarks);
-    if (!common.empty()) take_common_errors(known.effects.size(), start.coefficients);
   }
 
   void build_columns() {
@@ -479,11 +470,7 @@ class Fitter {
 }  // namespace
 
 std::map<std::string, Vector2> landmark_places(const FitState& fit) {
-  std::map<std::string, Vector2> places;
-  for (std::size_t k = 0; k < fit.problem.landmarks.size(); ++k) {
-    places[fit.problem.landmarks[k]] = fit.adjustment.state.landmarks[k];
-  }
-  return places;
+  return places_in(fit.problem, fit.adjustment.state);
 }
 
 Eigen::VectorXd offsets_of(const FitState& fit) {

@@ -32,12 +32,7 @@ class Reckoner {
 
  private:
   [[nodiscard]] std::vector<const std::vector<DrivePattern>*> patterns() const {
-    std::vector<const std::vector<DrivePattern>*> result;
-    result.reserve(border_.size());
-    for (const EffectPattern& effect : border_) {
-      result.push_back(effect.drives.empty() ? nullptr : &effect.drives[session_]);
-    }
-    return result;
+    return drive_patterns(border_, session_);
   }
 
   const Drive& drive_;

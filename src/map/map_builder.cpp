@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -189,27 +190,17 @@ class MapBuilder::State {
   }
 
   double rest() {
-    std::vector<Bar> bars;
+    const Piece whole = piece_of(all_landmarks());
     std::vector<Load> loads;
-    bars.reserve(idx(graph_.routes()));
-    for (int number = 0; number < graph_.routes(); ++number) {
+    for (const int number : whole.routes) {
       const Route& route = graph_.route(number);
-      const Matrix2 B = stiffness(route);
       const Vector2 force =
-          B * (route.mean_vector() - (stored(route.target) - stored(route.source)));
-      bars.push_back({route.source, route.target, B});
+          stiffness(route) * (route.mean_vector() - (stored(route.target) - stored(route.source)));
       loads.push_back({route.source, -force});
       loads.push_back({route.target, force});
     }
-    if (bars.empty()) return 0.0;
-    Moves moves;
-    for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
-    try {
-      moves.displacements =
-          solve_truss(graph_.landmarks(), bars, {{0, Vector2::Zero()}}, loads).displacements;
-    } catch (const UnsupportedJoint& error) {
-      throw SolveError("landmark " + graph_.landmark(error.joint()).name + " " + error.why());
-    }
+    if (loads.empty()) return 0.0;
+    const Moves moves = deflect(whole, loads, true);
     require_finite(moves);
     Arrival arrival;
     make(moves, arrival);
@@ -431,11 +422,20 @@ class MapBuilder::State {
         const auto place = std::lower_bound(members.begin(), members.end(), end);
         if (place == members.end() || *place != end) members.insert(place, end);
       }
-      return deflect(connected_to(i, std::move(members)), i, j, loads, false);
+      return deflect(connected_to(i, std::move(members)), at(i, j, loads), false);
     }
-    std::vector<int> members(idx(all));
-    for (int k = 0; k < all; ++k) members[idx(k)] = k;
-    return deflect(piece_of(std::move(members)), i, j, loads, options_.eta.hold_first);
+    return deflect(piece_of(all_landmarks()), at(i, j, loads), options_.eta.hold_first);
+  }
+
+  [[nodiscard]] std::vector<int> all_landmarks() const {
+    std::vector<int> all(idx(graph_.landmarks()));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
+  /// A refinement's loads on the landmarks at a route's ends.
+  [[nodiscard]] static std::vector<Load> at(int i, int j, const RefinementLoads& loads) {
+    return {{i, loads.force_i}, {j, loads.force_j}};
   }
 
   /// Ring by ring round the route, until the outer ring hardly moves.
@@ -447,7 +447,8 @@ class MapBuilder::State {
       members.insert(members.end(), ring.begin(), ring.end());
       std::sort(members.begin(), members.end());
       const bool everything = static_cast<int>(members.size()) == graph_.landmarks();
-      Moves moves = deflect(piece_of(members), i, j, loads, everything && options_.eta.hold_first);
+      Moves moves =
+          deflect(piece_of(members), at(i, j, loads), everything && options_.eta.hold_first);
       if (everything || ring.empty() || hardly_moves(moves, ring)) return moves;
     }
   }
@@ -510,21 +511,19 @@ class MapBuilder::State {
     return tied.size() == piece.landmarks.size() ? piece : piece_of(std::move(tied));
   }
 
-  /// The loads on a piece of the map: `held` at the first landmark, or floating.
-  [[nodiscard]] Moves deflect(const Piece& piece, int i, int j, const RefinementLoads& loads,
-                              bool held) const {
+  /// Loads on landmarks of a piece of the map: `held` at the first landmark, or floating.
+  [[nodiscard]] Moves deflect(const Piece& piece, std::vector<Load> loads, bool held) const {
     std::vector<Bar> bars;
     bars.reserve(piece.routes.size());
     for (const int number : piece.routes) {
       const Route& route = graph_.route(number);
       bars.push_back({piece.joint(route.source), piece.joint(route.target), stiffness(route)});
     }
-    const std::vector<Load> forces{{piece.joint(i), loads.force_i},
-                                   {piece.joint(j), loads.force_j}};
+    for (Load& load : loads) load.joint = piece.joint(load.joint);
     const int joints = static_cast<int>(piece.landmarks.size());
     try {
-      Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, forces)
-                                   : solve_floating_truss(joints, bars, forces);
+      Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, loads)
+                                   : solve_floating_truss(joints, bars, loads);
       return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
     } catch (const UnsupportedJoint& error) {
       throw SolveError("landmark " + graph_.landmark(piece.landmarks[idx(error.joint())]).name +
