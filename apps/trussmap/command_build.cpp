@@ -131,7 +131,7 @@ json result_json(const BuiltMap& built, const std::string& method) {
                         {"misfit_m", one.misfit}});
   }
   json result = {{"method", method},
-                 {"verdict", built.good() ? "good" : "doubtful"},
+                 {"verdict", verdict_of(built)},
                  {"legs", built.legs},
                  {"landmarks", built.map.landmarks()},
                  {"routes", built.map.routes()},
@@ -154,15 +154,6 @@ json result_json(const BuiltMap& built, const std::string& method) {
   return result;
 }
 
-/// `scale`: what the map has to be multiplied by.
-std::string scale_in_words(double scale) {
-  constexpr double kNothing = 0.0005;
-  const double error = 1.0 / scale - 1.0;
-  if (std::abs(error) < kNothing) return "the map's size is right within 0.05 %";
-  return fmt::format("the map is {:.1f} % too {}", 100.0 * std::abs(error),
-                     error > 0.0 ? "large" : "small");
-}
-
 void print_survey(const MapOnSurvey& on_survey) {
   const SurveyComparison& map = on_survey.comparison;
   fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
@@ -170,7 +161,7 @@ void print_survey(const MapOnSurvey& on_survey) {
   fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the map", map.rigid.rms);
   fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
   fmt::print("  {:<28} {:>8.3f} m  ({})\n", "rms with a scale as well", map.similarity.rms,
-             scale_in_words(map.similarity.scale));
+             map_scale_in_words(map.similarity.scale));
   if (map.contradicting.empty()) return;
   fmt::print(
       "\n  These landmarks contradict the survey and do not count above (with them the rms "
@@ -208,8 +199,9 @@ void print_quality(const BuiltMap& built) {
     fmt::print("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",
                "off the adjusted map by", quality.from_adjusted);
   }
-  fmt::print("  {:<28} {:>8.2f}  (chi^2/dof of {} degrees of freedom; 1: as the model says)\n",
-             "dispersion of the errors", quality.dispersion, built.fit.dof);
+  fmt::print("  {:<28} {:>8.2f}  (chi^2/dof of {} degrees of freedom{}; 1: as the model says)\n",
+             "dispersion of the errors", quality.dispersion, built.fit.dof,
+             built.on_survey ? " without the survey" : "");
   if (quality.loops > 0) {
     fmt::print("  {:<28} {:>7.2f} %  of the way, by dead reckoning (median of {})\n",
                "loops miss their start by", 100.0 * quality.misclosure_share, quality.loops);

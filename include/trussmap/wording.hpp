@@ -76,14 +76,19 @@ struct Advice {
 [[nodiscard]] std::string_view verdict_of(const Comparison& result);  ///< "misfit"
 [[nodiscard]] std::string_view verdict_of(const Diagnosis& result);   ///< "nothing missing"
 [[nodiscard]] std::string_view verdict_of(const Discovery& result);   ///< "unexplained misfit"
+[[nodiscard]] std::string_view verdict_of(const BuiltMap& built);     ///< "good", "doubtful"
 
 /// "misfit: errors are 2.3 times what the model's noise allows": the verdict, then what it rests
 /// on.
 [[nodiscard]] std::string verdict_in_words(const Comparison& result);
-/// "good: landmarks are uncertain by 0.012 m (median)", "doubtful: " and the first warning.
+/// "good: nothing speaks against this map, certain to 0.012 m (median)", "doubtful: " and the first
+/// warning.
 [[nodiscard]] std::string verdict_in_words(const BuiltMap& built);
 [[nodiscard]] std::string verdict_in_words(const Diagnosis& result);
 [[nodiscard]] std::string verdict_in_words(const Discovery& result);
+
+/// "the map is 1.6 % too small"; `scale`: what the map has to be multiplied by.
+[[nodiscard]] std::string map_scale_in_words(double scale);
 
 /// A finding's status and size, with all that is missing: "missing: hard iron; the compass ...".
 [[nodiscard]] std::string in_words(const Finding& finding);

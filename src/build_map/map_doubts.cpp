@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/map_doubts.hpp"
 
+#include "statistics/median.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/alignment.hpp"
 #include "trussmap/gate.hpp"
@@ -37,13 +38,6 @@ void doubt_units(const std::vector<Recording>& recordings, const Model& model,
     warnings.push_back("a wheelbase of " + short_text(model.robot.wheelbase) +
                        " m; is it in metres?");
   }
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return kAbsent;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// How far the map's routes are from what was measured of them, in standard deviations, in the

@@ -6,12 +6,14 @@
 #include "effects/place.hpp"
 #include "effects/place_patterns.hpp"
 #include "linalg/dense.hpp"
+#include "statistics/median.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -187,9 +189,8 @@ std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
     off.push_back(bin.y() - here.front().y());
   }
   // The median: a bin across a step has a mean of both sides.
-  std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2),
-                   off.end());
-  for (Vector2& point : curve) point.y() += off[off.size() / 2];
+  const double shift = median(std::move(off));
+  for (Vector2& point : curve) point.y() += shift;
   return curve;
 }
 

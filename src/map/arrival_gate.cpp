@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "map/arrival_gate.hpp"
 
+#include "statistics/median.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace trussmap {
 namespace {
@@ -21,12 +22,12 @@ bool ArrivalGate::lets_in(double squared_misfit) const {
 void ArrivalGate::remember(double squared_misfit) {
   last_.push_back(squared_misfit);
   if (last_.size() > kRemembered) last_.pop_front();
-  std::vector<double> sorted(last_.begin(), last_.end());
-  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-  std::nth_element(sorted.begin(), middle, sorted.end());
   // One or two alone say nothing of the others.
   constexpr std::size_t kFewest = 3;
-  scale_ = last_.size() < kFewest ? 1.0 : std::sqrt(std::max(1.0, *middle / kChi2Median));
+  scale_ = 1.0;
+  if (last_.size() < kFewest) return;
+  const double middle = median({last_.begin(), last_.end()});
+  scale_ = std::sqrt(std::max(1.0, middle / kChi2Median));
 }
 
 }  // namespace trussmap

@@ -3,22 +3,18 @@
 #include "trussmap/map_builder.hpp"
 
 #include "geometry/index.hpp"
-#include "linalg/connected_parts.hpp"
 #include "linalg/dense.hpp"
 #include "map/arrival_gate.hpp"
 #include "map/exact_increments.hpp"
 #include "map/first_sight.hpp"
+#include "map/map_truss.hpp"
 #include "map/nearest_landmarks.hpp"
-#include "map/refinement.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/stiffness_law.hpp"
-#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -27,30 +23,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kMoved = 1e-12;          // m
-constexpr double kRounding = 1e-9;        // asymmetry of a covariance, as a share of its size
-constexpr double kFlattest = 1e-14;       // determinant of a covariance over its squared trace
-constexpr double kNegligibleShare = 0.1;  // of the smallest standard deviation, for eta estimated
-
-/// Displacements of some landmarks, not yet made.
-struct Moves {
-  std::vector<int> landmarks;
-  std::vector<Vector2> displacements;
-  Vector2 shift = Vector2::Zero();  ///< of the whole map, afterwards
-};
-
-/// A part of the map: its landmarks (ascending) and the routes with both ends among them.
-struct Piece {
-  std::vector<int> landmarks;
-  std::vector<int> routes;
-
-  [[nodiscard]] int joint(int landmark) const {
-    const auto place = std::lower_bound(landmarks.begin(), landmarks.end(), landmark);
-    return place != landmarks.end() && *place == landmark
-               ? static_cast<int>(place - landmarks.begin())
-               : -1;
-  }
-};
+constexpr double kMoved = 1e-12;     // m
+constexpr double kRounding = 1e-9;   // asymmetry of a covariance, as a share of its size
+constexpr double kFlattest = 1e-14;  // determinant of a covariance over its squared trace
 
 void check(const Traversal& leg) {
   const Matrix2& C = leg.covariance;
@@ -63,15 +38,6 @@ void check(const Traversal& leg) {
     throw std::invalid_argument(
         "a leg needs a finite displacement other than zero and a symmetric, positive definite "
         "covariance whose inverse is finite");
-  }
-}
-
-/// Before anything is moved.
-void require_finite(const Moves& moves) {
-  double sum = moves.shift.squaredNorm();
-  for (const Vector2& u : moves.displacements) sum += u.squaredNorm();
-  if (!std::isfinite(sum)) {
-    throw SolveError("the covariances of the map's traversals span too many magnitudes");
   }
 }
 
@@ -177,8 +143,7 @@ class MapBuilder::State {
     try {
       for (int number = 0; number < graph_.routes(); ++number) {
         Arrival arrival;
-        arrival.route = number;
-        make(refinement_moves(graph_.route(number), gain_limit, arrival), arrival);
+        make(truss_.refinement(number, options_.eta, gain_limit), arrival);
         largest = std::max(largest, arrival.largest_move);
       }
     } catch (...) {
@@ -190,20 +155,8 @@ class MapBuilder::State {
   }
 
   double rest() {
-    const Piece whole = piece_of(all_landmarks());
-    std::vector<Load> loads;
-    for (const int number : whole.routes) {
-      const Route& route = graph_.route(number);
-      const Vector2 force =
-          stiffness(route) * (route.mean_vector() - (stored(route.target) - stored(route.source)));
-      loads.push_back({route.source, -force});
-      loads.push_back({route.target, force});
-    }
-    if (loads.empty()) return 0.0;
-    const Moves moves = deflect(whole, loads, true);
-    require_finite(moves);
     Arrival arrival;
-    make(moves, arrival);
+    make(truss_.rest(), arrival);
     return arrival.largest_move;
   }
 
@@ -230,10 +183,9 @@ class MapBuilder::State {
     return options_.eta.kind == Eta::Kind::fixed && options_.method != Method::gauss_markov;
   }
 
-  /// The paper's stiffness of a route as it lies in the present map.
-  [[nodiscard]] Matrix2 stiffness(const Route& route) const {
-    const double orientation = direction(stored(route.target) - stored(route.source));
-    return bar_stiffness(StiffnessLaw::printed, route.covariance, orientation, route.traversals);
+  [[nodiscard]] std::optional<double> gain_limit() const {
+    if (options_.method == Method::elastic_printed) return std::nullopt;
+    return options_.gain_limit;
   }
 
   // What may fail comes first in all that follows, what changes the map last.
@@ -341,7 +293,7 @@ class MapBuilder::State {
     std::vector<Matrix2> stiffnesses;
     for (std::size_t n = 1; n < closing.landmarks.size(); ++n) {
       const auto route = graph_.route_between(closing.landmarks[n - 1], closing.landmarks[n]);
-      stiffnesses.push_back(stiffness(graph_.route(*route)));
+      stiffnesses.push_back(truss_.stiffness(graph_.route(*route)));
     }
     stiffnesses.push_back(
         bar_stiffness(StiffnessLaw::printed, leg.covariance, direction(leg.displacement), 1.0));
@@ -366,169 +318,14 @@ class MapBuilder::State {
     average_in(route, route.source == here_ ? leg : reversed(leg));
     if (!options_.refine) return arrival;
     try {
-      make(refinement_moves(route, options_.gain_limit, arrival), arrival);
+      const Moves moves = truss_.refinement(arrival.route, options_.eta, gain_limit());
+      arrival.eta = static_cast<int>(moves.landmarks.size());
+      make(moves, arrival);
     } catch (...) {
       route = before;
       throw;
     }
     return arrival;
-  }
-
-  [[nodiscard]] std::optional<Matrix2> stiffest_neighbour(int landmark, int except) const {
-    std::optional<Matrix2> stiffest;
-    for (const int number : graph_.routes_at(landmark)) {
-      if (number == except) continue;
-      const Matrix2 B = stiffness(graph_.route(number));
-      if (!stiffest || B.trace() > stiffest->trace()) stiffest = B;
-    }
-    return stiffest;
-  }
-
-  [[nodiscard]] Moves refinement_moves(const Route& route, double gain_limit,
-                                       Arrival& arrival) const {
-    const int i = route.source;
-    const int j = route.target;
-    const Vector2 present = stored(j) - stored(i);
-    const Vector2 target = route.mean_vector();
-    const RefinementLoads loads =
-        refinement_loads(present, target, stiffness(route), stiffest_neighbour(i, arrival.route),
-                         stiffest_neighbour(j, arrival.route));
-    Moves moves = larger_structure(i, j, loads);
-    arrival.eta = static_cast<int>(moves.landmarks.size());
-    if (options_.method == Method::elastic) {
-      const Vector2 obtained = displacement_of(moves, j) - displacement_of(moves, i);
-      const double gain = limited_gain(obtained, target - present, gain_limit);
-      for (Vector2& u : moves.displacements) u *= gain;
-    }
-    // A floating piece that holds the first landmark moves it: count the map as shifted instead.
-    moves.shift = -displacement_of(moves, 0);
-    require_finite(moves);
-    return moves;
-  }
-
-  [[nodiscard]] static Vector2 displacement_of(const Moves& moves, int landmark) {
-    const auto place = std::lower_bound(moves.landmarks.begin(), moves.landmarks.end(), landmark);
-    if (place == moves.landmarks.end() || *place != landmark) return Vector2::Zero();
-    return moves.displacements[idx(place - moves.landmarks.begin())];
-  }
-
-  [[nodiscard]] Moves larger_structure(int i, int j, const RefinementLoads& loads) const {
-    const int all = graph_.landmarks();
-    if (options_.eta.kind == Eta::Kind::estimated) return growing_structure(i, j, loads);
-    if (options_.eta.kind == Eta::Kind::fixed && options_.eta.count < all) {
-      const Vector2 midpoint = 0.5 * (stored(i) + stored(j));
-      std::vector<int> members = nearest_.nearest(graph_, midpoint, options_.eta.count);
-      for (const int end : {i, j}) {  // on a long route both ends may be far from its middle
-        const auto place = std::lower_bound(members.begin(), members.end(), end);
-        if (place == members.end() || *place != end) members.insert(place, end);
-      }
-      return deflect(connected_to(i, std::move(members)), at(i, j, loads), false);
-    }
-    return deflect(piece_of(all_landmarks()), at(i, j, loads), options_.eta.hold_first);
-  }
-
-  [[nodiscard]] std::vector<int> all_landmarks() const {
-    std::vector<int> all(idx(graph_.landmarks()));
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-  }
-
-  /// A refinement's loads on the landmarks at a route's ends.
-  [[nodiscard]] static std::vector<Load> at(int i, int j, const RefinementLoads& loads) {
-    return {{i, loads.force_i}, {j, loads.force_j}};
-  }
-
-  /// Ring by ring round the route, until the outer ring hardly moves.
-  [[nodiscard]] Moves growing_structure(int i, int j, const RefinementLoads& loads) const {
-    std::vector<int> members{std::min(i, j), std::max(i, j)};
-    std::vector<int> ring = members;
-    while (true) {
-      ring = next_ring(members, ring);
-      members.insert(members.end(), ring.begin(), ring.end());
-      std::sort(members.begin(), members.end());
-      const bool everything = static_cast<int>(members.size()) == graph_.landmarks();
-      Moves moves =
-          deflect(piece_of(members), at(i, j, loads), everything && options_.eta.hold_first);
-      if (everything || ring.empty() || hardly_moves(moves, ring)) return moves;
-    }
-  }
-
-  [[nodiscard]] std::vector<int> next_ring(const std::vector<int>& members,
-                                           const std::vector<int>& ring) const {
-    std::vector<int> next;
-    for (const int landmark : ring) {
-      for (const int number : graph_.routes_at(landmark)) {
-        const int other = other_end(graph_.route(number), landmark);
-        if (!std::binary_search(members.begin(), members.end(), other)) next.push_back(other);
-      }
-    }
-    std::sort(next.begin(), next.end());
-    next.erase(std::unique(next.begin(), next.end()), next.end());
-    return next;
-  }
-
-  [[nodiscard]] bool hardly_moves(const Moves& moves, const std::vector<int>& ring) const {
-    double largest = 0.0;
-    double smallest_variance = std::numeric_limits<double>::infinity();
-    for (const int landmark : ring) {
-      largest = std::max(largest, displacement_of(moves, landmark).norm());
-      for (const int number : graph_.routes_at(landmark)) {
-        const Route& route = graph_.route(number);
-        const double smallest = planar_modes(route.covariance).eigenvalues[0];
-        smallest_variance = std::min(smallest_variance, smallest / route.traversals);
-      }
-    }
-    return largest < kNegligibleShare * std::sqrt(smallest_variance);
-  }
-
-  [[nodiscard]] Piece piece_of(std::vector<int> members) const {
-    Piece piece{std::move(members), {}};
-    for (const int landmark : piece.landmarks) {
-      for (const int number : graph_.routes_at(landmark)) {
-        const Route& route = graph_.route(number);
-        if (route.source == landmark && piece.joint(route.target) >= 0) {
-          piece.routes.push_back(number);
-        }
-      }
-    }
-    return piece;
-  }
-
-  /// Of the members, those that routes among them tie to landmark i.
-  [[nodiscard]] Piece connected_to(int i, std::vector<int> members) const {
-    Piece piece = piece_of(std::move(members));
-    std::vector<NodePair> pairs;
-    for (const int number : piece.routes) {
-      const Route& route = graph_.route(number);
-      pairs.push_back({piece.joint(route.source), piece.joint(route.target)});
-    }
-    const std::vector<int> part = connected_parts(static_cast<int>(piece.landmarks.size()), pairs);
-    const int mine = part[idx(piece.joint(i))];
-    std::vector<int> tied;
-    for (std::size_t k = 0; k < part.size(); ++k) {
-      if (part[k] == mine) tied.push_back(piece.landmarks[k]);
-    }
-    return tied.size() == piece.landmarks.size() ? piece : piece_of(std::move(tied));
-  }
-
-  /// Loads on landmarks of a piece of the map: `held` at the first landmark, or floating.
-  [[nodiscard]] Moves deflect(const Piece& piece, std::vector<Load> loads, bool held) const {
-    std::vector<Bar> bars;
-    bars.reserve(piece.routes.size());
-    for (const int number : piece.routes) {
-      const Route& route = graph_.route(number);
-      bars.push_back({piece.joint(route.source), piece.joint(route.target), stiffness(route)});
-    }
-    for (Load& load : loads) load.joint = piece.joint(load.joint);
-    const int joints = static_cast<int>(piece.landmarks.size());
-    try {
-      Deflection deflection = held ? solve_truss(joints, bars, {{0, Vector2::Zero()}}, loads)
-                                   : solve_floating_truss(joints, bars, loads);
-      return {piece.landmarks, std::move(deflection.displacements), Vector2::Zero()};
-    } catch (const UnsupportedJoint& error) {
-      throw SolveError("landmark " + graph_.landmark(piece.landmarks[idx(error.joint())]).name +
-                       " " + error.why());
-    }
   }
 
   void make(const Moves& moves, Arrival& arrival) noexcept {
@@ -552,6 +349,7 @@ class MapBuilder::State {
   OpenChain chain_;
   ExactIncrements increments_;
   NearestLandmarks nearest_;
+  MapTruss truss_{graph_, nearest_};
   ArrivalGate gate_;
   std::vector<LeftOutArrival> left_out_;
   std::optional<Traversal> carried_;  ///< driven since here_, by legs whose ends were left out

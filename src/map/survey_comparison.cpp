@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/survey_comparison.hpp"
 
+#include "statistics/median.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,12 +42,6 @@ std::vector<double> distances(const Common& common, const Alignment& alignment) 
     result.push_back((alignment.apply(common.in_map[k]) - common.surveyed[k]).norm());
   }
   return result;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The pair's alignment whose median distance is least.

@@ -243,12 +243,11 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
                         "standard error of landmarks (median)", page.tone});
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;
-    const double scale = 1.0 / survey.similarity.scale;
     page.facts.push_back({fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)"});
     page.facts.push_back({fmt::format("{:.3f} m", built.on_survey->rms_dead_reckoning),
                           "dead reckoning off the survey (rms)"});
-    page.facts.push_back({fmt::format("{:.1f} %", 100.0 * std::abs(scale - 1.0)),
-                          scale < 1.0 ? "map too small by" : "map too large by"});
+    page.facts.push_back({fmt::format("{:.3f} m", survey.similarity.rms),
+                          "with a scale as well: " + map_scale_in_words(survey.similarity.scale)});
   }
   page.facts.push_back(
       {fmt::format("{:.2f}", built.quality.dispersion), "dispersion (1: as the model says)"});

@@ -170,14 +170,25 @@ std::string fit_in_words(double chi2, int dof, int coefficients) {
                          : fmt::format(" ({} coefficients estimated)", coefficients));
 }
 
+std::string map_scale_in_words(double scale) {
+  constexpr double kNothing = 0.0005;
+  const double error = 1.0 / scale - 1.0;
+  if (std::abs(error) < kNothing) return "the map's size is right within 0.05 %";
+  return fmt::format("the map is {:.1f} % too {}", 100.0 * std::abs(error),
+                     error > 0.0 ? "large" : "small");
+}
+
+std::string_view verdict_of(const BuiltMap& built) {
+  return built.good() ? "good" : "doubtful";
+}
+
 std::string verdict_in_words(const BuiltMap& built) {
-  if (!built.good()) return "doubtful: " + built.warnings.front();
-  if (built.method == Method::adjustment) {
-    return fmt::format("good: nothing speaks against this map, certain to {:.3f} m (median)",
-                       built.quality.median_sd);
-  }
-  return fmt::format("good: nothing speaks against this map, {:.3f} m off the adjusted one (rms)",
-                     built.quality.from_adjusted);
+  if (!built.good()) return fmt::format("{}: {}", verdict_of(built), built.warnings.front());
+  const std::string size =
+      built.method == Method::adjustment
+          ? fmt::format("certain to {:.3f} m (median)", built.quality.median_sd)
+          : fmt::format("{:.3f} m off the adjusted one (rms)", built.quality.from_adjusted);
+  return fmt::format("{}: nothing speaks against this map, {}", verdict_of(built), size);
 }
 
 }  // namespace trussmap
