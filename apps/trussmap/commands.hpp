@@ -13,6 +13,7 @@ namespace trussmap::app {
 
 void setup_add(const Command& app);
 void setup_adjust(const Command& app);
+void setup_apply(const Command& app);
 void setup_build(const Command& app);
 void setup_calibrate(const Command& app);
 void setup_compare(const Command& app);

@@ -60,6 +60,7 @@ int main(int argc, char** argv) try {
   const trussmap::app::Command commands(&app);
   trussmap::app::setup_add(commands);
   trussmap::app::setup_adjust(commands);
+  trussmap::app::setup_apply(commands);
   trussmap::app::setup_build(commands);
   trussmap::app::setup_calibrate(commands);
   trussmap::app::setup_compare(commands);

@@ -5,6 +5,7 @@
 #include "option_checks.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/survey_comparison.hpp"
 
 #include <algorithm>
 
@@ -45,11 +46,61 @@ void add_model_recordings(const Command& command, ModelRecordingsOptions& option
       .check(zero_or_more())
       .capture_default_str();
   command
+      .add_option("--every", options.every,
+                  "Use one frame of sightings in so many seconds (0: all; else as long as their "
+                  "errors are found to last)")
+      .check(zero_or_more());
+  command
       .add_option("--level", options.level,
                   "Level of significance: chance of an effect, or a misfit, where there is none")
       .check(between(1e-6, 0.5))
       .capture_default_str();
 }
+
+namespace {
+
+std::size_t sightings_of(const std::vector<Recording>& recordings) {
+  std::size_t sum = 0;
+  for (const Recording& one : recordings) sum += one.sightings.size();
+  return sum;
+}
+
+/// Survey points that contradict a map made without the survey are no measurements.
+void leave_contradicting_points_out(ModelRecordings& input, const ModelFit& without_survey) {
+  LandmarkPositions positions;
+  for (const FittedLandmark& one : without_survey.landmarks) positions[one.name] = one.position;
+  for (Recording& recording : input.recordings) {
+    const SurveyComparison comparison = compare_with_survey(positions, recording.survey);
+    for (const std::string& name : comparison.contradicting) {
+      std::erase_if(recording.survey,
+                    [&name](const SurveyPoint& point) { return point.landmark == name; });
+      input.notes.push_back(
+          fmt::format("landmark {}: its survey contradicts all the others, and is left out", name));
+    }
+  }
+}
+
+void take_frames(ModelRecordings& input, const ModelRecordingsOptions& options) {
+  double every = options.every.value_or(0.0);
+  if (!options.every && has_dense_frames(input.recordings)) {
+    FitOptions how = fit_options(options);
+    how.use_survey = false;
+    const ModelFit fit = fit_model(input.recordings, input.model, how);
+    every = lasting_errors(fit).lasts;
+    if (fit_options(options).use_survey) leave_contradicting_points_out(input, fit);
+  }
+  if (!(every > 0.0)) return;
+  std::vector<Recording> thinned = thinned_frames(input.recordings, every);
+  const std::size_t all = sightings_of(input.recordings);
+  const std::size_t used = sightings_of(thinned);
+  if (used == all) return;
+  input.recordings = std::move(thinned);
+  input.notes.push_back(
+      fmt::format("of {} sightings {} are used, one frame in {:g} s{}", all, used, every,
+                  options.every ? "" : ": errors of sightings last so long (--every 0: all)"));
+}
+
+}  // namespace
 
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   ModelRecordings result;
@@ -57,6 +108,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
     result.recordings.push_back(read_recording(folder));
   }
   result.model = read_model(options.model, result.recordings);
+  take_frames(result, options);
   return result;
 }
 
@@ -68,6 +120,7 @@ FitOptions fit_options(const ModelRecordingsOptions& options) {
   result.use_survey = !left_out("survey");
   result.use_truth = !left_out("truth");
   if (options.gate > 0.0) result.gate = options.gate * options.gate;
+  result.most_left_out = kMostLeftOut;
   return result;
 }
 

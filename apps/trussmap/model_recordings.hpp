@@ -9,6 +9,7 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/gate.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,20 +20,22 @@ struct ModelRecordingsOptions {
   std::string model;
   std::string json;
   std::vector<std::string> without;
-  double gate = kModelGate;  // sd, 0: none
+  double gate = kModelGate;     // sd, 0: none
+  std::optional<double> every;  // s between frames of sightings; 0: all; absent: as errors last
   double level = kSignificance;
   LegOptions legs;
 };
 
-/// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --level.
+/// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --every, --level.
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
 
 struct ModelRecordings {
   Model model;
   std::vector<Recording> recordings;
+  std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
-/// Reads them. Throws InputError, with the model file's line where an effect cannot be applied.
+/// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp). Throws InputError, with the model file's line where an effect cannot be applied.
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
 
 /// --without and --gate; the effects are fitted.

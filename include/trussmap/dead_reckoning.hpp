@@ -70,7 +70,13 @@ struct InitialHeading {
     const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity(),
     const std::vector<double>& slip = {});
 
-/// Pose at the end of each row, from the first compass heading (else 0) at the origin.
+/// Pose at the end of each row, from the first compass heading (else 0) at the origin. The first
+/// heading is as uncertain as that reading leaves it; without a compass it is exact.
+[[nodiscard]] std::vector<PoseEstimate> dead_reckoned_estimates(
+    const Drive& drive, const Robot& robot, const Noise& noise,
+    const std::vector<double>& slip = {});
+
+/// Their poses alone.
 [[nodiscard]] std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot,
                                                    const Noise& noise,
                                                    const std::vector<double>& slip = {});

@@ -12,6 +12,7 @@
 // it has none), and EffectEstimate says so.
 #pragma once
 
+#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
@@ -31,6 +32,9 @@ struct FitOptions {
   /// Sightings that the others contradict by more are left out: squared standard deviations, 16 for
   /// one right sighting in 3000. Absent: all stay.
   std::optional<double> gate = std::nullopt;
+  /// Share of the sightings: where more would be left out the gate widens, at last to none. Few are
+  /// ever misread; where many contradict the rest, the model is wrong.
+  double most_left_out = 1.0;
 };
 
 /// Why a coefficient was not fitted.
@@ -91,5 +95,58 @@ struct FittedMap {
 
 /// At most about `points` points of paths in all.
 [[nodiscard]] FittedMap fitted_map(const ModelFit& fit, std::size_t points = 2000);
+
+// ----------------------------------------
+// Where the robot was, by a model: at the start of the drive and at the end of every row.
+
+struct TimedPose {
+  double t = 0.0;  ///< s
+  PoseEstimate estimate = {};
+};
+
+/// By wheels, compass and the model's effects, nothing else: from (0, 0, 0), in the axes of the
+/// robot as it starts. The covariance is that of the model's noise; with a compass it holds what
+/// the readings leave of the first heading, too. Effects act with the coefficients that the model
+/// states, none is fitted. Throws std::invalid_argument, naming the effect, where one cannot be
+/// applied.
+[[nodiscard]] std::vector<TimedPose> dead_reckoned_poses(const Recording& recording,
+                                                         const Model& model);
+
+/// By everything that was measured, of one session of a fit, in the map's frame. Covariances are
+/// exact where something was measured (zero where the frame is held); between two such instants
+/// they go over from one to the other, and grow by the noise of what was driven there. Before the
+/// first and after the last they are dead-reckoned on. Throws std::invalid_argument on a session
+/// that the fit has not, SolveError where the fit determines no covariance.
+[[nodiscard]] std::vector<TimedPose> adjusted_poses(const ModelFit& fit, std::size_t session = 0);
+
+// ----------------------------------------
+// Sightings whose errors last: a camera at ten frames a second that misjudges a range does so in
+// the next frame, too. A fit takes sightings as independent; frames that are nearer in time than
+// their errors last then count several times over, and bias what they are weighed against (scale,
+// losses), while a larger noise would hide the symptom alone. One frame per so long as errors last
+// is nearly as good as all, and honest.
+//
+//   correlation of whitened errors of ranges and bearings, same landmark
+//     1 |*
+//       |   *                      lasts: from where on it stays below 0.3
+//   0.3 |--------*--------------
+//       |            *    *
+//       +----------------------> lag
+
+struct LastingErrors {
+  double lasts = 0.0;  ///< s; 0: errors are independent, or sightings too few and far between
+  int sightings = 0;   ///< seen from afar, by the fit
+};
+
+/// From the errors that a fit leaves. At most 5 s: what lasts longer is no matter of frames.
+[[nodiscard]] LastingErrors lasting_errors(const ModelFit& fit);
+
+/// One frame (sightings of one instant) in so long, from the first on; sightings of a landmark that
+/// the robot stands on stay all.
+[[nodiscard]] std::vector<Recording> thinned_frames(const std::vector<Recording>& recordings,
+                                                    double lasts);
+
+/// Whether there are enough frames that are near each other, and see the same, for lasting_errors.
+[[nodiscard]] bool has_dense_frames(const std::vector<Recording>& recordings);
 
 }  // namespace trussmap

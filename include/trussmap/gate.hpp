@@ -18,16 +18,17 @@
 //
 // The rule behind them: a map is wanted in spite of wrong sightings, so that building one gates by
 // default, and a map that is not yet complete needs the wider gate. Neither takes a model that is
-// wrong for many wrong sightings. A model is judged by the measurements that contradict it, so that
-// judging one leaves none out unless it is asked to: a gate would hide what it looks for. 16.27 is
-// the 0.999 quantile of chi^2 with 3 degrees of freedom.
+// wrong for many wrong sightings. A model is judged by the measurements that contradict it: there
+// the gate holds as long as few are beyond it, and widens where a gate would hide what is looked
+// for. 16.27 is the 0.999 quantile of chi^2 with 3 degrees of freedom.
 #pragma once
 
 namespace trussmap {
 
 inline constexpr double kMapGate = 8.0;          ///< standard deviations
 inline constexpr double kAdjustmentGate = 4.0;   ///< standard deviations of the sighting
-inline constexpr double kModelGate = 0.0;        ///< standard deviations; 0: no gate
+inline constexpr double kModelGate = 4.0;        ///< standard deviations; 0: no gate
+inline constexpr double kMostLeftOut = 0.12;     ///< share of the sightings; more widen the gate
 inline constexpr double kPoseGraphGate = 16.27;  ///< squared: chi^2
 
 }  // namespace trussmap

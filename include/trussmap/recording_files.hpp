@@ -5,6 +5,7 @@
 // columns: recording.hpp; angles in rad, lengths in m, times in s).
 #pragma once
 
+#include "trussmap/fit_model.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 
@@ -82,5 +83,19 @@ struct OptiOdomRecording {
 
 /// Throws InputError with file and line; a run of another robot than the differential one is named.
 [[nodiscard]] OptiOdomRecording read_optiodom(const std::filesystem::path& file);
+
+// ----------------------------------------
+// Poses over time as text, for other programs. Numbers read back to the same bits.
+//
+//   CSV   t,x,y,heading,c_xx,c_xy,c_xh,c_yy,c_yh,c_hh     s, m, rad; covariances in m^2, m rad,
+//   rad^2 TUM   timestamp tx ty tz qx qy qz qw                  s, m; tz = 0, the rotation about z
+//   alone
+
+/// The CSV, with a header row. Headings are not wrapped: they go on from row to row.
+[[nodiscard]] std::string format_poses(const std::vector<TimedPose>& poses);
+
+/// The trajectory format of the TUM RGB-D benchmark (Sturm et al., 2012), which evo and others
+/// read.
+[[nodiscard]] std::string format_tum(const std::vector<TimedPose>& poses);
 
 }  // namespace trussmap

@@ -165,7 +165,7 @@ std::string listed(const std::vector<std::string>& names) {
 void doubt_fit(BuiltMap& built, const MapFitState& best) {
   constexpr double kManyOut = 0.08;
   constexpr double kSurelyFreed = 1e-3;
-  constexpr double kImplausible = 1e-6;
+  constexpr double kImplausible = 1e-4;
   constexpr double kNoticeable = 1.1;  // of the dispersion
   const RecordingAdjustment& fit = best.fit.adjustment;
   std::vector<std::string>& warnings = built.warnings;
@@ -186,7 +186,8 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
   if (std::isinf(fit.gate_widened)) {
     warnings.push_back(
         "so many sightings contradict the rest that none was left out: the model is wrong, or its "
-        "noise is far too small; run discover");
+        "noise is far too small; run discover, or give a gate (4, say) if labels are often "
+        "misread");
   } else if (fit.gate_widened > 1.0) {
     warnings.push_back(
         "more sightings contradict the rest than are ever wrong: only those beyond " +
@@ -203,6 +204,15 @@ void doubt_fit(BuiltMap& built, const MapFitState& best) {
                        " times what the model's noise allows: its noise is too small, or an effect "
                        "is missing; run discover");
   }
+}
+
+void doubt_against_survey(BuiltMap& built) {
+  if (!built.on_survey || built.on_survey->comparison.contradicting.empty()) return;
+  const SurveyComparison& comparison = built.on_survey->comparison;
+  const bool exchanged = 2 * comparison.exchanged.size() == comparison.contradicting.size();
+  built.warnings.push_back(joined("the survey contradicts the map at ",
+                                  listed(comparison.contradicting),
+                                  exchanged ? ": exchanged labels" : ""));
 }
 
 void doubt_shape(BuiltMap& built, const MapFitState& best) {
@@ -280,6 +290,7 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);
   doubt_shape(built, best);
+  doubt_against_survey(built);
 }
 
 }  // namespace trussmap

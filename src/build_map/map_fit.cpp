@@ -15,7 +15,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kFreed = 0.05;        // p-value below which common errors stay
-constexpr double kMostLeftOut = 0.12;  // share of the sightings
 
 FitterOptions options_for(const std::optional<double>& gate) {
   FitterOptions how;
@@ -43,10 +42,13 @@ double p_value_of_common_errors(const FitState& fit) {
   return chi2_p_value(statistic, static_cast<int>(values.size()));
 }
 
+/// Standard errors by the scatter that there is, as those of the landmarks.
 std::vector<FreedError> freed_of(const FitState& fit) {
+  const double dispersion = std::max(1.0, fit.adjustment.chi2 / std::max(1, fit.adjustment.dof));
   std::vector<FreedError> result;
   for (std::size_t k = fit.effects.size() - fit.common_errors; k < fit.effects.size(); ++k) {
     result.push_back({fit.effects[k].effect, fit.effects[k].sd});
+    for (double& sd : result.back().sd) sd *= std::sqrt(dispersion);
   }
   return result;
 }

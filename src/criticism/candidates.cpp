@@ -4,6 +4,7 @@
 
 #include "criticism/driven_variables.hpp"
 #include "effects/place_patterns.hpp"
+#include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/catalogue.hpp"
 
@@ -296,6 +297,8 @@ class Gatherer {
           u.name != "turn_rate") {
         continue;
       }
+      // Clocks know nothing of motion.
+      if (channel == Channel::delay && is_rate(u.name)) continue;
       add(plain(channel, u, Form::line, {u.name}, u.name, -2.0));
     }
     if (context_.recordings().size() > 1) {

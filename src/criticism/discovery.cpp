@@ -5,20 +5,28 @@
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
+#include "validation/dead_reckoned_horizons.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace trussmap {
 namespace {
 
 constexpr std::size_t kMostRivals = 4;
-constexpr double kDecisive = 6.0;       // of chi^2
-constexpr double kWorthKeeping = 15.0;  // Wald statistic per coefficient that keeps an effect
-constexpr double kNoWorse = 1.05;       // of the arrival error
-constexpr double kBetter = 0.98;        // of the arrival error, to be preferred
-constexpr double kSame = 0.9999;        // cosine of what is the same effect
+constexpr double kDecisive = 6.0;  // of chi^2
+// Wald statistic per coefficient, by the scatter that there is, that keeps an effect: p = 0.0001
+constexpr double kWorthKeeping = 15.0;
+constexpr double kNoWorse = 1.05;      // of the arrival error
+constexpr double kBeyondChance = 1.5;  // standard errors
+constexpr double kBetter = 0.98;       // of the arrival error, to be preferred
+constexpr double kHorizon = 30.0;      // s
+constexpr int kFewestWindows = 20;
+constexpr double kLess = 0.98;    // of the error after a horizon, to be better
+constexpr double kSame = 0.9999;  // cosine of what is the same effect
 
 class Discoverer {
  public:
@@ -42,6 +50,7 @@ class Discoverer {
       if (result_.steps.size() == 1) result_.first = result_.last;
       result_.steps.back().held_out = result_.last.held_out;
       result_.stopped = {};
+      if (found_.size() < given_ + options_.most_effects && add_for_reckoning()) continue;
       if (result_.last.verdict != Diagnosis::Verdict::missing) break;
       if (found_.size() >= given_ + options_.most_effects) {
         result_.stopped = {StopReason::limit_reached, {}, options_.most_effects};
@@ -77,17 +86,48 @@ class Discoverer {
   struct Trial {
     Candidate candidate;
     ModelFit fit;
-    std::optional<double> arrival = std::nullopt;  ///< of the held-out legs, m; once asked for
+    std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
   };
 
   double arrival_of(Trial& trial) const {
-    if (trial.arrival) return *trial.arrival;
-    try {
-      trial.arrival = predict_held_out(recordings_, trial.fit, options_.diagnosis.legs).arrival_rms;
-    } catch (const SolveError&) {  // what is left without those legs does not tell the effect
-      trial.arrival = std::numeric_limits<double>::infinity();
+    if (!trial.held_out) {
+      try {
+        trial.held_out = predict_held_out(recordings_, trial.fit, options_.diagnosis.legs);
+      } catch (const SolveError&) {  // what is left without those legs does not tell the effect
+        trial.held_out = HeldOut{};
+        trial.held_out->arrival_rms = std::numeric_limits<double>::infinity();
+      }
     }
-    return *trial.arrival;
+    return trial.held_out->arrival_rms;
+  }
+
+  /// Of the held-out legs, and beyond what chance makes of so few.
+  [[nodiscard]] bool predicts_worse(Trial& trial) const {
+    const HeldOut& before = result_.steps.back().held_out;
+    if (!(before.arrival_rms > 0.0) || arrival_of(trial) <= kNoWorse * before.arrival_rms) {
+      return false;
+    }
+    return std::isinf(arrival_of(trial)) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
+  }
+
+  /// Mean rise of the squared arrival errors of legs that both have, over its standard error.
+  [[nodiscard]] static double rise_in_sds(const HeldOut& before, const HeldOut& after) {
+    double n = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const LegPrediction& one : before.legs) {
+      const auto other =
+          std::find_if(after.legs.begin(), after.legs.end(),
+                       [&one](const LegPrediction& leg) { return leg.leg == one.leg; });
+      if (other == after.legs.end()) continue;
+      const double rise = other->arrival_error.squaredNorm() - one.arrival_error.squaredNorm();
+      n += 1.0;
+      sum += rise;
+      squares += rise * rise;
+    }
+    const double variance = (squares - sum * sum / n) / (n - 1.0);
+    return n > 1.0 && variance > 0.0 ? sum / std::sqrt(n * variance)
+                                     : std::numeric_limits<double>::infinity();
   }
 
   [[nodiscard]] static bool was_fitted(const ModelFit& fit) {
@@ -145,8 +185,7 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials);
-    const double before = result_.steps.back().held_out.arrival_rms;
-    if (before > 0.0 && arrival_of(trials[best]) > kNoWorse * before) {
+    if (predicts_worse(trials[best]) && !reckons_better(trials[best].fit)) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
@@ -161,6 +200,55 @@ class Discoverer {
     step.predicted = winner.held_out;
     step.look_alikes = winner.look_alikes;
     return true;
+  }
+
+  /// Dead reckoning over a horizon, as the fit's own path judges it.
+  [[nodiscard]] bool reckons_better(const ModelFit& fit) const {
+    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
+    const HorizonError after = horizon_error(*fit.state, kHorizon);
+    return std::min(before.windows, after.windows) >= kFewestWindows &&
+           after.rms < kLess * before.rms;
+  }
+
+  /// What the tests of all effects together are too many for may yet be plain where a known error
+  /// of the motion is asked for by itself: a wheelbase beside a loss in arcs. It has to be surely
+  /// there and to make dead reckoning better. Only beside something found: nothing is sought so in
+  /// recordings that the model explains.
+  bool add_for_reckoning() {
+    if (found_.size() == given_) return false;
+    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
+    if (before.windows < kFewestWindows) return false;
+    std::optional<Trial> best;
+    double least = kLess * before.rms;
+    for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
+      if (!is_common_motion(candidates_[k]) ||
+          result_.last.findings[k].score < 0.25 * kWorthKeeping) {
+        continue;
+      }
+      std::vector<Trial> trials = tried({k});
+      if (trials.empty()) continue;
+      const ModelFit& fit = trials.front().fit;
+      if (wald(fit, fit.model.effects.size() - 1) < kWorthKeeping) continue;
+      const HorizonError after = horizon_error(*fit.state, kHorizon);
+      if (after.windows < kFewestWindows || after.rms >= least) continue;
+      least = after.rms;
+      best = std::move(trials.front());
+    }
+    if (!best) return false;
+    found_.push_back(best->candidate);
+    result_.found = std::move(best->fit);
+    DiscoveryStep& step = record();
+    step.added = result_.found.model.effects.back();
+    return true;
+  }
+
+  /// The systematic errors that nearly every robot has.
+  [[nodiscard]] static bool is_common_motion(const Candidate& one) {
+    static constexpr std::array<std::string_view, 6> kCommon{
+        "wheelbase",     "travel scale", "wheel diameter ratio",
+        "heading drift", "arc loss",     "spin loss"};
+    return one.form == Form::catalogue &&
+           std::find(kCommon.begin(), kCommon.end(), one.effect.name) != kCommon.end();
   }
 
   /// The first reason counts.
@@ -213,7 +301,8 @@ class Discoverer {
       double least = 1.0;
       for (std::size_t k = given_; k < found_.size(); ++k) {
         const double strength =
-            wald(k) / (kWorthKeeping * static_cast<double>(found_[k].effect.shape.size()));
+            wald(result_.found, k) /
+            (kWorthKeeping * static_cast<double>(found_[k].effect.shape.size()));
         if (strength < least) {
           least = strength;
           weakest = k;
@@ -229,9 +318,10 @@ class Discoverer {
     }
   }
 
-  /// a' C^-1 a of an effect's coefficients.
-  [[nodiscard]] double wald(std::size_t effect) const {
-    const FitState& fit = *result_.found.state;
+  /// a' C^-1 a of an effect's coefficients, by the scatter that there is where that is less than
+  /// the model's noise allows.
+  [[nodiscard]] static double wald(const ModelFit& of, std::size_t effect) {
+    const FitState& fit = *of.state;
     const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
     std::vector<Eigen::Index> places;
     for (std::size_t k = 0; k < unknown.size(); ++k) {
@@ -241,7 +331,8 @@ class Discoverer {
     if (places.empty()) return 0.0;
     const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
     const Eigen::VectorXd a = fit.adjustment.coefficients(places);
-    return a.dot(DenseLdlt(C).solve(a));
+    const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
+    return a.dot(DenseLdlt(C).solve(a)) / scatter;
   }
 
   const std::vector<Recording>& recordings_;

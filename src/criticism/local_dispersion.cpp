@@ -5,12 +5,14 @@
 #include "fit/fit_projection.hpp"
 #include "statistics/distributions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trussmap {
 namespace {
 
 constexpr double kChance = 0.001;
+constexpr double kDoubt = 0.05;  // that it is larger still
 
 }  // namespace
 
@@ -48,8 +50,11 @@ double LocalDispersion::operator()(const Score& score) const {
   if (!(v1 > 0.0)) return 1.0;
   const double lambda = x2 / v1;
   const double n = v1 * v1 / v2;
-  if (lambda <= 1.0) return 1.0;
-  return chi2_p_value_real(n * lambda, n) < kChance ? lambda : 1.0;
+  const double above = chi2_p_value_real(n * lambda, n);
+  if (above < kChance) return lambda;
+  // Noise that is stated too large: what it is at most.
+  if (1.0 - above < kChance) return std::min(1.0, n * lambda / chi2_quantile(kDoubt, n));
+  return 1.0;
 }
 
 }  // namespace trussmap

@@ -53,25 +53,52 @@ void drop_columns(Score& score) {
   score.landmarks.resize(0, 0);
 }
 
+namespace {
+
+/// What physics is known to make, without a place or threshold to be sought: few, and likelier than
+/// all that can be written down besides.
+bool is_known(const Tested& one) {
+  return one.candidate.form == Form::catalogue && one.candidate.parameters.empty();
+}
+
+/// Holm's, among the known effects and among the others; each half of the tests has half of the
+/// level (Bonferroni).
+void adjust_p_values(std::vector<Tested>& tested, int tried) {
+  const auto known = std::count_if(tested.begin(), tested.end(), is_known);
+  for (const bool group : {true, false}) {
+    std::vector<double> p_values;
+    std::vector<int> tests;
+    for (const Tested& one : tested) {
+      if (is_known(one) != group) continue;
+      p_values.push_back(one.p_value);
+      tests.push_back(one.tried);
+    }
+    const auto all = static_cast<double>(group ? known : tried - known);
+    const std::vector<double> adjusted = holm(p_values, tests, all);
+    auto next = adjusted.begin();
+    for (Tested& one : tested) {
+      if (is_known(one) == group) one.p_adjusted = bonferroni(*next++, 2.0);
+    }
+  }
+}
+
+}  // namespace
+
 void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
   double least = std::max(1.0, chi2 / std::max(1, dof));
-  std::vector<double> p_values;
-  std::vector<int> tests;
   for (Tested& one : tested) {
     one.p_value = 1.0;
     if (one.score.dof > 0) {
       const double left = dispersion_left(chi2, dof, one.score);
-      one.p_value = chi2_p_value(one.share_found * one.score.score / std::max(left, one.dispersion),
-                                 one.score.dof);
+      // Where its own rows show less noise than is stated, that is what it stands out from.
+      const double noise =
+          one.dispersion < 1.0 && left == 1.0 ? one.dispersion : std::max(left, one.dispersion);
+      one.p_value = chi2_p_value(one.share_found * one.score.score / noise, one.score.dof);
       least = std::min(least, left);
     }
-    p_values.push_back(one.p_value);
-    tests.push_back(one.tried);
   }
-  const std::vector<double> adjusted = holm(p_values, tests, tried);
-  for (std::size_t k = 0; k < tested.size(); ++k) {
-    Tested& one = tested[k];
-    one.p_adjusted = adjusted[k];
+  adjust_p_values(tested, tried);
+  for (Tested& one : tested) {
     // What noise in these very rows would claim is a matter of p: an effect whose rows another
     // effect moves as well is as large as it is.
     const double net = one.score.score / least;

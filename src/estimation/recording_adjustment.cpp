@@ -215,6 +215,14 @@ void add_landmark_uncertainties(const RecordingProblem& problem, const EffectPar
   take_uncertainties(system, adjustment);
 }
 
+std::vector<Matrix3> pose_covariances(const RecordingProblem& problem,
+                                      const EffectParameters& border,
+                                      const RecordingAdjustment& adjustment) {
+  RecordingSystem system(problem, border);
+  prepare(system, problem, border, adjustment);
+  return system.pose_covariances();
+}
+
 Eigen::MatrixXd joint_covariance(const RecordingProblem& problem, const EffectParameters& border,
                                  const RecordingAdjustment& adjustment,
                                  const std::vector<int>& nodes) {

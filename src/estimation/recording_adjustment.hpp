@@ -95,6 +95,11 @@ class UndeterminedError : public SolveError {
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
                                 RecordingAdjustment& adjustment);
 
+/// Of each pose alone: (x, y, heading), map frame, zero where held.
+[[nodiscard]] std::vector<Matrix3> pose_covariances(const RecordingProblem& problem,
+                                                    const EffectParameters& border,
+                                                    const RecordingAdjustment& adjustment);
+
 /// Joint covariance of landmarks and poses (nodes, in the order given: 2 or 3 rows each) and,
 /// after them, all coefficients; map frame, zero where held.
 [[nodiscard]] Eigen::MatrixXd joint_covariance(const RecordingProblem& problem,

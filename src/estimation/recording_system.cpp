@@ -316,17 +316,35 @@ Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes)
   return 0.5 * (covariance + covariance.transpose());
 }
 
-std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
+template <int Size>
+std::vector<Eigen::Matrix<double, Size, Size>> RecordingSystem::covariances(int first,
+                                                                            int count) const {
   const Eigen::MatrixXd blocks = normal_.inverse_blocks();
-  std::vector<Matrix2> result(idx(problem_.landmark_count()), Matrix2::Zero());
-  for (int node = 0; node < problem_.landmark_count(); ++node) {
+  std::vector<Eigen::Matrix<double, Size, Size>> result(idx(count),
+                                                        Eigen::Matrix<double, Size, Size>::Zero());
+  for (int k = 0; k < count; ++k) {
+    const int node = first + k;
     if (normal_.size(node) == 0) continue;
     const Eigen::Index at = normal_.offset(node);
-    Matrix2& covariance = result[idx(node)];
-    covariance = blocks.block<2, 2>(0, at);
+    auto& covariance = result[idx(k)];
+    covariance = blocks.block<Size, Size>(0, at);
     if (B_.cols() == 0) continue;
-    const auto own = A_inverse_B_.middleRows(at, 2);
+    const auto own = A_inverse_B_.middleRows(at, Size);
     covariance += own * schur_inverse_ * own.transpose();
+  }
+  return result;
+}
+
+std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
+  return covariances<2>(0, problem_.landmark_count());
+}
+
+std::vector<Matrix3> RecordingSystem::pose_covariances() const {
+  std::vector<Matrix3> result =
+      covariances<3>(problem_.landmark_count(), static_cast<int>(problem_.poses.size()));
+  if (gauge_.hold_heading) {  // its diagonal is there for the sake of the solution alone
+    result.front().row(2).setZero();
+    result.front().col(2).setZero();
   }
   return result;
 }

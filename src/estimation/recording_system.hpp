@@ -74,8 +74,9 @@ class RecordingSystem {
   /// Joint covariance of nodes and, after them, all coefficients. Zero where held.
   [[nodiscard]] Eigen::MatrixXd joint_covariance(const std::vector<int>& nodes) const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
-  /// Of each landmark alone; zero where held. Cost: about two factorisations.
+  /// Of each landmark alone, of each pose alone; zero where held. Cost: about two factorisations.
   [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
+  [[nodiscard]] std::vector<Matrix3> pose_covariances() const;
   /// The landmarks' joint covariance times the columns of b, two rows per landmark.
   [[nodiscard]] Eigen::MatrixXd landmark_covariance_times(const Eigen::MatrixXd& b) const;
   /// Of the whole normal matrix, border included. Call after factorise.
@@ -123,6 +124,9 @@ class RecordingSystem {
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
   void build_schur(double damping);
+  template <int Size>
+  [[nodiscard]] std::vector<Eigen::Matrix<double, Size, Size>> covariances(int first,
+                                                                           int count) const;
 
   const RecordingProblem& problem_;
   const EffectParameters& border_;

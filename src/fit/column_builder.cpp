@@ -141,11 +141,7 @@ const ColumnBuilder::Values& ColumnBuilder::values(const Shape& shape, Instant a
   const Values& f = values_.emplace(key, evaluated(shape, at)).first->second;
   std::vector<double>& largest = largest_[key];
   largest.clear();
-  for (const std::vector<double>& session : f) {
-    double most = 0.0;
-    for (const double value : session) most = std::max(most, std::abs(value));
-    largest.push_back(most);
-  }
+  for (const std::vector<double>& session : f) largest.push_back(largest_but_for_spikes(session));
   return f;
 }
 
@@ -218,6 +214,10 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   if (acts_on(channel) == ActsOn::views) instants = {Instant::sighting, Instant::truth};
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
+    if (adds_to_rows(channel, part.shape)) {
+      result.push_back(size_of_additions(channel, part.shape, part.session, context_));
+      continue;
+    }
     double most = 0.0;
     for (const Instant at : instants) {
       const auto key = std::make_pair(part.shape, at);

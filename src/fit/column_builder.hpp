@@ -95,7 +95,7 @@ class ColumnBuilder {
   std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
   std::map<std::pair<Shape, ShapeContext::Instant>, Values> values_;
-  /// |f| at most, per session; outlives the values.
+  /// |f| at most, spikes apart, per session; outlives the values.
   std::map<std::pair<Shape, ShapeContext::Instant>, std::vector<double>> largest_;
 };
 

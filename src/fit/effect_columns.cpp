@@ -3,9 +3,11 @@
 #include "fit/effect_columns.hpp"
 
 #include "effects/corrected_recording.hpp"
+#include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -29,7 +31,7 @@ std::vector<ViewPattern> views(Channel channel, const std::vector<double>& f,
 double largest(const std::vector<std::vector<double>>& values) {
   double most = 0.0;
   for (const std::vector<double>& session : values) {
-    for (const double f : session) most = std::max(most, std::abs(f));
+    most = std::max(most, largest_but_for_spikes(session));
   }
   return most;
 }
@@ -149,11 +151,70 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
                                        context.robot().wheelbase));
     }
   }
-  column.largest = largest(values);
+  column.largest = adds_to_rows(channel, shape)
+                       ? size_of_additions(channel, shape, session, context)
+                       : largest(values);
   return column;
 }
 
 }  // namespace
+
+double largest_but_for_spikes(const std::vector<double>& values) {
+  constexpr double kShare = 0.05;
+  constexpr int kBins = 32;
+  double sum = 0.0;
+  double limit = 0.0;
+  for (const double f : values) {
+    sum += std::abs(f);
+    limit = std::max(limit, std::abs(f));
+  }
+  if (!(limit > 0.0) || !std::isfinite(sum)) return limit;
+  // Sums by size; again within the lowest bin where all but spikes are in it.
+  double above = 0.0;
+  for (int round = 0; round < 8; ++round) {
+    std::array<double, kBins> sums{};
+    for (const double f : values) {
+      const double size = std::abs(f);
+      if (size > limit) continue;
+      const int bin = std::min(kBins - 1, static_cast<int>(kBins * (size / limit)));
+      sums[idx(bin)] += size;
+    }
+    int bin = kBins - 1;
+    for (; bin > 0 && above + sums[idx(bin)] <= kShare * sum; --bin) above += sums[idx(bin)];
+    if (bin == kBins - 1) return limit;
+    limit *= (bin + 1.0) / kBins;
+    if (bin > 0) return limit;
+  }
+  return limit;
+}
+
+bool adds_to_rows(Channel channel, const Shape& shape) {
+  if (channel != Channel::advance && channel != Channel::rotate) return false;
+  const std::vector<std::string>& names = shape.variables();
+  return std::none_of(names.begin(), names.end(),
+                      [](const std::string& name) { return is_event(name); });
+}
+
+double size_of_additions(Channel channel, const Shape& shape, int session,
+                         const ShapeContext& context) {
+  const Channel gain = channel == Channel::advance ? Channel::travel : Channel::turn;
+  double added = 0.0;
+  double moved = 0.0;
+  const auto values = context.values(shape, Instant::middle);
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    if (session >= 0 && s != idx(session)) continue;
+    for (std::size_t row = 0; row < values[s].size(); ++row) {
+      const DrivePattern unit =
+          drive_pattern(gain, 1.0, context.travel(s, row), context.robot().wheelbase);
+      added += std::abs(values[s][row]);
+      moved += std::abs(gain == Channel::travel ? unit.advance : unit.turn);
+    }
+  }
+  // A loss while the robot turns is often a tenth of what it travels meanwhile: no rarity.
+  constexpr double kMoreThanGains = 3.0;
+  const double share = moved > 0.0 ? added / moved / kMoreThanGains : 0.0;
+  return share * facts_of(channel).prior_sd / facts_of(gain).prior_sd;
+}
 
 EffectPattern effect_column(Channel channel, const Shape& shape, int session,
                             const ShapeContext& context) {

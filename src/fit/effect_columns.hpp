@@ -36,8 +36,12 @@ struct Coefficient {
   std::size_t effect = 0;
   std::size_t shape = 0;
   std::size_t place = 0;  ///< in the effect's list of coefficients
-  double largest = 0.0;   ///< |f| over all rows or instants
+  double largest = 0.0;   ///< |f| over all rows or instants (largest_but_for_spikes)
 };
+
+/// The largest |f|, but for single ones: those above it make up a twentieth of the sum of all |f|
+/// at most. One row of a second among those of a hundredth says nothing of an effect's size.
+[[nodiscard]] double largest_but_for_spikes(const std::vector<double>& values);
 
 struct EffectColumns {
   EffectParameters border;
@@ -94,5 +98,13 @@ class ShapeContext {
                                           const Recording& recording, std::size_t session,
                                           std::size_t sessions, const std::vector<Effect>& effects,
                                           const Robot& robot);
+
+/// Whether the channel adds the same to every row, however short, by a shape that counts no events.
+/// Its size is then no matter of rows.
+[[nodiscard]] bool adds_to_rows(Channel channel, const Shape& shape);
+/// Of such an effect, |f| per row that would add as much to travel or turn as a gain of the same
+/// share of the prior would.
+[[nodiscard]] double size_of_additions(Channel channel, const Shape& shape, int session,
+                                       const ShapeContext& context);
 
 }  // namespace trussmap

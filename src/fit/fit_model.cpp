@@ -36,6 +36,7 @@ FitterOptions fitter_options(const FitOptions& options) {
   how.problem.survey = options.use_survey;
   how.problem.truth = options.use_truth;
   how.gate = options.gate;
+  how.most_left_out = options.most_left_out;
   return how;
 }
 

@@ -53,8 +53,11 @@ class Fitter {
     lay_out();
     start(StartKind::common_errors);
     for (int round = 0; round < options_.max_rounds; ++round) {
-      if (round > 0 && has_delays()) lay_out_again();
+      const bool again = round > 0 && delays_moved();
+      if (again) lay_out_again();
       build_columns();
+      // What is laid out anew is linearised along its record, and not at the noise believed so far.
+      if (again) static_cast<void>(relinearised());
       if (round == 0 && options_.fit_effects) hold_unobservable();
       adjust_once(round == 0);
       if (round == 0 && lost()) start_again();
@@ -77,12 +80,25 @@ class Fitter {
     return effect + fit_.common_errors >= fit_.model.effects.size();
   }
 
-  [[nodiscard]] bool has_delays() const {
-    return std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
-                       [](const Effect& effect) { return effect.channel == Channel::delay; });
+  /// Since the instants were laid out, by more than their columns can stand for.
+  [[nodiscard]] bool delays_moved() const {
+    constexpr double kMoved = 0.02;  // standard deviations
+    const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
+      const Effect& effect = fit_.model.effects[one.effect];
+      if (effect.channel != Channel::delay) continue;
+      const auto at = static_cast<Eigen::Index>(k);
+      const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+      const double moved =
+          effect.coefficients[one.place] - laid_out_[one.effect].coefficients[one.place];
+      if (std::abs(moved) > kMoved * sd) return true;
+    }
+    return false;
   }
 
   void lay_out() {
+    laid_out_ = fit_.model.effects;
     fit_.recordings = retimed(recorded_, fit_.model.effects, fit_.model.robot);
     fit_.problem = make_problem(fit_.recordings, fit_.model, problem_options());
   }
@@ -127,7 +143,9 @@ class Fitter {
   [[nodiscard]] bool lost() const {
     constexpr double kFarTooLarge = 10.0;  // chi^2/dof
     if (options_.near != nullptr) return false;
-    if (options_.most_left_out < 1.0) return fit_.adjustment.gate_widened > 1.0;
+    if (fit_.common_errors > 0 && options_.most_left_out < 1.0) {
+      return fit_.adjustment.gate_widened > 1.0;
+    }
     const bool led = std::any_of(recorded_.begin(), recorded_.end(),
                                  [](const Recording& one) { return one.drive.has_compass(); });
     return !led && fit_.adjustment.chi2 > kFarTooLarge * std::max(1, fit_.adjustment.dof);
@@ -269,6 +287,9 @@ class Fitter {
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[k];
+      if (fit_.model.effects[one.effect].channel == Channel::delay) {
+        fit_.columns.border[k].reference = laid_out_[one.effect].coefficients[one.place];
+      }
       if (is_common(one.effect)) {
         fit_.columns.border[k].prior_sd = common_error_sd(fit_.model.effects[one.effect]);
       } else if (!options_.fit_effects || not_fitted_[one.effect][one.place]) {
@@ -308,6 +329,7 @@ class Fitter {
     RecordingAdjustmentOptions how;
     how.gate = options_.gate;
     fit_.adjustment = adjust_from(state_, fit_.problem, without, how);
+    adjusted_ = fit_.problem.measurements.size();
     state_ = fit_.adjustment.state;
     take_paths();
     build_columns();
@@ -344,10 +366,11 @@ class Fitter {
     how.gate = options_.gate;
     how.most_left_out = options_.most_left_out;
     how.landmark_uncertainties = options_.landmark_uncertainties;
+    // A delay may move sightings out of the drive, or back into it: then all is looked at anew.
+    const std::size_t measured = fit_.problem.measurements.size();
     if (!first) {
-      how.near = &fit_.adjustment;
-    } else if (options_.near != nullptr &&
-               options_.near->problem.measurements.size() == fit_.problem.measurements.size()) {
+      if (adjusted_ == measured) how.near = &fit_.adjustment;
+    } else if (options_.near != nullptr && options_.near->problem.measurements.size() == measured) {
       how.near = &options_.near->adjustment;
     }
     // What misfit without the effects hid may show only now, at the best fit with them.
@@ -356,6 +379,7 @@ class Fitter {
       try {
         RecordingAdjustment next = adjust_from(state_, fit_.problem, fit_.columns.border, how);
         fit_.adjustment = std::move(next);
+        adjusted_ = measured;
         break;
       } catch (const UndeterminedError& error) {
         give_way(unknown_coefficients(fit_.columns.border)[idx(error.coefficients().back())]);
@@ -381,12 +405,7 @@ class Fitter {
     // Without effects nothing depends on the path but what asks for it afterwards.
     const std::vector<SessionPath> before = std::move(fit_.paths);
     if (!fit_.model.effects.empty() && !only_common()) lay_paths();
-    // The residuals of a misfit are no estimate of noise.
-    const bool noise = options_.relinearise &&
-                       fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
-    offset_change_ = noise ? relinearise(fit_.problem, fit_.recordings, fit_.model,
-                                         fit_.columns.border, offsets_of(fit_), state_)
-                           : 0.0;
+    offset_change_ = relinearised();
     moved_ = 0.0;
     for (std::size_t s = 0; s < std::min(before.size(), fit_.paths.size()); ++s) {
       for (std::size_t row = 0; row < before[s].ends.size(); ++row) {
@@ -396,6 +415,16 @@ class Fitter {
                            std::abs(wrap_angle(a.heading - b.heading))});
       }
     }
+  }
+
+  /// The largest change of a segment's value by it, in standard deviations.
+  double relinearised() {
+    // The residuals of a misfit are no estimate of noise.
+    const bool noise = options_.relinearise &&
+                       fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
+    return noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
+                               offsets_of(fit_), state_)
+                 : 0.0;
   }
 
   void lay_paths() {
@@ -423,12 +452,22 @@ class Fitter {
     return false;
   }
 
+  /// Instants that a delay moves cut rows anew, whose rounding comes back larger.
+  [[nodiscard]] double still_enough() const {
+    constexpr double kCutAnew = 100.0;
+    const bool delays =
+        std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
+                    [](const Effect& effect) { return effect.channel == Channel::delay; });
+    return delays ? kCutAnew : 1.0;
+  }
+
   /// Neither a coefficient nor the path has moved, from which the columns were made.
   [[nodiscard]] bool settled() const {
     constexpr double kStill = 1e-6;  // m and rad
     if (offset_change_ > 1e-3) return false;
     if (fit_.columns.border.empty() || (only_common() && !reads_compass())) return true;
-    return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill : change_ < 1.0;
+    return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill
+                                                             : change_ < still_enough();
   }
 
   void report() {
@@ -459,7 +498,9 @@ class Fitter {
   FitterOptions options_;
   FitState fit_;
   RecordingState state_;
-  std::vector<Effect> given_;  ///< with the coefficients at first
+  std::size_t adjusted_ = 0;      ///< measurements of the last adjustment
+  std::vector<Effect> given_;     ///< with the coefficients at first
+  std::vector<Effect> laid_out_;  ///< with those by which the instants are laid out
   /// Per effect and place; nothing where fitted.
   std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted_;
   double change_ = 0.0;         ///< of the coefficients, in what is negligible

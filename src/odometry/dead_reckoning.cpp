@@ -123,19 +123,51 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
   return estimate;
 }
 
-std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot, const Noise& noise,
-                                     const std::vector<double>& slip) {
+std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robot& robot,
+                                                  const Noise& noise,
+                                                  const std::vector<double>& slip) {
   const InitialHeading first = initial_heading(drive, drive.start(), robot, noise);
   PoseEstimate at;
   at.pose.heading = first.heading.heading;
   at.covariance(2, 2) = first.heading.variance;
+  std::vector<PoseEstimate> result;
+  result.reserve(drive.rows());
+  double before = drive.start();
+  if (drive.has_compass()) {
+    for (const double t : drive.t) {
+      at = dead_reckon(at, drive, before, t, robot, noise, first.reading_time, slip);
+      before = t;
+      result.push_back(at);
+    }
+    return result;
+  }
+  const std::vector<DriveRow> rows = rows_between(drive, before, drive.t.back());
+  std::size_t row = 0;
+  for (const DriveArc& arc : merge_rows(drive, rows, robot.wheelbase, {noise.left, noise.right})) {
+    const PoseEstimate anchor = at;
+    WheelTravel part;
+    double duration = 0.0;
+    for (const std::size_t end = row + arc.rows; row < end; ++row) {
+      const WheelTravel travel = travel_of(drive, rows[row]);
+      part = {part.left + travel.left, part.right + travel.right};
+      duration += rows[row].duration;
+      const Pose exact = compose(
+          at.pose, displacement_of(travel, slip.empty() ? 0.0 : slip[row], robot.wheelbase));
+      at = moved(anchor, arc_displacement(part, robot.wheelbase),
+                 arc_covariance(part, duration, robot, noise));
+      at.pose = exact;
+      result.push_back(at);
+    }
+  }
+  return result;
+}
+
+std::vector<Pose> dead_reckoned_path(const Drive& drive, const Robot& robot, const Noise& noise,
+                                     const std::vector<double>& slip) {
   std::vector<Pose> path;
   path.reserve(drive.rows());
-  double before = drive.start();
-  for (const double t : drive.t) {
-    at = dead_reckon(at, drive, before, t, robot, noise, first.reading_time, slip);
-    before = t;
-    path.push_back(at.pose);
+  for (const PoseEstimate& one : dead_reckoned_estimates(drive, robot, noise, slip)) {
+    path.push_back(one.pose);
   }
   return path;
 }

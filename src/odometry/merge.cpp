@@ -55,6 +55,7 @@ struct Growing {
     longer.arc.travel.left += travel.left;
     longer.arc.travel.right += travel.right;
     longer.arc.duration += duration;
+    ++longer.arc.rows;
     longer.rows = compose(rows, arc_displacement(travel, wheelbase));
     longer.path += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
     return longer;

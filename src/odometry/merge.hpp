@@ -24,6 +24,7 @@ namespace trussmap {
 struct DriveArc {
   WheelTravel travel;     ///< m, sums over the rows
   double duration = 0.0;  ///< s
+  std::size_t rows = 0;   ///< how many
 };
 
 /// A row, or the part of it inside a span of time.

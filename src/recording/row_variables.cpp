@@ -13,7 +13,7 @@ namespace {
 constexpr double kStandingSpeed = 0.005;  // m/s, of the faster wheel
 constexpr double kSpinShare = 0.2;        // of the wheels' speed that the middle may have in a spin
 
-constexpr std::array<std::string_view, 3> kRates{"speed", "turn_rate", "acceleration"};
+constexpr std::array<std::string_view, 4> kRates{"speed", "turn_rate", "acceleration", "curvature"};
 constexpr std::array<std::string_view, 4> kEvents{"starts", "spins", "reverses_left",
                                                   "reverses_right"};
 
@@ -114,7 +114,8 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
 const std::vector<std::string>& reserved_variables() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all(kRates.begin(), kRates.end());
-    all.insert(all.end(), {"heading", "x", "y", "t", "distance", "session"});
+    all.insert(all.end(),
+               {"arc_angle", "spin_angle", "heading", "x", "y", "t", "distance", "session"});
     all.insert(all.end(), kEvents.begin(), kEvents.end());
     return all;
   }();
@@ -135,6 +136,23 @@ std::size_t row_at(const Drive& drive, double t) {
 }
 
 namespace {
+
+/// What is turned, by the smoothed rates: of single rows' noise the size would be a bias.
+void take_turning(const Drive& drive, const std::vector<MotionKind>& kinds,
+                  RowVariables& variables) {
+  const std::vector<double>& speed = variables.at("speed");
+  const std::vector<double>& turn_rate = variables.at("turn_rate");
+  std::vector<double>& curvature = variables["curvature"];
+  std::vector<double>& arc = variables["arc_angle"];
+  std::vector<double>& spin = variables["spin_angle"];
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double angle = std::abs(turn_rate[row]) * drive.duration(row);
+    const bool drives = kinds[row] == MotionKind::driving && speed[row] != 0.0;
+    curvature.push_back(drives ? turn_rate[row] / speed[row] : 0.0);
+    arc.push_back(kinds[row] == MotionKind::driving ? angle : 0.0);
+    spin.push_back(kinds[row] == MotionKind::spinning ? angle : 0.0);
+  }
+}
 
 /// Everything but the pose, in the middle of each row.
 RowVariables drive_variables(const Drive& drive, double wheelbase, int session) {
@@ -157,6 +175,7 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
   variables["speed"] = smoothed_rate(drive, spans, travel);
   variables["turn_rate"] = smoothed_rate(drive, spans, turn);
   variables["acceleration"] = slopes(drive, spans, variables["speed"]);
+  take_turning(drive, kinds, variables);
   variables["session"] = std::vector<double>(rows, session);
   variables["starts"] = beginnings(kinds, MotionKind::driving);
   variables["spins"] = beginnings(kinds, MotionKind::spinning);

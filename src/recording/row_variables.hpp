@@ -4,6 +4,8 @@
 // What a shape may speak of: the state of the drive in every row.
 //
 //   speed, turn_rate, acceleration   m/s (signed), rad/s, m/s^2
+//   curvature                        turned per way while driving, signed; 0 otherwise    1/m
+//   arc_angle, spin_angle            turned in the row while driving, on the spot; not signed    rad
 //   heading, x, y                    of an estimated path, at the row's middle    rad, m
 //   t, distance                      since the recording's start, at the middle   s, m
 //   session                          0, 1, ...
@@ -39,7 +41,7 @@ enum class MotionKind { standing, spinning, driving };
 [[nodiscard]] const std::vector<std::string>& reserved_variables();
 /// starts, spins, reverses_left, reverses_right.
 [[nodiscard]] bool is_event(std::string_view variable);
-/// speed, turn_rate, acceleration: smoothed within one kind of motion.
+/// speed, turn_rate, acceleration, curvature: smoothed within one kind of motion.
 [[nodiscard]] bool is_rate(std::string_view variable);
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length

@@ -132,6 +132,15 @@ MotionVariables motion_variables(const TrueMotion& motion, const std::vector<Row
   middle["speed"] = near.means(motion, speeds);
   middle["turn_rate"] = near.means(motion, turn_rates);
   middle["acceleration"] = near.changes(motion, middle["speed"]);
+  for (std::size_t k = 0; k < doing.size(); ++k) {
+    const double speed = middle["speed"][k];
+    const double turn_rate = middle["turn_rate"][k];
+    const double angle = std::abs(turn_rate) * motion.rows[k].duration;
+    const bool drives = doing[k] == Activity::drive;
+    middle["curvature"].push_back(drives && speed != 0.0 ? turn_rate / speed : 0.0);
+    middle["arc_angle"].push_back(drives ? angle : 0.0);
+    middle["spin_angle"].push_back(doing[k] == Activity::spin ? angle : 0.0);
+  }
   middle["session"] = std::vector<double>(motion.rows.size(), 0.0);
   middle["starts"] = onsets(doing, Activity::drive);
   middle["spins"] = onsets(doing, Activity::spin);

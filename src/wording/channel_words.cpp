@@ -172,10 +172,12 @@ std::string shown(double value, const std::string& unit) {
 }
 
 std::string variable_in_words(const std::string& variable) {
-  return variable == "turn_rate"  ? "turn rate"
-         : variable == "t"        ? "time"
-         : variable == "distance" ? "distance driven"
-                                  : variable;
+  return variable == "turn_rate"    ? "turn rate"
+         : variable == "t"          ? "time"
+         : variable == "distance"   ? "distance driven"
+         : variable == "arc_angle"  ? "angle turned while driving"
+         : variable == "spin_angle" ? "angle turned on the spot"
+                                    : variable;
 }
 
 std::string variables_in_words(const std::string& text) {

@@ -66,6 +66,8 @@ std::string event_of(const Shape& shape) {
   if (shape == "spins") return "each turn on the spot";
   if (shape == "reverses_left") return "each change of direction of the left wheel";
   if (shape == "reverses_right") return "each change of direction of the right wheel";
+  if (shape == "arc_angle") return "each radian turned while driving";
+  if (shape == "spin_angle") return "each radian turned on the spot";
   return "each event";
 }
 

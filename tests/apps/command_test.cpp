@@ -220,7 +220,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
-            "trussmap: \"polish\" is no command, expected one of add, adjust, build, calibrate, "
+            "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
+            "calibrate, "
             "compare, convert, diagnose, discover, fit, noise, reveal, simulate, tour, umbmark\n");
 }
 

@@ -57,6 +57,26 @@ TEST(RowVariables, RatesAreThoseOfTheMotionAndStayWithinIt) {
   EXPECT_EQ(v.at("session")[7], 2.0);
 }
 
+/// An angle belongs to the kind of motion in which it is turned, and counts without sign.
+TEST(RowVariables, TurningIsToldByTheMotionItBelongsTo) {
+  Drive drive = plain_drive();
+  for (int k = 0; k < 20; ++k) {  // a bend to the right: 0.4 m/s, -0.5 rad/s
+    drive.t.push_back(drive.t.back() + 0.1);
+    drive.left.push_back(0.05);
+    drive.right.push_back(0.03);
+  }
+  drive.covariates.front().values.resize(drive.rows(), 1.0);
+  const RowVariables v = variables_of(drive);
+  EXPECT_NEAR(v.at("spin_angle")[25], 0.1, 1e-12);
+  EXPECT_EQ(v.at("arc_angle")[25], 0.0);
+  EXPECT_EQ(v.at("curvature")[25], 0.0);
+  EXPECT_EQ(v.at("arc_angle")[50], 0.0);  // straight
+  const std::size_t bend = drive.rows() - 1;
+  EXPECT_NEAR(v.at("arc_angle")[bend], 0.05, 1e-12);
+  EXPECT_EQ(v.at("spin_angle")[bend], 0.0);
+  EXPECT_NEAR(v.at("curvature")[bend], -0.5 / 0.4, 1e-12);
+}
+
 TEST(RowVariables, EventsComeOnce) {
   const RowVariables v = variables_of(plain_drive());
   const auto count = [&v](const char* name) {

@@ -38,6 +38,8 @@ std::vector<Case> cases() {
           {"slope", {0.01, 0.02}},
           {"slip with speed", {-0.02}},
           {"loss per start", {-0.008}},
+          {"arc loss", {-0.1}},
+          {"spin loss", {-0.02}},
           {"turn scrub", {-0.045}},
           {"turn asymmetry", {0.02}},
           {"twist per spin", {0.02}},
@@ -229,11 +231,15 @@ TEST(EffectPhysics, TheTrueEffectExplainsTheRecording) {
 /// Where an effect depends on how fast the robot truly is, the recording's own rates differ by a
 /// fraction g: a second order of the effect is left.
 TEST(EffectPhysics, TrueRatesDifferFromRecordedOnesInTheSecondOrder) {
-  const std::set<std::string> by_rate = {
-      "slip with speed",       "turn scrub",
-      "turn asymmetry",        "tyre drift (distance)",
-      "missed ticks (v0=0.5)", "missed ticks of the right wheel (v0=0.4)",
-      "sampling skew"};
+  const std::set<std::string> by_rate = {"slip with speed",
+                                         "turn scrub",
+                                         "arc loss",
+                                         "spin loss",
+                                         "turn asymmetry",
+                                         "tyre drift (distance)",
+                                         "missed ticks (v0=0.5)",
+                                         "missed ticks of the right wheel (v0=0.4)",
+                                         "sampling skew"};
   for (const Case& one : cases()) {
     const World world = simulate(one, Rates::true_motion);
     const Misfit left = misfit(world);

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap apply: where the robot was, by a model.
+#include "commands.hpp"
+#include "model_recordings.hpp"
+#include "option_checks.hpp"
+#include "terminal.hpp"
+#include "trussmap/gate.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace trussmap::app {
+namespace {
+
+struct ApplyCommand {
+  std::string recording;
+  ModelRecordingsOptions input;
+  std::string out;
+  std::string tum;
+  bool adjusted = false;
+};
+
+std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand& options) {
+  FitOptions how = fit_options(options.input);
+  how.fit_effects = false;
+  const ModelFit fit = fit_model(input.recordings, input.model, how);
+  for (const std::string& warning : fit.warnings) fmt::print("{}", warning_text(warning));
+  for (const std::string& one : fit.left_out) fmt::print("left out: {}\n", one);
+  return adjusted_poses(fit);
+}
+
+void run_apply(ApplyCommand options) {
+  if (options.out.empty() && options.tum.empty()) {
+    throw UsageError("apply: nothing to write, expected --out or --tum");
+  }
+  options.input.recordings = {options.recording};
+  const ModelRecordings input = read_model_recordings(options.input);
+  const std::vector<TimedPose> poses =
+      options.adjusted ? adjusted(input, options)
+                       : dead_reckoned_poses(input.recordings.front(), input.model);
+  std::vector<std::pair<std::filesystem::path, std::string>> files;
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, std::string text) {
+    if (name.empty()) return;
+    files.emplace_back(name, std::move(text));
+    names.push_back(name);
+  };
+  add(options.out, format_poses(poses));
+  add(options.tum, format_tum(poses));
+  write_files(files);
+  const PoseEstimate& end = poses.back().estimate;
+  fmt::print("{} poses, {}; the last is known to {:.3f} m and {:.2f} deg (standard deviations)\n",
+             poses.size(),
+             options.adjusted ? "adjusted with everything that was measured, in the map's frame"
+                              : "dead reckoned from (0, 0, 0)",
+             std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
+             std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
+  fmt::print("written: {}\n", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+void setup_apply(const Command& app) {
+  auto options = std::make_shared<ApplyCommand>();
+  options->input.gate = kAdjustmentGate;
+  options->input.every = 0.0;
+  const Command command = app.add_subcommand(
+      "apply", "Write where the robot was, by a model: dead reckoned or adjusted poses");
+  command.add_option("RECORDING", options->recording, "Folder with drive.csv")
+      .required()
+      .type_name("");
+  command
+      .add_option("--model", options->input.model,
+                  "Model (TOML), with the coefficients of its effects")
+      .type_name("FILE")
+      .required();
+  command.add_option("--out", options->out, "Write t,x,y,heading and covariances (CSV)")
+      .type_name("FILE");
+  command.add_option("--tum", options->tum, "Write the same as a TUM trajectory").type_name("FILE");
+  command.add_flag("--adjusted", options->adjusted,
+                   "By everything that was measured, in the map's frame, instead of dead reckoned");
+  command
+      .add_option("--without", options->input.without,
+                  "With --adjusted: do not use the survey, or the truth")
+      .delimiter(',')
+      .check(one_of({"survey", "truth"}))
+      .type_name("WHAT,...");
+  command
+      .add_option("--gate", options->input.gate,
+                  "With --adjusted: sightings that the others contradict by more standard "
+                  "deviations are left out (0: none)")
+      .check(zero_or_more())
+      .capture_default_str();
+  command.footer(
+      "One pose at the start of the drive and one at the end of every row. Dead reckoned: by the\n"
+      "wheels, the compass and the model's effects alone, in the axes of the robot as it starts.");
+  command.callback([options] { run_apply(*options); });
+}
+
+}  // namespace trussmap::app
