@@ -5,6 +5,7 @@
 #include "geometry/index.hpp"
 #include "recording/row_variables.hpp"
 #include "trussmap/arc.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -53,6 +54,7 @@ class AdjustedSession {
   }
 
   std::vector<TimedPose> run() {
+    if (nodes_.empty()) throw SolveError("nothing was measured in this session");
     result_.push_back({drive_.start(), {path_.start, Matrix3::Zero()}});
     for (std::size_t row = 0; row < drive_.rows(); ++row) {
       result_.push_back({drive_.t[row], {path_.ends[row], Matrix3::Zero()}});

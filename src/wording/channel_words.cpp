@@ -66,7 +66,6 @@ Phrase phrase_of(Channel channel) {
     case Channel::compass:
       return {"the compass reads", "too much", "too little"};
     case Channel::range:
-      return {"ranges read", "too much", "too little"};
     case Channel::range_scale:
       return {"ranges read", "too much", "too little"};
     case Channel::bearing:
@@ -138,7 +137,6 @@ std::string channel_in_words(Channel channel) {
     case Channel::compass:
       return "compass reads too much by";
     case Channel::range:
-      return "ranges too long by";
     case Channel::range_scale:
       return "ranges too long by";
     case Channel::bearing:
