@@ -26,7 +26,8 @@ struct ModelRecordingsOptions {
   LegOptions legs;
 };
 
-/// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --every, --level.
+/// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --every,
+/// --level.
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
 
 struct ModelRecordings {
@@ -35,7 +36,8 @@ struct ModelRecordings {
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
-/// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp). Throws InputError, with the model file's line where an effect cannot be applied.
+/// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp).
+/// Throws InputError, with the model file's line where an effect cannot be applied.
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
 
 /// --without and --gate; the effects are fitted.
