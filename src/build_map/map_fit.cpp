@@ -14,7 +14,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFreed = 0.05;        // p-value below which common errors stay
+constexpr double kFreed = 0.05;  // p-value below which common errors stay
 
 FitterOptions options_for(const std::optional<double>& gate) {
   FitterOptions how;

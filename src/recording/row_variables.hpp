@@ -5,7 +5,7 @@
 //
 //   speed, turn_rate, acceleration   m/s (signed), rad/s, m/s^2
 //   curvature                        turned per way while driving, signed; 0 otherwise    1/m
-//   arc_angle, spin_angle            turned in the row while driving, on the spot; not signed    rad
+//   arc_angle, spin_angle            turned in the row while driving, on the spot; not signed rad
 //   heading, x, y                    of an estimated path, at the row's middle    rad, m
 //   t, distance                      since the recording's start, at the middle   s, m
 //   session                          0, 1, ...
