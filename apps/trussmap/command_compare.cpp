@@ -253,7 +253,7 @@ void run_compare(const CompareCommand& options) {
   write_files(files);
   progress.end();
   print(result, options);
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+  print_notes(input);
 }
 
 }  // namespace

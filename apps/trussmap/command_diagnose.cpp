@@ -211,7 +211,7 @@ void run_diagnose(const DiagnoseCommand& options) {
   write_files(files);
   progress.end();
   print(result, options);
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+  print_notes(input);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ void run_discover(const DiscoverCommand& options) {
   write_files(files);
   told.end();
   print(result);
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+  print_notes(input);
 }
 
 }  // namespace

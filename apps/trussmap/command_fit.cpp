@@ -146,7 +146,7 @@ void run_fit(const FitCommand& options) {
   write_files(files);
   progress.end();
   print(result);
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+  print_notes(input);
 }
 
 }  // namespace

@@ -112,6 +112,10 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   return result;
 }
 
+void print_notes(const ModelRecordings& input) {
+  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+}
+
 FitOptions fit_options(const ModelRecordingsOptions& options) {
   const auto left_out = [&options](const char* what) {
     return std::find(options.without.begin(), options.without.end(), what) != options.without.end();

@@ -26,7 +26,8 @@ class LocalDispersion {
   /// Keeps a reference to the tests, whose present state counts.
   LocalDispersion(const FitState& fit, const ScoreTest& tests);
 
-  /// lambda, or 1 where that could be chance. The score has its columns.
+  /// lambda, or 1 where that could be chance; where it is less, what it is at most (95 %). The
+  /// score has its columns.
   [[nodiscard]] double operator()(const Score& score) const;
 
  private:

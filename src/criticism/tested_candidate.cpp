@@ -33,28 +33,6 @@ double dispersion_left(double chi2, int dof, const Score& score) {
   return std::max(1.0, (chi2 - score.score) / std::max(1, dof - score.dof));
 }
 
-}  // namespace
-
-void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
-                  Resolution resolution,
-                  const std::function<void(std::size_t candidate, Score& score)>& visit) {
-  for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
-    const std::size_t end = std::min(candidates.size(), first + kChunk);
-    std::vector<Effect> effects;
-    for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
-    std::vector<Score> scores = tests.test(effects, resolution);
-    for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
-  }
-}
-
-void drop_columns(Score& score) {
-  score.columns.resize(0, 0);
-  score.projected.resize(0, 0);
-  score.landmarks.resize(0, 0);
-}
-
-namespace {
-
 /// What physics is known to make, without a place or threshold to be sought: few, and likelier than
 /// all that can be written down besides.
 bool is_known(const Tested& one) {
@@ -83,6 +61,24 @@ void adjust_p_values(std::vector<Tested>& tested, int tried) {
 }
 
 }  // namespace
+
+void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
+                  Resolution resolution,
+                  const std::function<void(std::size_t candidate, Score& score)>& visit) {
+  for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
+    const std::size_t end = std::min(candidates.size(), first + kChunk);
+    std::vector<Effect> effects;
+    for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
+    std::vector<Score> scores = tests.test(effects, resolution);
+    for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
+  }
+}
+
+void drop_columns(Score& score) {
+  score.columns.resize(0, 0);
+  score.projected.resize(0, 0);
+  score.landmarks.resize(0, 0);
+}
 
 void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
   double least = std::max(1.0, chi2 / std::max(1, dof));

@@ -20,15 +20,6 @@ ClearedRecording as_recorded(const Recording& recording) {
   return result;
 }
 
-SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
-  const Drive& drive = one.recording.drive;
-  SessionPath path;
-  path.start.heading =
-      initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
-  path.ends = dead_reckoned_path(drive, model.robot, model.noise, one.slip);
-  return path;
-}
-
 /// Sum of the effects' patterns for one row of a drive.
 DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offsets,
                     std::size_t session, std::size_t row) {
@@ -92,6 +83,15 @@ void clear(const std::vector<Recording>& timed, const EffectParameters& border,
 }
 
 }  // namespace
+
+SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
+  const Drive& drive = one.recording.drive;
+  SessionPath path;
+  path.start.heading =
+      initial_heading(drive, drive.start(), model.robot, model.noise).heading.heading;
+  path.ends = dead_reckoned_path(drive, model.robot, model.noise, one.slip);
+  return path;
+}
 
 std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
                                       const Model& model) {

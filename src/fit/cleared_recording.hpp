@@ -34,6 +34,9 @@ struct ClearedRecording {
 [[nodiscard]] std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
                                                     const Model& model);
 
+/// Its dead-reckoned path, from the first compass heading (else 0) at the origin.
+[[nodiscard]] SessionPath reckoned_path(const ClearedRecording& one, const Model& model);
+
 /// A fit's recordings, freed from its effects as it has them; truth at the fit's times.
 [[nodiscard]] std::vector<ClearedRecording> cleared(const FitState& fit);
 

@@ -14,12 +14,6 @@
 namespace trussmap {
 namespace {
 
-/// Moves an estimate by a motion with a covariance of its own, both in the robot's frame.
-PoseEstimate moved(const PoseEstimate& start, const Pose& motion, const Matrix3& covariance) {
-  const Motion end = then({start.pose, start.covariance}, {motion, covariance});
-  return {end.displacement, end.covariance};
-}
-
 /// The covariance of positions turned into axes that are turned by so much.
 Matrix3 turned(const Matrix3& covariance, double angle) {
   Matrix3 R = Matrix3::Identity();
@@ -116,11 +110,10 @@ class AdjustedSession {
 
   /// Results after the last node.
   void reckon_on(std::size_t at) {
-    PoseEstimate known = nodes_.back().estimate;
+    Motion known{nodes_.back().estimate.pose, nodes_.back().estimate.covariance};
     double since = nodes_.back().t;
     for (; at < result_.size(); ++at) {
-      const Motion way = driven(since, result_[at].t);
-      known = moved(known, way.displacement, way.covariance);
+      known = then(known, driven(since, result_[at].t));
       since = result_[at].t;
       result_[at].estimate.covariance = known.covariance;
     }

@@ -50,9 +50,13 @@ void require_finite(const Moves& moves) {
   }
 }
 
+Vector2 MapTruss::lies(const Route& route) const {
+  return map_.landmark(route.target).position - map_.landmark(route.source).position;
+}
+
 Matrix2 MapTruss::stiffness(const Route& route) const {
-  const Vector2 lies = map_.landmark(route.target).position - map_.landmark(route.source).position;
-  return bar_stiffness(StiffnessLaw::printed, route.covariance, direction(lies), route.traversals);
+  return bar_stiffness(StiffnessLaw::printed, route.covariance, direction(lies(route)),
+                       route.traversals);
 }
 
 Moves MapTruss::refinement(int number, const Eta& eta,
@@ -60,7 +64,7 @@ Moves MapTruss::refinement(int number, const Eta& eta,
   const Route& route = map_.route(number);
   const int i = route.source;
   const int j = route.target;
-  const Vector2 present = map_.landmark(j).position - map_.landmark(i).position;
+  const Vector2 present = lies(route);
   const Vector2 target = route.mean_vector();
   const RefinementLoads loads =
       refinement_loads(present, target, stiffness(route), stiffest_neighbour(i, number),
@@ -81,9 +85,7 @@ Moves MapTruss::rest() const {
   std::vector<Load> loads;
   for (const int number : whole.routes) {
     const Route& route = map_.route(number);
-    const Vector2 lies =
-        map_.landmark(route.target).position - map_.landmark(route.source).position;
-    const Vector2 force = stiffness(route) * (route.mean_vector() - lies);
+    const Vector2 force = stiffness(route) * (route.mean_vector() - lies(route));
     loads.push_back({route.source, -force});
     loads.push_back({route.target, force});
   }

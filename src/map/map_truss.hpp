@@ -52,6 +52,8 @@ class MapTruss {
  private:
   struct Piece;
 
+  /// From its source to its target, as the map has them, m.
+  [[nodiscard]] Vector2 lies(const Route& route) const;
   [[nodiscard]] std::optional<Matrix2> stiffest_neighbour(int landmark, int except) const;
   [[nodiscard]] Moves larger_structure(const Route& route, const Eta& eta,
                                        const std::vector<Load>& loads) const;

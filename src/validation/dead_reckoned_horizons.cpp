@@ -3,7 +3,6 @@
 #include "validation/dead_reckoned_horizons.hpp"
 
 #include "fit/cleared_recording.hpp"
-#include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,12 +43,7 @@ HorizonError horizon_error(const FitState& fit, double horizon) {
     const Drive& drive = fit.recordings[s].drive;
     const std::vector<double> nodes = node_times(fit, s);
     if (nodes.empty()) continue;
-    SessionPath reckoned;
-    reckoned.start.heading =
-        initial_heading(clear[s].recording.drive, drive.start(), fit.model.robot, fit.model.noise)
-            .heading.heading;
-    reckoned.ends = dead_reckoned_path(clear[s].recording.drive, fit.model.robot, fit.model.noise,
-                                       clear[s].slip);
+    const SessionPath reckoned = reckoned_path(clear[s], fit.model);
     for (double t = nodes.front(); t + horizon <= nodes.back(); t += 0.5 * horizon) {
       if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon)) continue;
       const Vector2 off =
