@@ -10,6 +10,8 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -34,6 +36,15 @@ std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand
   for (const std::string& warning : fit.warnings) fmt::print("{}", warning_text(warning));
   for (const std::string& one : fit.left_out) fmt::print("left out: {}\n", one);
   return adjusted_poses(fit);
+}
+
+/// Processes that act on what dead reckoning reads.
+bool motion_noise_lasts(const Noise& noise) {
+  return std::any_of(noise.processes.begin(), noise.processes.end(), [](const NoiseProcess& one) {
+    static constexpr std::array kViews{Channel::lever,       Channel::lever_left, Channel::range,
+                                       Channel::range_scale, Channel::bearing,    Channel::delay};
+    return std::find(kViews.begin(), kViews.end(), one.channel) == kViews.end();
+  });
 }
 
 void run_apply(ApplyCommand options) {
@@ -63,6 +74,10 @@ void run_apply(ApplyCommand options) {
              std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
              std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
   fmt::print("written: {}\n", fmt::join(names, ", "));
+  if (!options.adjusted && motion_noise_lasts(input.model.noise)) {
+    fmt::print("{}", warning_text("the covariances know the model's white noise alone: with noise "
+                                  "that lasts, as it has, they are too small"));
+  }
 }
 
 }  // namespace

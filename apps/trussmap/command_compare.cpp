@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -240,9 +241,12 @@ void run_compare(const CompareCommand& options) {
   const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
   const Comparison result = compare(input.recordings, fit, how);
+  const std::vector<NoiseBudget> budget = noise_budget(input.recordings, input.model);
   Files files;
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+    ordered_json report = json(result);
+    report["noise_budget"] = budget_json(budget);
+    files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
     add_page(files,
@@ -253,6 +257,7 @@ void run_compare(const CompareCommand& options) {
   write_files(files);
   progress.end();
   print(result, options);
+  print_budget(budget);
   print_notes(input);
 }
 

@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -78,21 +79,23 @@ ordered_json list_json(const std::vector<Item>& items) {
 }
 
 ordered_json json(const Diagnosis& result) {
-  return {{"verdict", verdict_of(result)},
-          {"missing", result.missing},
-          {"p_value", result.p_value},
-          {"chi2", result.chi2},
-          {"dof", result.dof},
-          {"coefficients_estimated", result.coefficients},
-          {"heldout", held_out_json(result.held_out)},
-          {"tried", result.tried},
-          {"candidates", list_json(result.findings)},
-          {"noise", list_json(result.noise)},
-          {"outliers", list_json(result.events)},
-          {"advice", in_words(result.lacks)},
-          {"next_drive", in_words(result.next_drive)},
-          {"unobservable", list_json(result.unobservable)},
-          {"warnings", result.warnings}};
+  return {
+      {"verdict", verdict_of(result)},
+      {"missing", result.missing},
+      {"p_value", result.p_value},
+      {"chi2", result.chi2},
+      {"dof", result.dof},
+      {"coefficients_estimated", result.coefficients},
+      {"heldout", held_out_json(result.held_out)},
+      {"tried", result.tried},
+      {"candidates", list_json(result.findings)},
+      {"noise", list_json(result.noise)},
+      {"noise_estimated", result.under ? noise_json(result.under->noise) : ordered_json(nullptr)},
+      {"outliers", list_json(result.events)},
+      {"advice", in_words(result.lacks)},
+      {"next_drive", in_words(result.next_drive)},
+      {"unobservable", list_json(result.unobservable)},
+      {"warnings", result.warnings}};
 }
 
 /// In the unit that suits the larger of it and what stands beside it.
@@ -197,9 +200,13 @@ void run_diagnose(const DiagnoseCommand& options) {
   const ModelFit fit = fit_model(input.recordings, input.model, how.fit);
   progress.next();
   const Diagnosis result = diagnose(input.recordings, fit, how);
+  const std::vector<NoiseBudget> budget =
+      noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
   Files files;
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+    ordered_json report = json(result);
+    report["noise_budget"] = budget_json(budget);
+    files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();
   if (options.page.wanted()) {
@@ -211,6 +218,11 @@ void run_diagnose(const DiagnoseCommand& options) {
   write_files(files);
   progress.end();
   print(result, options);
+  if (result.under) {
+    fmt::print("\n");
+    print_noise(result.under->noise);
+  }
+  print_budget(budget);
   print_notes(input);
 }
 
@@ -221,6 +233,7 @@ void setup_diagnose(const Command& app) {
   const Command command =
       app.add_subcommand("diagnose", "Find out which physical effect a model is missing");
   add_model_recordings(command, options->input);
+  add_stated_noise(command, options->input);
   command.add_option("--list", options->list, "Candidates to list").capture_default_str();
   add_html_option(command, options->page);
   add_plots_option(command, options->page);

@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -33,11 +34,17 @@ struct DiscoverCommand {
   PageOptions page;
 };
 
+ordered_json optional_json(const std::optional<double>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
 ordered_json json(const DiscoveryStep& step) {
   ordered_json one = {{"added", nullptr},
                       {"chi2", step.chi2},
                       {"dof", step.dof},
-                      {"heldout", held_out_json(step.held_out)}};
+                      {"heldout", held_out_json(step.held_out)},
+                      {"reckoned_10_s_m", optional_json(step.reckoned_10)},
+                      {"reckoned_30_s_m", optional_json(step.reckoned_30)}};
   if (step.added) {
     one["added"] = effect_json(*step.added);
     one["added"]["coefficients"] = step.added->coefficients;
@@ -58,16 +65,23 @@ ordered_json json(const Discovery& result) {
           {"stopped", stop_in_words(result)},
           {"verdict", verdict_of(result)},
           {"effects", effects},
+          {"noise_estimated",
+           result.last.under ? noise_json(result.last.under->noise) : ordered_json(nullptr)},
           {"warnings", result.found.warnings}};
 }
 
 void print_steps(const Discovery& result) {
+  const bool reckoned = result.steps.front().reckoned_30.has_value();
   TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right},
                   {},
                   true,
                   2};
   table.rows.push_back({"model", "chi2", "dof", "predicted", "held out [mm]", "predicted", "legs"});
+  if (reckoned) {
+    table.columns.insert(table.columns.end(), {Align::right, Align::right});
+    table.rows.back().insert(table.rows.back().end(), {"10 s [mm]", "30 s [mm]"});
+  }
   for (const DiscoveryStep& step : result.steps) {
     std::string name = step.added ? "+ " + step.added->name : "as given";
     for (const std::string& dropped : step.dropped) name += ", - " + dropped;
@@ -79,8 +93,19 @@ void print_steps(const Discovery& result) {
          step.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * step.held_out.arrival_rms),
          step.added ? fmt::format("{:.1f}", 1e3 * step.predicted.arrival_rms) : "-",
          fmt::format("{}", step.held_out.legs.size())});
+    if (!reckoned) continue;
+    for (const std::optional<double>& error : {step.reckoned_10, step.reckoned_30}) {
+      table.rows.back().push_back(error ? fmt::format("{:.0f}", 1e3 * *error) : "-");
+    }
   }
   fmt::print("\n{}", table_text(table));
+  const Diagnosis& last = result.last;
+  if (result.steps.size() > 1 && last.under && last.under->noise.changed()) {
+    fmt::print("  the noise is estimated anew in every line: chi2 is no measure across them\n");
+  }
+  if (reckoned) {
+    fmt::print("  10 s, 30 s: dead reckoning over so long, against the fit's own path (rms)\n");
+  }
 }
 
 void print(const Discovery& result) {
@@ -144,10 +169,13 @@ void run_discover(const DiscoverCommand& options) {
   how.progress = [&told](const DiscoveryStage& stage) { told.part(stage); };
   const Discovery result = discover(input.recordings, input.model, how);
   told.page();
+  const std::vector<NoiseBudget> budget = noise_budget(input.recordings, result.found.model);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+    ordered_json report = json(result);
+    report["noise_budget"] = budget_json(budget);
+    files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {
     add_page(files,
@@ -158,6 +186,11 @@ void run_discover(const DiscoverCommand& options) {
   write_files(files);
   told.end();
   print(result);
+  if (result.last.under) {
+    fmt::print("\n");
+    print_noise(result.last.under->noise);
+  }
+  print_budget(budget);
   print_notes(input);
 }
 
@@ -168,6 +201,7 @@ void setup_discover(const Command& app) {
   const Command command = app.add_subcommand(
       "discover", "Find the effects that a model is missing, add and fit them, one by one");
   add_model_recordings(command, options->input);
+  add_stated_noise(command, options->input);
   command.add_option("--out", options->out, "Write the model found (TOML)").type_name("FILE");
   command.add_option("--most", options->most, "Effects to add at most").capture_default_str();
   add_html_option(command, options->page);

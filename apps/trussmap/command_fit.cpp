@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "json_values.hpp"
 #include "model_recordings.hpp"
+#include "noise_output.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "terminal.hpp"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -29,20 +31,22 @@ using nlohmann::ordered_json;
 struct FitCommand {
   ModelRecordingsOptions input;
   std::string out;
+  bool noise = false;
   PageOptions page;
 };
 
 /// The model without effects and as fitted, side by side.
-EffectGain fit_both(const ModelRecordings& input, const FitCommand& options, Progress& progress) {
+EffectGain fit_both(const ModelRecordings& input, const Model& model, const FitCommand& options,
+                    Progress& progress) {
   FitOptions how = fit_options(options.input);
-  Model without = input.model;
+  Model without = model;
   without.effects.clear();
   progress.next();
   how.fit_effects = false;
   const ModelFit before = fit_model(input.recordings, without, how);
   how.fit_effects = true;
   progress.next();
-  const ModelFit after = fit_model(input.recordings, input.model, how);
+  const ModelFit after = fit_model(input.recordings, model, how);
   progress.next();
   return gain_of_effects(input.recordings, before, after, options.input.legs);
 }
@@ -119,6 +123,7 @@ void print(const EffectGain& result) {
 
 void run_fit(const FitCommand& options) {
   std::vector<ProgressStep> steps{{"reading", 0.5},
+                                  {"estimating the noise", 8},
                                   {"fitting without effects", 2.5},
                                   {"fitting the effects", 5},
                                   {"predicting held-out legs", 8}};
@@ -126,15 +131,24 @@ void run_fit(const FitCommand& options) {
   Progress progress(steps);
   progress.next();
   const ModelRecordings input = read_model_recordings(options.input);
-  if (input.model.effects.empty()) {
+  if (input.model.effects.empty() && !options.noise) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  const EffectGain result = fit_both(input, options, progress);
+  progress.next();
+  Model model = input.model;
+  std::optional<FittedNoise> noise;
+  if (options.noise) {
+    noise = fit_model_and_noise(input.recordings, model, fit_options(options.input)).noise;
+    model.noise = noise->noise;
+  }
+  const EffectGain result = fit_both(input, model, options, progress);
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
-    files.emplace_back(options.input.json, json(result).dump(2) + "\n");
+    ordered_json report = json(result);
+    if (noise) report["noise"] = noise_json(*noise);
+    files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();
   if (options.page.wanted()) {
@@ -146,6 +160,10 @@ void run_fit(const FitCommand& options) {
   write_files(files);
   progress.end();
   print(result);
+  if (noise) {
+    fmt::print("\n");
+    print_noise(*noise);
+  }
   print_notes(input);
 }
 
@@ -158,6 +176,8 @@ void setup_fit(const Command& app) {
   add_model_recordings(command, options->input);
   command.add_option("--out", options->out, "Write the model with its coefficients (TOML)")
       .type_name("FILE");
+  command.add_flag("--noise", options->noise,
+                   "Estimate the noise, too: the size of every source, and which of it lasts");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(

@@ -9,7 +9,7 @@
 #include "terminal.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/runs_files.hpp"
+#include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"

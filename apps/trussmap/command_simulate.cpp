@@ -94,7 +94,8 @@ nlohmann::json summary(const SimulateOptions& options, const Simulated& simulate
                             {"length_m", length},
                             {"duration_s", drive.motion.rows.back().t},
                             {"compass", drive.recording.drive.has_compass()},
-                            {"surveyed", drive.recording.survey.size()}};
+                            {"surveyed", drive.recording.survey.size()},
+                            {"rough", rough_names(make_robot(options).rough)}};
   if (!options.hide) results["effects"] = effects_json(simulated.effects);
   return results;
 }
@@ -113,6 +114,10 @@ void print(const nlohmann::json& s) {
   line("duration", fmt::format("{:.1f}", s["duration_s"].get<double>()), "s");
   line("compass", s["compass"].get<bool>() ? "yes" : "no", "");
   line("surveyed", std::to_string(s["surveyed"].get<std::size_t>()), "");
+  const auto rough = s["rough"].get<std::vector<std::string>>();
+  if (!rough.empty()) {
+    fmt::print("\n  Its noise is not what model.toml states: {}.\n", fmt::join(rough, ", "));
+  }
 }
 
 void run_simulate(const SimulateOptions& options) {

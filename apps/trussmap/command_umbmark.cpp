@@ -7,7 +7,7 @@
 #include "tape_options.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/runs_files.hpp"
+#include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/write_files.hpp"

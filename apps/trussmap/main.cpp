@@ -13,6 +13,9 @@
 
 #include <CLI/CLI.hpp>
 
+// Of OpenBLAS, where it is the BLAS in use.
+extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
+
 namespace {
 
 constexpr int kFailed = 1;
@@ -49,10 +52,19 @@ void check_command(const CLI::App& app, int argc, char** argv) {
                                   "\" is no command, expected one of " + names);
 }
 
+/// Recordings make thousands of small matrices: threads that wait for each other would cost more
+/// than all the arithmetic. Large pose graphs are another matter.
+void use_one_thread_but_for_graphs(int argc, char** argv) {
+  if (openblas_set_num_threads == nullptr) return;
+  if (argc > 1 && std::string(argv[1]) == "adjust") return;
+  openblas_set_num_threads(1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   clean_up_on_signals();
+  use_one_thread_but_for_graphs(argc, argv);
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses.", "trussmap"};
   trussmap::app::begin_help(app);
   app.require_subcommand(1);

@@ -132,8 +132,18 @@ CompareOptions compare_options(const ModelRecordingsOptions& options) {
   return {fit_options(options), options.legs, options.level};
 }
 
+void add_stated_noise(const Command& command, ModelRecordingsOptions& options) {
+  command.add_flag("--stated-noise", options.stated_noise,
+                   "Judge by the noise that the model states, instead of estimating it");
+}
+
 DiagnoseOptions diagnose_options(const ModelRecordingsOptions& options) {
-  return {fit_options(options), options.legs, options.level};
+  DiagnoseOptions result;
+  result.fit = fit_options(options);
+  result.legs = options.legs;
+  result.level = options.level;
+  result.estimate_noise = !options.stated_noise;
+  return result;
 }
 
 }  // namespace trussmap::app

@@ -24,11 +24,15 @@ struct ModelRecordingsOptions {
   std::optional<double> every;  // s between frames of sightings; 0: all; absent: as errors last
   double level = kSignificance;
   LegOptions legs;
+  bool stated_noise = false;
 };
 
 /// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --every,
 /// --level.
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
+
+/// --stated-noise.
+void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 
 struct ModelRecordings {
   Model model;

@@ -6,6 +6,7 @@
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace trussmap::app {
 namespace {
@@ -14,6 +15,19 @@ constexpr double kGapSpread = 0.4;     // uneven: gaps of 1 -+ this times the sp
 constexpr double kJitterShare = 0.06;  // and landmarks moved by up to this times the spacing
 constexpr double kRestShare = 0.1;
 constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
+
+/// Kinds of rough noise.
+Check rough_kinds() {
+  return {[](const std::string& text) -> std::string {
+            try {
+              (void)parse_rough(text);
+              return "";
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
+          },
+          ""};
+}
 
 void add_driving_options(const Command& command, SimulateOptions& options) {
   const auto add_pair = [&](const char* name, std::vector<double>& value, const char* help) {
@@ -89,6 +103,16 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
                "Standard deviation of the survey [m per coordinate]");
   command.add_flag("--noise-free", options.noise_free,
                    "Leave all noise out of the recording (model.toml still states it)");
+  command
+      .add_option(
+          "--rough", options.rough,
+          "Noise other than model.toml states, one or more with commas between: half (wheels "
+          "and compass: twice as large), memory (the wheels' errors last 1 s), haze (the "
+          "compass's 2 s), tails (wheels and compass: Student's t with 3 degrees of freedom), "
+          "floor (each leg misreads its travel by 0.4 %, its turns by 1 %), or all")
+      .type_name("KINDS")
+      .check(rough_kinds())
+      .excludes("--noise-free");
   command.add_flag("--no-compass", options.no_compass, "The robot has no compass");
   command.add_flag(
       "--range-sensor", options.range_sensor,
@@ -120,6 +144,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   robot.noise.right = options.wheel_noise;
   robot.noise.compass = options.compass_noise;
   robot.noise.survey = options.survey_noise;
+  if (!options.rough.empty()) robot.rough = parse_rough(options.rough);
   if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   return robot;
 }

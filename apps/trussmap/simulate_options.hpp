@@ -29,6 +29,7 @@ struct SimulateOptions {
   double compass_noise = 0.02;    // rad
   double sighting_noise = 0.005;  // m
   double survey_noise = 0.001;    // m
+  std::string rough;              // kinds of noise that the model does not state; "" = none
   bool noise_free = false;
   bool no_compass = false;
   bool no_survey = false;
@@ -57,8 +58,8 @@ struct SimulateOptions {
 [[nodiscard]] DrivingStyle make_style(const SimulateOptions& options,
                                       const std::vector<Effect>& effects);
 
-/// The model that comes with the recording: its noise, and no effect. A noise-free recording keeps
-/// the noise in its model, since measurements are weighted by it.
+/// The model that comes with the recording: its noise as stated, and no effect. A noise-free
+/// recording keeps the noise in its model, since measurements are weighted by it.
 [[nodiscard]] Model nominal_model(const SimulateOptions& options);
 
 void add_simulate_options(const Command& command, SimulateOptions& options);

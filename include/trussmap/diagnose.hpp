@@ -20,12 +20,16 @@
 //                5 %
 //   misfit       where no effect is missing: by the rule of compare.hpp
 //
-// Laws of noise and single events are asked of what the findings leave.
+// Laws of noise (beyond what the model states) and single events are asked of what the findings
+// leave. All else is judged by noise that is estimated: where the model states too little, or takes
+// errors that last for independent ones, everything would look like an effect.
 #pragma once
 
 #include "trussmap/compare.hpp"
+#include "trussmap/noise_fit.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -145,6 +149,8 @@ struct Diagnosis {
   std::vector<DataLack> lacks;
   std::optional<NextDrive> next_drive;  ///< to tell the first finding from its rivals
   std::size_t tried = 0;                ///< tests
+  /// The fit that is judged, and the noise that it goes by; none where noise was not estimated.
+  std::shared_ptr<const FitWithNoise> under;
   std::vector<std::string> warnings;
 };
 
@@ -152,6 +158,9 @@ struct DiagnoseOptions {
   FitOptions fit = {};
   LegOptions legs = {};
   double level = kSignificance;  ///< chance of naming an effect where none is missing
+  /// Judge by noise estimated from these recordings (noise_fit.hpp), beside what may be missing;
+  /// else by what the model states.
+  bool estimate_noise = true;
   std::size_t most_missing = 4;
 };
 

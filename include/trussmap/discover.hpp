@@ -29,6 +29,10 @@ struct DiscoveryStep {
   double chi2 = 0.0;
   int dof = 0;
   HeldOut held_out;
+  /// Dead reckoning, over 10 s and 30 s from one smoothed pose to the next; rms, m. Absent where
+  /// the recordings have no 20 such stretches.
+  std::optional<double> reckoned_10 = std::nullopt;
+  std::optional<double> reckoned_30 = std::nullopt;
   double predicted_chi2 = 0.0;  ///< decrease that the diagnosis predicted
   HeldOutMetrics predicted;     ///< held-out figures that it predicted
   std::vector<LookAlike> look_alikes;

@@ -9,6 +9,7 @@
 #include "trussmap/shape.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace trussmap {
@@ -16,6 +17,39 @@ namespace trussmap {
 struct Robot {
   double wheelbase = 0.34;  ///< m, nominal
 };
+
+/// How an error of a channel's g lasts.
+enum class ProcessKind {
+  white,                   ///< anew in every row or reading
+  per_leg,                 ///< constant from one landmark that the robot stands on to the next, or
+                           ///< from rest to rest where it stands on none
+  per_session,             ///< constant in a recording
+  per_pass,                ///< constant as long as a landmark stays in view
+  correlated_in_t,         ///< Ornstein-Uhlenbeck: correlation exp(-|lag|/length), length in s
+  correlated_in_distance,  ///< the same, length in m driven
+  walk_in_t,               ///< from 0 at a recording's start, variance sd^2 per s
+  walk_in_distance         ///< the same, per m driven
+};
+
+/// A source of noise: channel x process. It adds to what the white ones below state.
+struct NoiseProcess {
+  Channel channel = Channel::travel;
+  ProcessKind process = ProcessKind::white;
+  double sd = 0.0;      ///< unit of the channel's g; of a walk: per root of s or m
+  double length = 0.0;  ///< s or m, where correlated
+  double tails = 0.0;   ///< degrees of freedom of Student's t; 0: normal
+  int line = 0;         ///< of the model file that it came from, 0: of none
+
+  friend bool operator==(const NoiseProcess& a, const NoiseProcess& b) = default;
+};
+
+/// "per leg", "correlated in t", ...: as model files and reports have it.
+[[nodiscard]] std::string_view name_of(ProcessKind process);
+[[nodiscard]] bool is_correlated(ProcessKind process);
+/// Correlated, or a walk.
+[[nodiscard]] bool is_chain(ProcessKind process);
+/// Throws std::invalid_argument, listing all names, where there is none of this name.
+[[nodiscard]] ProcessKind process_named(std::string_view name);
 
 /// Standard deviations. Wheel noise as Chong & Kleeman (1997), eq. 4: the variance of a wheel's
 /// travel is k^2 |travel|.
@@ -33,6 +67,9 @@ struct Noise {
   double heading_per_s = 0.0;    ///< rad/s^(1/2)
   double heading_per_rad = 0.0;  ///< rad/rad^(1/2) turned
   double travel_per_s = 0.0;     ///< m/s^(1/2)
+  std::vector<NoiseProcess> processes = {};  ///< besides
+
+  friend bool operator==(const Noise& a, const Noise& b) = default;
 };
 
 /// Channel x shape: each coefficient scales one shape. One of the catalogue comes from

@@ -23,9 +23,9 @@
 // The compass is read at the end of each row and wrapped to (-pi, pi]. At every stop the robot
 // sights the landmark it stands on, and with a range sensor some of the others in reach. Each kind
 // of noise has a random stream of its own: leaving one sensor out, or its noise, changes nothing in
-// the others. Physical effects change what the sensors say of the true motion; a coefficient is
-// exact: without noise, the same effect in a model explains the recording fully. No formula here is
-// one of an estimator's.
+// the others. Noise may also be rough, other than stated. Physical effects change what the sensors
+// say of the true motion; a coefficient is exact: without noise, the same effect in a model
+// explains the recording fully. No formula here is one of an estimator's.
 #pragma once
 
 #include "trussmap/model.hpp"
@@ -188,6 +188,24 @@ struct SensorNoise {
   double survey = 0.001;  ///< m per coordinate
 };
 
+/// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
+/// combine.
+struct RoughNoise {
+  bool half = false;    ///< wheels and compass: twice as large as stated
+  bool memory = false;  ///< wheels: errors last, correlation exp(-lag / 1 s); smaller in each row,
+                        ///< so that over a long leg their sum has the variance that is stated
+  bool haze = false;    ///< compass: errors last, exp(-lag / 2 s); each has the variance stated
+  bool tails = false;   ///< wheels and compass: Student's t, 3 degrees of freedom, same variance
+  bool floor = false;   ///< from one landmark to the next the wheels misread all travel by one
+                        ///< share (sd 0.4 %) and all turning by another (sd 1 %)
+};
+
+/// "half,haze", or "all". Throws std::invalid_argument, listing all names, on any other.
+[[nodiscard]] RoughNoise parse_rough(std::string_view text);
+
+/// Names of the kinds that it has.
+[[nodiscard]] std::vector<std::string> rough_names(const RoughNoise& rough);
+
 struct WheeledRobot {
   double wheelbase = 0.34;  ///< m
   bool compass = true;
@@ -195,6 +213,7 @@ struct WheeledRobot {
   double reach = 8.0;        ///< m, range sensor
   double recognition = 0.5;  ///< chance that a landmark in reach is recognised
   SensorNoise noise;
+  RoughNoise rough;
 };
 
 /// What effects of speed and turn rate depend on: estimators know these by the wheels alone.
@@ -249,7 +268,10 @@ enum class Stream : std::uint32_t {
   range,
   survey,
   covariates,
-  hidden
+  hidden,
+  wheel_tails,
+  compass_tails,
+  floor
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

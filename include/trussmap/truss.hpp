@@ -16,6 +16,8 @@
 //
 // Strain energy of the deformation: 1/2 sum (u_j - u_i)' B (u_j - u_i) = 1/2 u' K u.
 // Cost: one sparse Cholesky factorisation (two unknowns per free joint).
+//
+// How stiff a bar is, where it stands for something measured, is at the end.
 #pragma once
 
 #include "trussmap/error.hpp"
@@ -79,5 +81,28 @@ class UnsupportedJoint : public SolveError {
 
 /// The 4x4 stiffness matrix of one bar, degrees of freedom (u_ix, u_iy, u_jx, u_jy).
 [[nodiscard]] Eigen::Matrix4d bar_matrix(const Matrix2& stiffness);
+
+// ----------------------------------------
+// How stiff a bar is, given how unsure the route is that it stands for.
+//
+//   C       covariance of one traversal of the route (mean over traversals), map axes   m^2
+//   theta   orientation of the bar                                                      rad
+//   t       number of traversals
+//   C'      R(theta)' C R(theta): x' along the bar, y' across it                        m^2
+//
+// printed          B = R diag(t/dx, t/dy) R',  dx = sqrt(2/pi C'_11), dy = sqrt(2/pi C'_22)
+//                  Golfarelli, Maio & Rizzi (1998), section 3.1: stiffness = 1/mean error.
+//                  C'_12 is dropped.                                                    1/m
+// gauss_markov     B = t C^-1, off-diagonal kept: stiffness = 1/variance, the weights of least
+//                  squares; strain energy is then half of chi squared.                  1/m^2
+//
+// A law is a small value: pass it where bars are made.
+
+enum class StiffnessLaw { printed, gauss_markov };
+
+/// 2x2 stiffness of a bar in map axes. Throws std::invalid_argument unless C is positive definite
+/// (for `printed`: positive along and across the bar) and t > 0.
+[[nodiscard]] Matrix2 bar_stiffness(StiffnessLaw law, const Matrix2& covariance, double orientation,
+                                    double traversals);
 
 }  // namespace trussmap

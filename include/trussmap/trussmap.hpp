@@ -4,10 +4,10 @@
 // All of trussmap. Exploration code needs less: map_builder.hpp, or build_map.hpp.
 //
 // Two targets to link. trussmap::map has what stands in alignment, arc, build_map, channel,
-// dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model, planar, pose_graph,
-// recording, stiffness_law, survey_comparison, test_path and truss. All the others, and effects in
-// a model (a shape is read from its text), take trussmap::trussmap, which includes it. Find the
-// first alone by find_package(trussmap COMPONENTS map).
+// corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
+// noise_fit, planar, pose_graph, recording, survey_comparison, test_path and truss. All the others,
+// and effects in a model (a shape is read from its text), take trussmap::trussmap, which includes
+// it. Find the first alone by find_package(trussmap COMPONENTS map).
 #pragma once
 
 #include "trussmap/alignment.hpp"
@@ -17,6 +17,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/channel.hpp"
 #include "trussmap/compare.hpp"
+#include "trussmap/corrected_odometry.hpp"
 #include "trussmap/dead_reckoning.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
@@ -31,15 +32,14 @@
 #include "trussmap/map_files.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/noise_fit.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/recording_files.hpp"
-#include "trussmap/runs_files.hpp"
 #include "trussmap/shape.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/stiffness_law.hpp"
 #include "trussmap/survey_comparison.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"

@@ -9,6 +9,7 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/model.hpp"
+#include "trussmap/noise_fit.hpp"
 
 #include <optional>
 #include <string>
@@ -66,6 +67,11 @@ struct Advice {
 
 /// "each start adds 4.0 mm of travel noise".
 [[nodiscard]] std::string in_words(const NoiseTest& test);
+/// What is other than stated: "wheels 1.9 times what is stated; compass errors that last for 1.9
+/// s"; empty where nothing is.
+[[nodiscard]] std::string in_words(const FittedNoise& noise);
+/// What costs most, and what would help against it.
+[[nodiscard]] std::string in_words(const NoiseBudget& budget);
 /// "the left wheel said 3.1 cm too little at once, in the leg 12 -> 13 at t = 45.2 s".
 [[nodiscard]] std::string in_words(const EventTest& event);
 

@@ -231,6 +231,11 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
       warnings.push_back("this method's map lies " + fixed_text(off, 2) +
                          " m (rms) from the adjusted one, which is the better one: take that");
     }
+    if (!best.fit.model.noise.processes.empty()) {
+      built.notes.push_back(
+          "routes know the model's white noise alone; noise that lasts is known to "
+          "the method adjustment");
+    }
   }
   const double torn = contradiction(built.map);
   if (torn > kTorn) {

@@ -5,6 +5,7 @@
 #include "criticism/data_lacks.hpp"
 #include "criticism/effect_search.hpp"
 #include "criticism/look_alikes.hpp"
+#include "criticism/noise_beside.hpp"
 #include "criticism/trends.hpp"
 #include "criticism/verdict.hpp"
 #include "recording/slow_covariates.hpp"
@@ -253,14 +254,43 @@ class Diagnostician {
 
 }  // namespace
 
+namespace {
+
+/// Laws of noise beyond what is stated, beside what is missing.
+std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                    const Noise& stated, const Diagnosis& found) {
+  Model model = fit.model;
+  model.noise = stated;
+  const ModelFit as_stated = refit(recordings, model, fit);
+  const ScoreTest tests(*as_stated.state);
+  std::vector<Effect> missing;
+  for (const Finding* one : found_by(found)) missing.push_back(one->effect);
+  for (Effect& one : missing) one.coefficients.clear();
+  Eigen::MatrixXd nuisance(tests.system().rows(), 0);
+  for (const Score& one : tests.test(missing)) {
+    nuisance.conservativeResize(Eigen::NoChange, nuisance.cols() + one.projected.cols());
+    nuisance.rightCols(one.projected.cols()) = one.projected;
+  }
+  return test_noise_laws(*as_stated.state, tests, nuisance);
+}
+
+}  // namespace
+
 DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
-                           const DiagnoseOptions& options) {
-  return Diagnostician(recordings, fit, options).run();
+                           const Noise& stated, const DiagnoseOptions& options) {
+  if (!options.estimate_noise) return Diagnostician(recordings, fit, options).run();
+  auto under = std::make_shared<const FitWithNoise>(with_noise_beside(recordings, fit, stated));
+  DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
+  if (under->noise.changed()) {
+    run.result.noise = noise_beyond(recordings, under->fit, stated, run.result);
+  }
+  run.result.under = std::move(under);
+  return run;
 }
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
                    const DiagnoseOptions& options) {
-  return run_diagnosis(recordings, fit, options).result;
+  return run_diagnosis(recordings, fit, fit.model.noise, options).result;
 }
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,

@@ -16,7 +16,9 @@ struct DiagnosisRun {
   std::vector<Candidate> candidates;  ///< one per finding
 };
 
+/// `stated`: the noise that the user's model has, which the fit's may differ from by now.
 [[nodiscard]] DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings,
-                                         const ModelFit& fit, const DiagnoseOptions& options);
+                                         const ModelFit& fit, const Noise& stated,
+                                         const DiagnoseOptions& options);
 
 }  // namespace trussmap

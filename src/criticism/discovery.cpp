@@ -34,6 +34,7 @@ class Discoverer {
              const DiscoverOptions& options)
       : recordings_(recordings), options_(options) {
     given_ = model.effects.size();
+    stated_ = model.noise;
     tell({DiscoveryStage::Kind::fitting_given, {}});
     result_.given = fit_model(recordings, model, options.diagnosis.fit);
     result_.found = result_.given;
@@ -44,8 +45,10 @@ class Discoverer {
   Discovery run() {
     while (true) {
       tell({DiscoveryStage::Kind::searching, {}});
-      DiagnosisRun diagnosis = run_diagnosis(recordings_, result_.found, options_.diagnosis);
+      DiagnosisRun diagnosis =
+          run_diagnosis(recordings_, result_.found, stated_, options_.diagnosis);
       result_.last = std::move(diagnosis.result);
+      take_noise();
       candidates_ = std::move(diagnosis.candidates);
       if (result_.steps.size() == 1) result_.first = result_.last;
       result_.steps.back().held_out = result_.last.held_out;
@@ -71,6 +74,25 @@ class Discoverer {
     Model model = result_.found.model;
     model.effects = effects;
     return refit(recordings_, model, result_.found);
+  }
+
+  /// The model found goes by the noise that the diagnosis estimated.
+  void take_noise() {
+    DiscoveryStep& step = result_.steps.back();
+    if (result_.last.under) {
+      result_.found = result_.last.under->fit;
+      if (result_.steps.size() == 1) result_.given = result_.found;
+      step.chi2 = result_.found.chi2;
+      step.dof = result_.found.dof;
+    }
+    step.reckoned_10 = reckoned(10.0);
+    step.reckoned_30 = reckoned(kHorizon);
+  }
+
+  [[nodiscard]] std::optional<double> reckoned(double horizon) const {
+    const HorizonError error = horizon_error(*result_.found.state, horizon);
+    if (error.windows < kFewestWindows) return std::nullopt;
+    return error.rms;
   }
 
   /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
@@ -185,7 +207,8 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials);
-    if (predicts_worse(trials[best]) && !reckons_better(trials[best].fit)) {
+    if ((predicts_worse(trials[best]) && !reckons_better(trials[best].fit)) ||
+        reckons_worse(trials[best].fit)) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
@@ -208,6 +231,13 @@ class Discoverer {
     const HorizonError after = horizon_error(*fit.state, kHorizon);
     return std::min(before.windows, after.windows) >= kFewestWindows &&
            after.rms < kLess * before.rms;
+  }
+
+  [[nodiscard]] bool reckons_worse(const ModelFit& fit) const {
+    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
+    const HorizonError after = horizon_error(*fit.state, kHorizon);
+    return std::min(before.windows, after.windows) >= kFewestWindows &&
+           after.rms > kNoWorse * before.rms;
   }
 
   /// What the tests of all effects together are too many for may yet be plain where a known error
@@ -338,6 +368,7 @@ class Discoverer {
   const std::vector<Recording>& recordings_;
   const DiscoverOptions& options_;
   std::size_t given_ = 0;
+  Noise stated_;
   std::vector<Candidate> found_;       ///< one per effect of the model; empty for those given
   std::vector<Candidate> candidates_;  ///< one per finding of the last diagnosis
   Discovery result_;

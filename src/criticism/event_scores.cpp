@@ -108,16 +108,11 @@ class Scorer {
         for (const DummyRows& part : dummies.parts) {
           const std::size_t k = part.measurement;
           const Eigen::MatrixXd& M = part.rows;
-          const Measurement& one = fit_.problem.measurements[k];
           const int first = system_.first_row(k);
-          const auto add = [&](int node, const RowsByNode& J) {
-            const int size = node < 0 ? 0 : normal.size(node);
-            if (size == 0) return;
-            right.block(normal.offset(node), at, size, count) +=
-                J.topLeftCorner(one.rows, size).transpose() * M;
-          };
-          add(one.from, P_.rows_of(k).from);
-          add(one.to, P_.rows_of(k).to);
+          for (const RecordingSystem::NodeRows& link : system_.node_rows(k)) {
+            right.block(normal.offset(link.node), at, link.rows.cols(), count) +=
+                link.rows.transpose() * M;
+          }
           g.segment(at, count) += M.transpose() * r_.segment(first, M.rows());
           whole.segment(at, count) += M.colwise().squaredNorm();
           nuisance.middleCols(at, count) +=

@@ -196,9 +196,10 @@ FitEvidence evidence_of(const std::vector<Recording>& recordings, const EffectGa
   return evidence;
 }
 
-DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const ModelFit& fit,
+DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const ModelFit& given,
                               const Diagnosis& diagnosis, const DiagnoseOptions& options) {
   const CompareOptions compared = compare_options(options);
+  const ModelFit& fit = diagnosis.under ? diagnosis.under->fit : given;
   const ScoreTest tests(*fit.state);
   DiagnosisEvidence evidence;
   evidence.given = model_evidence(recordings, fit, tests, compared, diagnosis.missing);

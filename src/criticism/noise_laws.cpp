@@ -3,6 +3,7 @@
 #include "criticism/noise_laws.hpp"
 
 #include "estimation/segment_noise.hpp"
+#include "fit/noise_reml.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <cmath>
@@ -18,12 +19,6 @@ constexpr double kSeconds = 1.0;
 constexpr double kReadings = 2.0;
 constexpr double kOneWheel = 3.0;
 constexpr double kRare = 6.0;
-
-Noise silence() {
-  Noise none;
-  none.left = none.right = none.compass = none.sighting = none.range = none.bearing = 0.0;
-  return none;
-}
 
 /// A law of the drive: noise that it adds to a row.
 struct DriveLaw {
@@ -48,27 +43,27 @@ std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& contex
                     }});
   };
   const double wheels = mean_wheel_noise(fit.model.noise);
-  Noise noise = silence();
+  Noise noise = silent_noise();
   noise.left = wheels > 0.0 ? fit.model.noise.left / wheels : 1.0;
   noise.right = wheels > 0.0 ? fit.model.noise.right / wheels : 1.0;
   add("per metre", "m/sqrt(m)", 0.0, noise);
-  noise = silence();
+  noise = silent_noise();
   noise.left = 1.0;
   add("per metre, left wheel", "m/sqrt(m)", kOneWheel, noise);
-  noise = silence();
+  noise = silent_noise();
   noise.right = 1.0;
   add("per metre, right wheel", "m/sqrt(m)", kOneWheel, noise);
-  noise = silence();  // of each wheel: half the travel's variance and 2/B^2 of the turn's
+  noise = silent_noise();  // of each wheel: half the travel's variance and 2/B^2 of the turn's
   noise.travel_per_s = std::sqrt(0.5);
   noise.heading_per_s = std::sqrt(2.0) / fit.model.robot.wheelbase;
   add("per second", "m/sqrt(s)", kSeconds, noise);
-  noise = silence();
+  noise = silent_noise();
   noise.heading_per_s = 1.0;
   add("per second, heading", "rad/sqrt(s)", kRare, noise);
-  noise = silence();
+  noise = silent_noise();
   noise.travel_per_s = 1.0;
   add("per second, travel", "m/sqrt(s)", kRare, noise);
-  noise = silence();
+  noise = silent_noise();
   noise.heading_per_rad = 1.0;
   add("per radian turned", "rad/sqrt(rad)", kRare, noise);
   const auto add_event = [&](const char* name, const char* unit, const char* event, int value) {
@@ -100,13 +95,9 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
     const Measurement& one = problem.measurements[k];
     if (one.kind != MeasurementKind::segment) continue;
     const std::size_t session = idx(one.session);
-    std::vector<const std::vector<DrivePattern>*> patterns;
-    for (const EffectPattern& effect : fit.columns.border) {
-      patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[session]);
-    }
     const std::vector<SegmentRow>& rows = problem.segments[one.source];
-    const SegmentNoise segment = segment_noise(fit.recordings[session].drive, rows, fit.model.robot,
-                                               fit.model.noise, patterns, offsets, {});
+    const SegmentNoise segment = believed_noise(problem, k, fit.recordings, fit.model,
+                                                fit.columns.border, offsets, fit.adjustment.state);
     for (std::size_t row = 0; row < rows.size(); ++row) {
       for (std::size_t law = 0; law < laws.size(); ++law) {
         const Matrix3 Q = laws[law].row(session, rows[row]);

@@ -153,7 +153,7 @@ class Collector {
     result.change = EventChange::moved;
     for (std::size_t v = from; v < visits.size(); ++v) {
       for (const std::size_t k : visits[v].sightings) {
-        result.parts.push_back({k, projection_.rows_of(k).to.topLeftCorner(at(k).rows, 2)});
+        result.parts.push_back({k, projection_.rows_by_landmark(k)});
       }
     }
     return result;

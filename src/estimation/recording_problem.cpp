@@ -3,6 +3,7 @@
 #include "estimation/recording_problem.hpp"
 
 #include "estimation/motion_changes.hpp"
+#include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+
+#include <Eigen/LU>
 
 namespace trussmap {
 namespace {
@@ -245,6 +248,13 @@ Matrix4 whitener_of(const Matrix4& covariance, int rows) {
   return result;
 }
 
+Matrix4 whitener_with(const Matrix4& whitener, const Matrix4& more, int rows) {
+  if (more.isZero(0.0)) return whitener;
+  Matrix4 colour = Matrix4::Zero();
+  colour.topLeftCorner(rows, rows) = whitener.topLeftCorner(rows, rows).inverse();
+  return whitener_of(colour * colour.transpose() + more, rows);
+}
+
 RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
                               const ProblemOptions& options) {
   Collector collector(model, options);
@@ -256,6 +266,7 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
     one.from = problem.pose_node(one.from);
     if (one.kind == MeasurementKind::segment) one.to = problem.pose_node(one.to);
   }
+  add_processes(problem, recordings, model);
   return problem;
 }
 

@@ -56,6 +56,20 @@ struct Measurement {
   std::size_t source = 0;  ///< sighting, survey point or truth row of the session; else the segment
 };
 
+/// A scalar unknown of a noise process (noise_states.hpp): z = keep z_previous + N(0, sd^2).
+struct NoiseState {
+  int process = 0;    ///< of the model's noise
+  int previous = -1;  ///< state; -1: none
+  double keep = 0.0;
+  double sd = 1.0;
+};
+
+/// What one unit of a state adds: to a segment's four numbers, or to the ViewPattern of a view.
+struct NoiseTerm {
+  int state = 0;
+  Eigen::Matrix<double, 6, 1> by = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
 /// A robot's pose that is unknown.
 struct PoseNode {
   int session = 0;
@@ -68,6 +82,10 @@ struct RecordingProblem {
   std::vector<std::vector<SegmentRow>> segments;  ///< rows of each segment
   std::vector<Measurement> measurements;
   std::vector<std::string> sessions;  ///< names of the recordings
+  std::vector<NoiseState> noise_states;
+  /// Per measurement, or none at all where no noise lasts.
+  std::vector<std::vector<NoiseTerm>> noise_terms;
+  std::vector<Matrix4> within;  ///< covariance that lasting noise adds, given the states; likewise
 
   [[nodiscard]] int landmark_count() const { return static_cast<int>(landmarks.size()); }
   [[nodiscard]] int nodes() const { return landmark_count() + static_cast<int>(poses.size()); }
@@ -93,6 +111,9 @@ struct ProblemOptions {
   std::vector<std::vector<TimeSpan>> left_out = {};
 };
 
+/// What whitens a measurement with further noise: of the leading rows x rows of (W'W)^-1 + more.
+[[nodiscard]] Matrix4 whitener_with(const Matrix4& whitener, const Matrix4& more, int rows);
+
 /// Inverse Cholesky factor of a covariance's leading rows x rows.
 [[nodiscard]] Matrix4 whitener_of(const Matrix4& covariance, int rows);
 
@@ -104,6 +125,7 @@ struct ProblemOptions {
 struct RecordingState {
   std::vector<Vector2> landmarks;  ///< m, map frame
   std::vector<Pose> poses;         ///< map frame; headings not wrapped
+  Eigen::VectorXd noise = {};      ///< noise states; empty: all 0
 };
 
 /// Sighting, "landmark 12 at t = 3.5 s", and so on: a measurement in the user's words.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_system.hpp"
 
+#include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
 
 #include <cmath>
@@ -16,7 +17,30 @@ std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge&
   std::vector<int> sizes(idx(problem.nodes()), 3);
   for (int node = 0; node < problem.landmark_count(); ++node) sizes[idx(node)] = 2;
   if (gauge.hold_landmark) sizes[0] = 0;
+  sizes.resize(sizes.size() + problem.noise_states.size(), 1);
   return sizes;
+}
+
+/// Of each measurement's noise terms with its nodes and with those before them; then of each state
+/// with the one before it.
+void add_state_pairs(const RecordingProblem& problem, std::vector<NodePair>& pairs) {
+  for (std::size_t k = 0; k < problem.noise_terms.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    const std::vector<NoiseTerm>& terms = problem.noise_terms[k];
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const int node = problem.nodes() + terms[t].state;
+      pairs.push_back({one.from, node});
+      if (one.to >= 0) pairs.push_back({one.to, node});
+      for (std::size_t other = 0; other < t; ++other) {
+        pairs.push_back({problem.nodes() + terms[other].state, node});
+      }
+    }
+  }
+  for (std::size_t state = 0; state < problem.noise_states.size(); ++state) {
+    const int previous = problem.noise_states[state].previous;
+    if (previous < 0) continue;
+    pairs.push_back({problem.nodes() + previous, problem.nodes() + static_cast<int>(state)});
+  }
 }
 
 std::vector<NodePair> pairs_of(const RecordingProblem& problem) {
@@ -24,12 +48,14 @@ std::vector<NodePair> pairs_of(const RecordingProblem& problem) {
   for (const Measurement& one : problem.measurements) {
     if (one.to >= 0) pairs.push_back({one.from, one.to});
   }
+  add_state_pairs(problem, pairs);
   return pairs;
 }
 
 BlockSystem lay_out(const RecordingProblem& problem, const RecordingGauge& gauge) {
   const std::vector<NodePair> pairs = pairs_of(problem);
-  return {sizes_of(problem, gauge), pairs, elimination_order(problem.nodes(), pairs)};
+  const int nodes = problem.nodes() + static_cast<int>(problem.noise_states.size());
+  return {sizes_of(problem, gauge), pairs, elimination_order(nodes, pairs)};
 }
 
 bool touches_drives(const EffectParameters& border) {
@@ -55,6 +81,14 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectPa
     rows_ += one.rows;
     pair_.push_back(one.to >= 0 ? pair++ : -1);
   }
+  for (std::size_t k = 0; k < problem.noise_terms.size(); ++k) {
+    const int terms = static_cast<int>(problem.noise_terms[k].size());
+    state_pair_.push_back(pair);
+    pair += terms * (problem.measurements[k].to >= 0 ? 2 : 1) + terms * (terms - 1) / 2;
+  }
+  step_pair_ = pair;
+  measured_rows_ = rows_;
+  rows_ += static_cast<int>(problem.noise_states.size());
   residuals_.resize(rows_);
   squared_errors_.resize(problem.measurements.size());
   M_.resize(rows_, static_cast<Eigen::Index>(unknown_.size()));
@@ -80,26 +114,38 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   const bool with_drives = touches_drives(border_);
   if (with_drives) motions_.resize(problem_.measurements.size());
   const Eigen::VectorXd all = offsets_at(border_, coefficients);
+  const auto states = static_cast<Eigen::Index>(problem_.noise_states.size());
+  const Eigen::VectorXd noise =
+      state.noise.size() == states ? state.noise : Eigen::VectorXd::Zero(states);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    const Vector4 value =
-        (one.kind == MeasurementKind::segment && with_drives ? moved_by_effects(k, all)
-                                                             : one.value) +
-        one.linearization_offset;
-    const MeasurementRows rows =
-        measurement_rows(problem_, one, state, value, view_of(border_, all, one));
+    const bool segment = one.kind == MeasurementKind::segment;
+    Vector4 value =
+        (segment && with_drives ? moved_by_effects(k, all) : one.value) + one.linearization_offset;
+    ViewPattern view = view_of(border_, all, one);
+    if (states > 0 && segment) value += lasting_in_segment(problem_, k, noise);
+    if (states > 0 && !segment) view = lasting_in_view(problem_, k, view, noise);
+    const MeasurementRows rows = measurement_rows(problem_, one, state, value, view);
     const Matrix4 W = root_weights_[k] * one.whitener;
     Whitened& J = J_[k];
     J.from = W * rows.by_from;
     J.to = W * rows.by_to;
     if (heading_held(one.from)) J.from.col(2).setZero();
     if (heading_held(one.to)) J.to.col(2).setZero();
+    if (!problem_.noise_terms.empty()) {
+      J.states.clear();
+      for (const NoiseTerm& term : problem_.noise_terms[k]) {
+        J.states.push_back(W * error_by(one, rows.by_view, term));
+      }
+    }
     const Vector4 error = W * rows.error;
     squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
     add_to_normal(k, J, error);
+    if (!J.states.empty()) add_states_to_normal(k, J, error);
     evaluate_effect_parameters(k, rows);
   }
+  linearise_states(noise);
   Matrix3 held = Matrix3::Zero();
   held(2, 2) = 1.0;
   for (int node = problem_.landmark_count(); node < problem_.nodes(); ++node) {
@@ -142,6 +188,77 @@ void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const V
   } else {
     normal_.add_coupling<3, 3>(pair_[k], coupling);
   }
+}
+
+void RecordingSystem::add_states_to_normal(std::size_t k, const Whitened& rows,
+                                           const Vector4& error) {
+  const Measurement& one = problem_.measurements[k];
+  const std::vector<NoiseTerm>& terms = problem_.noise_terms[k];
+  int pair = state_pair_[k];
+  const auto couple = [&](int node, const RowsByNode& J, const Vector4& column) {
+    const Eigen::Vector3d coupling = J.transpose() * column;
+    if (problem_.is_landmark(node)) {
+      normal_.add_coupling<2, 1>(pair, Eigen::Vector2d(coupling.head<2>()));
+    } else {
+      normal_.add_coupling<3, 1>(pair, coupling);
+    }
+    ++pair;
+  };
+  for (std::size_t t = 0; t < terms.size(); ++t) {
+    const int node = state_node(terms[t].state);
+    const Vector4& column = rows.states[t];
+    normal_.add_diagonal<1>(node, Eigen::Matrix<double, 1, 1>(column.squaredNorm()));
+    gradient_[normal_.offset(node)] += column.dot(error);
+    couple(one.from, rows.from, column);
+    if (one.to >= 0) couple(one.to, rows.to, column);
+    for (std::size_t other = 0; other < t; ++other) {
+      normal_.add_coupling<1, 1>(pair++,
+                                 Eigen::Matrix<double, 1, 1>(rows.states[other].dot(column)));
+    }
+  }
+}
+
+void RecordingSystem::linearise_states(const Eigen::VectorXd& states) {
+  int pair = step_pair_;
+  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
+    const NoiseState& state = problem_.noise_states[k];
+    const int node = state_node(static_cast<int>(k));
+    const double own = 1.0 / state.sd;
+    const double before = state.previous < 0 ? 0.0 : -state.keep / state.sd;
+    double error = own * states[static_cast<Eigen::Index>(k)];
+    if (state.previous >= 0) error += before * states[state.previous];
+    residuals_[state_row(k)] = error;
+    normal_.add_diagonal<1>(node, Eigen::Matrix<double, 1, 1>(own * own));
+    gradient_[normal_.offset(node)] += own * error;
+    if (state.previous < 0) continue;
+    const int previous = state_node(state.previous);
+    normal_.add_diagonal<1>(previous, Eigen::Matrix<double, 1, 1>(before * before));
+    normal_.add_coupling<1, 1>(pair++, Eigen::Matrix<double, 1, 1>(own * before));
+    gradient_[normal_.offset(previous)] += before * error;
+  }
+}
+
+std::vector<RecordingSystem::Link> RecordingSystem::links_of(std::size_t k) const {
+  const Measurement& one = problem_.measurements[k];
+  const Whitened& J = J_[k];
+  std::vector<Link> links;
+  for (const auto& [node, rows] : {std::pair(one.from, &J.from), std::pair(one.to, &J.to)}) {
+    if (node < 0 || normal_.size(node) == 0) continue;
+    links.push_back({node, rows->leftCols(normal_.size(node))});
+  }
+  for (std::size_t t = 0; t < J.states.size(); ++t) {
+    links.push_back({state_node(problem_.noise_terms[k][t].state), J.states[t]});
+  }
+  return links;
+}
+
+std::vector<RecordingSystem::NodeRows> RecordingSystem::node_rows(std::size_t measurement) const {
+  const int rows = problem_.measurements[measurement].rows;
+  std::vector<NodeRows> result;
+  for (const Link& link : links_of(measurement)) {
+    result.push_back({link.node, link.J.topRows(rows)});
+  }
+  return result;
 }
 
 Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets) {
@@ -195,6 +312,17 @@ Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) c
       result.middleRows(normal_.offset(node), size) +=
           J->topLeftCorner(one.rows, size).transpose() * part;
     }
+    for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
+      const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
+      result.row(at) += J_[k].states[t].head(one.rows).transpose() * part;
+    }
+  }
+  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
+    const NoiseState& state = problem_.noise_states[k];
+    const auto part = rows.row(state_row(k));
+    result.row(normal_.offset(state_node(static_cast<int>(k)))) += part / state.sd;
+    if (state.previous < 0) continue;
+    result.row(normal_.offset(state_node(state.previous))) -= state.keep / state.sd * part;
   }
   return result;
 }
@@ -203,12 +331,23 @@ Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, nodes.cols());
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
+    auto part = result.middleRows(first_row_[k], one.rows);
     for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
       if (node < 0 || normal_.size(node) == 0) continue;
       const int size = normal_.size(node);
-      result.middleRows(first_row_[k], one.rows) +=
-          J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
+      part += J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
     }
+    for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
+      const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
+      part += J_[k].states[t].head(one.rows) * nodes.row(at);
+    }
+  }
+  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
+    const NoiseState& state = problem_.noise_states[k];
+    auto part = result.row(state_row(k));
+    part = nodes.row(normal_.offset(state_node(static_cast<int>(k)))) / state.sd;
+    if (state.previous < 0) continue;
+    part -= state.keep / state.sd * nodes.row(normal_.offset(state_node(state.previous)));
   }
   return result;
 }
@@ -216,11 +355,9 @@ Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
 Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const {
   const Measurement& one = problem_.measurements[measurement];
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns() + M_.cols(), one.rows);
-  for (const auto& [node, J] :
-       {std::pair(one.from, &J_[measurement].from), std::pair(one.to, &J_[measurement].to)}) {
-    if (node < 0 || normal_.size(node) == 0) continue;
-    const int size = normal_.size(node);
-    result.middleRows(normal_.offset(node), size) = J->topLeftCorner(one.rows, size).transpose();
+  for (const Link& link : links_of(measurement)) {
+    result.middleRows(normal_.offset(link.node), link.J.cols()) =
+        link.J.topRows(one.rows).transpose();
   }
   result.bottomRows(M_.cols()) = M_.middleRows(first_row_[measurement], one.rows).transpose();
   return result;
@@ -264,6 +401,11 @@ RecordingSystem::Step RecordingSystem::solve_step(double damping) {
 
 RecordingState RecordingSystem::moved(const RecordingState& state, const Step& step) const {
   RecordingState result = state;
+  const auto states = static_cast<Eigen::Index>(problem_.noise_states.size());
+  if (result.noise.size() != states) result.noise = Eigen::VectorXd::Zero(states);
+  for (Eigen::Index k = 0; k < states; ++k) {
+    result.noise[k] += step.nodes[normal_.offset(state_node(static_cast<int>(k)))];
+  }
   for (int node = 0; node < problem_.nodes(); ++node) {
     if (normal_.size(node) == 0) continue;
     const int at = normal_.offset(node);

@@ -13,6 +13,9 @@
 //
 // The sparse pattern is laid out and analysed once; adding an effect never changes it.
 //
+// Noise that lasts has states of its own (noise_states.hpp): nodes of one unknown after the poses,
+// columns of J; and rows of their own, one each, that follow those of all measurements in r and M.
+//
 // Held, where nothing measures it: the first landmark at the origin, and the first pose's heading.
 #pragma once
 
@@ -98,6 +101,16 @@ class RecordingSystem {
   /// J'v and J x, J as linearised.
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
+  /// J's part of a measurement by the nodes that it touches: nodes of normal_equations().
+  struct NodeRows {
+    int node = -1;
+    Eigen::MatrixXd rows;
+  };
+  [[nodiscard]] std::vector<NodeRows> node_rows(std::size_t measurement) const;
+  /// Its part by the second node, rows x 3 (a landmark's third column is zero), held or not.
+  [[nodiscard]] Eigen::Matrix<double, Eigen::Dynamic, 3> rows_by_to(std::size_t measurement) const {
+    return J_[measurement].to.topRows(problem_.measurements[measurement].rows);
+  }
   /// A measurement's rows of J and M as a dense matrix over all unknowns, transposed.
   [[nodiscard]] Eigen::MatrixXd transposed_rows(std::size_t measurement) const;
 
@@ -113,6 +126,12 @@ class RecordingSystem {
  private:
   struct Whitened {
     RowsByNode from, to;
+    std::vector<Vector4> states;  ///< of the measurement's noise terms
+  };
+  /// A node and a measurement's whitened rows by its unknowns.
+  struct Link {
+    int node;
+    Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 3> J;
   };
   /// A segment's four numbers with the effects, and where they were reckoned.
   struct Motion {
@@ -120,6 +139,14 @@ class RecordingSystem {
     Vector4 value = Vector4::Zero();
     Eigen::Matrix<double, 4, Eigen::Dynamic> slopes{4, 0};
   };
+  /// Of all that a measurement touches and that is not held.
+  [[nodiscard]] std::vector<Link> links_of(std::size_t k) const;
+  [[nodiscard]] int state_node(int state) const { return problem_.nodes() + state; }
+  [[nodiscard]] int state_row(std::size_t state) const {
+    return measured_rows_ + static_cast<int>(state);
+  }
+  void linearise_states(const Eigen::VectorXd& states);
+  void add_states_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
@@ -134,7 +161,10 @@ class RecordingSystem {
   RecordingGauge gauge_;
   std::vector<double> root_weights_;
   std::vector<int> first_row_;
-  std::vector<int> pair_;  ///< of each measurement, -1: none
+  std::vector<int> pair_;        ///< of each measurement, -1: none
+  std::vector<int> state_pair_;  ///< of each measurement: the first pair of its noise terms
+  int step_pair_ = 0;            ///< the first of those between a state and the one before
+  int measured_rows_ = 0;
   int rows_ = 0;
   BlockSystem normal_;
   std::vector<Whitened> J_;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_noise.hpp"
 
+#include "estimation/noise_states.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
@@ -118,40 +119,64 @@ SegmentNoise segment_noise(const Drive& drive, const std::vector<SegmentRow>& ro
   return result;
 }
 
+namespace {
+
+/// Of one segment: from n = 0; the second look takes H where the first found n.
+SegmentNoise believed(const RecordingProblem& problem, std::size_t k,
+                      const std::vector<SegmentRow>& rows, const RowsAlone& alone,
+                      const Noise& noise, const RecordingState& state) {
+  const Measurement& one = problem.measurements[k];
+  const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
+  const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
+  const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
+  const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());
+  const Vector4 z = Vector4(chord.x(), chord.y(), to.heading - from.heading, from.heading) -
+                    lasting_in_segment(problem, k, state.noise);
+  std::vector<Eigen::Vector3d> missing;
+  SegmentNoise at = noise_at(rows, alone, noise, missing);
+  for (int look = 0; look < 2; ++look) {
+    Vector4 error = z - at.value;
+    error[3] = wrap_angle(error[3]);
+    const Matrix4 W = whitener_of(at.covariance + within, one.rows);
+    const Vector4 pull = W.transpose() * (W * error);
+    missing.resize(rows.size());
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      missing[row] = alone.Q[row] * at.H[row].transpose() * pull;
+    }
+    at = noise_at(rows, alone, noise, missing);
+  }
+  return at;
+}
+
+}  // namespace
+
+SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
+                            const std::vector<Recording>& recordings, const Model& model,
+                            const EffectParameters& border, const Eigen::VectorXd& offsets,
+                            const RecordingState& state) {
+  const Measurement& one = problem.measurements[k];
+  const std::vector<SegmentRow>& rows = problem.segments[one.source];
+  const RowsAlone alone =
+      rows_alone(recordings[idx(one.session)].drive, rows, model.robot, model.noise,
+                 drive_patterns(border, idx(one.session)), offsets);
+  return believed(problem, k, rows, alone, model.noise, state);
+}
+
 double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state) {
   double most = 0.0;
-  for (Measurement& one : problem.measurements) {
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    Measurement& one = problem.measurements[k];
     if (one.kind != MeasurementKind::segment) continue;
-    const std::vector<SegmentRow>& rows = problem.segments[one.source];
-    const Drive& drive = recordings[idx(one.session)].drive;
-    const auto patterns = drive_patterns(border, idx(one.session));
-    const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
-    const Pose& to = state.poses[idx(one.to - problem.landmark_count())];
-    const Vector2 chord = rotation(-from.heading) * (to.position() - from.position());
-    const Vector4 z(chord.x(), chord.y(), to.heading - from.heading, from.heading);
-    const RowsAlone alone = rows_alone(drive, rows, model.robot, model.noise, patterns, offsets);
-    // From n = 0; the second look takes H where the first found n.
-    std::vector<Eigen::Vector3d> missing;
-    SegmentNoise at = noise_at(rows, alone, model.noise, missing);
-    for (int look = 0; look < 2; ++look) {
-      Vector4 error = z - at.value;
-      error[3] = wrap_angle(error[3]);
-      const Matrix4 W = whitener_of(at.covariance, one.rows);
-      const Vector4 pull = W.transpose() * (W * error);
-      missing.resize(rows.size());
-      for (std::size_t k = 0; k < rows.size(); ++k) {
-        missing[k] = alone.Q[k] * at.H[k].transpose() * pull;
-      }
-      at = noise_at(rows, alone, model.noise, missing);
-    }
+    const SegmentNoise at = believed_noise(problem, k, recordings, model, border, offsets, state);
+    const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
     Vector4 linearization_offset = at.value - at.recorded;
     linearization_offset[3] = one.rows == 4 ? wrap_angle(linearization_offset[3]) : 0.0;
     const Vector4 change = one.whitener * (linearization_offset - one.linearization_offset);
     most = std::max(most, change.cwiseAbs().maxCoeff());
     one.linearization_offset = linearization_offset;
-    one.whitener = whitener_of(at.covariance, one.rows);
+    one.whitener = whitener_of(at.covariance + within, one.rows);
   }
   return most;
 }

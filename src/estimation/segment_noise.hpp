@@ -43,6 +43,13 @@ struct SegmentNoise {
     const std::vector<const std::vector<DrivePattern>*>& patterns, const Eigen::VectorXd& offsets,
     const std::vector<Eigen::Vector3d>& missing);
 
+/// The noise of a problem's k-th measurement, a segment, at the n that the state believes.
+[[nodiscard]] SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
+                                          const std::vector<Recording>& recordings,
+                                          const Model& model, const EffectParameters& border,
+                                          const Eigen::VectorXd& offsets,
+                                          const RecordingState& state);
+
 /// Takes all segments' noise where the state believes it: changes their `bend` and whitener.
 /// Returns the largest change of a value, in standard deviations.
 double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,

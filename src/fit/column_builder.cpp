@@ -62,6 +62,7 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     }
     rows_ += one.rows;
   }
+  rows_ += static_cast<int>(problem.noise_states.size());
   take_training_segments();
 }
 

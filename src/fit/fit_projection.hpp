@@ -19,12 +19,6 @@
 
 namespace trussmap {
 
-/// A measurement's whitened rows by its two nodes, as the system has them.
-struct NodeRows {
-  RowsByNode from = RowsByNode::Zero();
-  RowsByNode to = RowsByNode::Zero();
-};
-
 class FitProjection {
  public:
   /// `problem` has the fit's measurements, perhaps with other weights; `system` is factorised.
@@ -36,7 +30,10 @@ class FitProjection {
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& columns) const;
   /// P_kk, rows x rows of the measurement; the unit matrix where it is left out.
   [[nodiscard]] Eigen::MatrixXd own_block(std::size_t measurement) const;
-  [[nodiscard]] const NodeRows& rows_of(std::size_t measurement) const { return J_[measurement]; }
+  /// A sighting's whitened rows by the landmark, rows x 2; zero where it is left out.
+  [[nodiscard]] Eigen::MatrixXd rows_by_landmark(std::size_t measurement) const {
+    return system_.rows_by_to(measurement).leftCols<2>();
+  }
   [[nodiscard]] const Eigen::MatrixXd& set_aside() const { return Q_; }
   [[nodiscard]] bool left_out(std::size_t measurement) const { return left_out_[measurement]; }
 
@@ -45,7 +42,6 @@ class FitProjection {
   const RecordingSystem& system_;
   SelectedInverse inverse_;
   std::vector<bool> left_out_;
-  std::vector<NodeRows> J_;
   Eigen::MatrixXd Q_;
 };
 

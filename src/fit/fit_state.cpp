@@ -131,6 +131,7 @@ class Fitter {
     for (const std::string& name : fit_.problem.landmarks) {
       state_.landmarks.push_back(landmarks.at(name));
     }
+    state_.noise.resize(0);
     state_.poses.clear();
     for (const PoseNode& node : fit_.problem.poses) {
       const std::size_t session = idx(node.session);
@@ -463,8 +464,9 @@ class Fitter {
 
   /// Neither a coefficient nor the path has moved, from which the columns were made.
   [[nodiscard]] bool settled() const {
-    constexpr double kStill = 1e-6;  // m and rad
-    if (offset_change_ > 1e-3) return false;
+    constexpr double kStill = 1e-6;        // m and rad
+    constexpr double kStillOffset = 1e-2;  // sds of a segment's value
+    if (offset_change_ > kStillOffset) return false;
     if (fit_.columns.border.empty() || (only_common() && !reads_compass())) return true;
     return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill
                                                              : change_ < still_enough();
@@ -487,6 +489,11 @@ class Fitter {
       const auto at = static_cast<Eigen::Index>(k);
       fit_.effects[one.effect].sd[one.place] =
           std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
+    }
+    const std::vector<NoiseProcess>& processes = fit_.model.noise.processes;
+    if (std::any_of(processes.begin(), processes.end(),
+                    [](const NoiseProcess& one) { return one.tails > 0.0; })) {
+      fit_.adjustment.warnings.push_back("tails of the noise are not used: it is taken as normal");
     }
     if (!fit_.settled) {
       fit_.adjustment.warnings.push_back(

@@ -3,7 +3,7 @@
 #include "io/landmark_conversion.hpp"
 
 #include "geometry/index.hpp"
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <charconv>
 #include <stdexcept>

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/channel_physics.hpp"
 #include "io/csv.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
@@ -108,6 +109,10 @@ class ModelReader {
 
   void read_noise(const toml::table& noise, Noise& result) const {
     for (const auto& [key, node] : noise) {
+      if (key == "process") {
+        read_processes(node, result);
+        continue;
+      }
       const NoiseKey* known = nullptr;
       std::string names;
       for (const NoiseKey& one : kNoise) {
@@ -117,11 +122,72 @@ class ModelReader {
       const std::string name(key.str());
       if (known == nullptr) {
         fail(key.source(),
-             fmt::format("key \"{}\" in [noise] is unknown, expected one of {}", name, names));
+             fmt::format("key \"{}\" in [noise] is unknown, expected one of {}, process", name,
+                         names));
       }
       const double value = number(node, name);
       if (value < 0.0) fail(node.source(), name + " is negative, expected 0 or more");
       result.*(known->value) = value;
+    }
+  }
+
+  void read_processes(const toml::node& node, Noise& noise) const {
+    const toml::array* processes = node.as_array();
+    if (processes == nullptr || !processes->is_array_of_tables()) {
+      fail(node.source(), "process is no list of tables, expected [[noise.process]]");
+    }
+    for (const toml::node& one : *processes) {
+      noise.processes.push_back(read_process(*one.as_table()));
+    }
+  }
+
+  [[nodiscard]] NoiseProcess read_process(const toml::table& table) const {
+    NoiseProcess result;
+    result.line = static_cast<int>(table.source().begin.line);
+    for (const auto& [key, node] : table) {
+      const toml::node& value = node;
+      if (key == "channel") {
+        result.channel = told(value, "", [&] { return channel_named(text(value, "channel")); });
+      } else if (key == "process") {
+        result.process = told(value, "", [&] { return process_named(text(value, "process")); });
+      } else if (key == "sd" || key == "length" || key == "tails") {
+        const std::string name(key.str());
+        const double size = number(value, name);
+        const double least = key == "tails" ? 2.0 : 0.0;
+        if (size <= least) {
+          fail(value.source(),
+               name + " is " + csv_number(size) + ", expected more than " + csv_number(least));
+        }
+        (key == "sd" ? result.sd : key == "length" ? result.length : result.tails) = size;
+      } else {
+        fail(key.source(), "key \"" + std::string(key.str()) +
+                               "\" in [[noise.process]] is unknown, expected channel, process, "
+                               "sd, length or tails");
+      }
+    }
+    check_process(table, result);
+    return result;
+  }
+
+  void check_process(const toml::table& table, const NoiseProcess& process) const {
+    for (const char* needed : {"channel", "process", "sd"}) {
+      if (!table.contains(needed)) {
+        fail(table.source(), std::string("a noise process has no ") + needed +
+                                 ", expected channel, process and sd");
+      }
+    }
+    const std::string name(name_of(process.process));
+    const char* unit = process.process == ProcessKind::correlated_in_t ? "s" : "m";
+    if (is_correlated(process.process) && process.length == 0.0) {
+      fail(table.source(), "a process " + name + " has no length, expected one (" + unit + ")");
+    }
+    if (!is_correlated(process.process) && process.length != 0.0) {
+      fail(table.get("length")->source(), "a process " + name + " has a length, expected none");
+    }
+    if (process.process == ProcessKind::per_pass && acts_on(process.channel) != ActsOn::views) {
+      fail(table.source(), "channel " + std::string(name_of(process.channel)) +
+                               " has no passes, expected lever, lever_left, range, range_scale, "
+                               "bearing or delay");
     }
   }
 
@@ -237,6 +303,19 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+std::string process_text(const NoiseProcess& process) {
+  std::string text =
+      "\n[[noise.process]]\nchannel = " + quoted(std::string(name_of(process.channel))) +
+      "\nprocess = " + quoted(std::string(name_of(process.process))) +
+      "\nsd = " + csv_number(process.sd) + "\n";
+  if (process.length > 0.0) {
+    text += "length = " + csv_number(process.length) +
+            (process.process == ProcessKind::correlated_in_t ? "  # s\n" : "  # m\n");
+  }
+  if (process.tails > 0.0) text += "tails = " + csv_number(process.tails) + "\n";
+  return text;
+}
+
 }  // namespace
 
 Model read_model(const std::filesystem::path& file) {
@@ -258,6 +337,7 @@ std::string format_model(const Model& model) {
     if (value == 0.0 && defaults.*(key.value) == 0.0) continue;  // an optional law that is off
     text += std::string(key.name) + " = " + csv_number(value) + "  # " + key.unit + "\n";
   }
+  for (const NoiseProcess& process : model.noise.processes) text += process_text(process);
   for (const Effect& effect : model.effects) {
     text += "\n[[effect]]\nname = " + quoted(effect.name) + "\n";
     text += "channel = " + quoted(std::string(name_of(effect.channel))) + "\nshape = [";

@@ -3,7 +3,7 @@
 #include "io/csv.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
-#include "trussmap/runs_files.hpp"
+#include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "geometry/index.hpp"
 #include "truss/measured_truss.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 namespace trussmap {
 LinearAdjustment adjust_linear(const LandmarkGraph& map) {

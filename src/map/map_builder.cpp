@@ -11,7 +11,7 @@
 #include "map/nearest_landmarks.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "map/nearest_landmarks.hpp"
 #include "map/refinement.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,41 +3,11 @@
 #include "trussmap/dead_reckoning.hpp"
 
 #include "odometry/merge.hpp"
+#include "odometry/row_reckoner.hpp"
 
 #include <cmath>
 
 namespace trussmap {
-namespace {
-
-/// Moves the estimate by a motion given in the robot's frame.
-PoseEstimate moved(const PoseEstimate& start, const Pose& displacement, const Matrix3& covariance) {
-  const Motion end = then({start.pose, start.covariance}, {displacement, covariance});
-  return {end.displacement, end.covariance};
-}
-
-/// What wheels show, and a slip to the left besides that is spread evenly along the same arc.
-Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
-  Pose end = arc_displacement(travel, wheelbase);
-  if (slip == 0.0) return end;
-  const double swing = 0.5 * (travel.right - travel.left);
-  const Vector2 aside =
-      quarter_turn(arc_displacement({slip - swing, slip + swing}, wheelbase).position());
-  end.x += aside.x();
-  end.y += aside.y();
-  return end;
-}
-
-void correct_heading(PoseEstimate& estimate, double reading, double variance) {
-  const double innovation = wrap_angle(reading - estimate.pose.heading);
-  const double total = estimate.covariance(2, 2) + variance;
-  const Eigen::Vector3d gain = estimate.covariance.col(2) / total;
-  estimate.pose.x += gain(0) * innovation;
-  estimate.pose.y += gain(1) * innovation;
-  estimate.pose.heading += gain(2) * innovation;
-  estimate.covariance = symmetrised(estimate.covariance - gain * estimate.covariance.row(2));
-}
-
-}  // namespace
 
 Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
                        const Noise& noise) {
@@ -96,30 +66,31 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
                          const Robot& robot, const Noise& noise, double readings_used_until,
                          const std::vector<double>& slip) {
   const std::vector<DriveRow> rows = rows_between(drive, from, to);
-  const auto displacement = [&](const DriveRow& row) {
-    return displacement_of(travel_of(drive, row), slip.empty() ? 0.0 : row.part * slip[row.row],
-                           robot.wheelbase);
+  const auto slip_in = [&slip](const DriveRow& row) {
+    return slip.empty() ? 0.0 : row.part * slip[row.row];
   };
-  PoseEstimate estimate = start;
   if (drive.has_compass()) {
+    RowReckoner reckoner(start, true);
     for (const DriveRow& row : rows) {
-      const WheelTravel travel = travel_of(drive, row);
-      estimate =
-          moved(estimate, displacement(row), arc_covariance(travel, row.duration, robot, noise));
-      const double reading = drive.heading[row.row];
-      if (row.ends && !std::isnan(reading) && drive.t[row.row] > readings_used_until) {
-        correct_heading(estimate, reading, noise.compass * noise.compass);
-      }
+      const bool reads = row.ends && drive.t[row.row] > readings_used_until;
+      reckoner.take({travel_of(drive, row), row.duration, slip_in(row),
+                     reads ? drive.heading[row.row] : kAbsent},
+                    robot, noise);
     }
-    return estimate;
+    return reckoner.at();
   }
+  PoseEstimate estimate = start;
   for (const DriveArc& arc : merge_rows(drive, rows, robot.wheelbase, {noise.left, noise.right})) {
-    estimate = moved(estimate, arc_displacement(arc.travel, robot.wheelbase),
-                     arc_covariance(arc.travel, arc.duration, robot, noise));
+    const Motion end = then({estimate.pose, estimate.covariance},
+                            {arc_displacement(arc.travel, robot.wheelbase),
+                             arc_covariance(arc.travel, arc.duration, robot, noise)});
+    estimate = {end.displacement, end.covariance};
   }
-  Pose exact = start.pose;
-  for (const DriveRow& row : rows) exact = compose(exact, displacement(row));
-  estimate.pose = exact;
+  estimate.pose = start.pose;
+  for (const DriveRow& row : rows) {
+    estimate.pose = compose(estimate.pose,
+                            displacement_of(travel_of(drive, row), slip_in(row), robot.wheelbase));
+  }
   return estimate;
 }
 
@@ -127,37 +98,20 @@ std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robo
                                                   const Noise& noise,
                                                   const std::vector<double>& slip) {
   const InitialHeading first = initial_heading(drive, drive.start(), robot, noise);
-  PoseEstimate at;
-  at.pose.heading = first.heading.heading;
-  at.covariance(2, 2) = first.heading.variance;
+  PoseEstimate start;
+  start.pose.heading = first.heading.heading;
+  start.covariance(2, 2) = first.heading.variance;
+  RowReckoner reckoner(start, drive.has_compass());
   std::vector<PoseEstimate> result;
   result.reserve(drive.rows());
-  double before = drive.start();
-  if (drive.has_compass()) {
-    for (const double t : drive.t) {
-      at = dead_reckon(at, drive, before, t, robot, noise, first.reading_time, slip);
-      before = t;
-      result.push_back(at);
-    }
-    return result;
-  }
-  const std::vector<DriveRow> rows = rows_between(drive, before, drive.t.back());
-  std::size_t row = 0;
-  for (const DriveArc& arc : merge_rows(drive, rows, robot.wheelbase, {noise.left, noise.right})) {
-    const PoseEstimate anchor = at;
-    WheelTravel part;
-    double duration = 0.0;
-    for (const std::size_t end = row + arc.rows; row < end; ++row) {
-      const WheelTravel travel = travel_of(drive, rows[row]);
-      part = {part.left + travel.left, part.right + travel.right};
-      duration += rows[row].duration;
-      const Pose exact = compose(
-          at.pose, displacement_of(travel, slip.empty() ? 0.0 : slip[row], robot.wheelbase));
-      at = moved(anchor, arc_displacement(part, robot.wheelbase),
-                 arc_covariance(part, duration, robot, noise));
-      at.pose = exact;
-      result.push_back(at);
-    }
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const bool reads = drive.has_compass() && drive.t[row] > first.reading_time;
+    reckoner.take({{drive.left[row], drive.right[row]},
+                   drive.duration(row),
+                   slip.empty() ? 0.0 : slip[row],
+                   reads ? drive.heading[row] : kAbsent},
+                  robot, noise);
+    result.push_back(reckoner.at());
   }
   return result;
 }

@@ -44,30 +44,6 @@ bool same_arc(const DriveArc& arc, const WheelTravel& row, const WheelNoise& noi
   return std::abs(curvature_of(arc.travel) - curvature_of(row)) <= tolerance;
 }
 
-/// An arc as it grows, with the rows' own displacement.
-struct Growing {
-  DriveArc arc;
-  Pose rows;
-  double path = 0.0;  // of the wheels, m
-
-  [[nodiscard]] Growing with(const WheelTravel& travel, double duration, double wheelbase) const {
-    Growing longer = *this;
-    longer.arc.travel.left += travel.left;
-    longer.arc.travel.right += travel.right;
-    longer.arc.duration += duration;
-    ++longer.arc.rows;
-    longer.rows = compose(rows, arc_displacement(travel, wheelbase));
-    longer.path += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
-    return longer;
-  }
-
-  /// Many gentle bends add up: each row may be like the arc, and the whole not.
-  [[nodiscard]] bool keeps_shape(double wheelbase) const {
-    const Pose end = arc_displacement(arc.travel, wheelbase);
-    return (end.position() - rows.position()).norm() <= kSameShape * path;
-  }
-};
-
 }  // namespace
 
 std::vector<DriveRow> rows_between(const Drive& drive, double from, double to) {
@@ -87,20 +63,39 @@ WheelTravel travel_of(const Drive& drive, const DriveRow& row) {
   return {row.part * drive.left[row.row], row.part * drive.right[row.row]};
 }
 
+GrowingArc GrowingArc::with(const WheelTravel& travel, double duration, double wheelbase) const {
+  GrowingArc longer = *this;
+  longer.arc_.travel.left += travel.left;
+  longer.arc_.travel.right += travel.right;
+  longer.arc_.duration += duration;
+  ++longer.arc_.rows;
+  longer.rows_ = compose(rows_, arc_displacement(travel, wheelbase));
+  longer.path_ += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+  return longer;
+}
+
+/// Many gentle bends add up: each row may be like the arc, and the whole not.
+bool GrowingArc::keeps_shape(double wheelbase) const {
+  const Pose end = arc_displacement(arc_.travel, wheelbase);
+  return (end.position() - rows_.position()).norm() <= kSameShape * path_;
+}
+
+bool GrowingArc::take(const WheelTravel& travel, double duration, double wheelbase,
+                      const WheelNoise& noise) {
+  const GrowingArc longer = with(travel, duration, wheelbase);
+  const bool joins =
+      arc_.rows > 0 && same_arc(arc_, travel, noise) && longer.keeps_shape(wheelbase);
+  *this = joins ? longer : GrowingArc{}.with(travel, duration, wheelbase);
+  return !joins;
+}
+
 std::vector<DriveArc> merge_rows(const Drive& drive, const std::vector<DriveRow>& rows,
                                  double wheelbase, const WheelNoise& noise) {
   std::vector<DriveArc> arcs;
-  Growing last;
+  GrowingArc last;
   for (const DriveRow& row : rows) {
-    const WheelTravel travel = travel_of(drive, row);
-    const Growing longer = last.with(travel, row.duration, wheelbase);
-    if (!arcs.empty() && same_arc(last.arc, travel, noise) && longer.keeps_shape(wheelbase)) {
-      last = longer;
-    } else {
-      last = Growing{}.with(travel, row.duration, wheelbase);
-      arcs.emplace_back();
-    }
-    arcs.back() = last.arc;
+    if (last.take(travel_of(drive, row), row.duration, wheelbase, noise)) arcs.emplace_back();
+    arcs.back() = last.arc();
   }
   return arcs;
 }

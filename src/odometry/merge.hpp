@@ -41,6 +41,22 @@ struct DriveRow {
 
 [[nodiscard]] WheelTravel travel_of(const Drive& drive, const DriveRow& row);
 
+/// An arc as rows join it, one after the other.
+class GrowingArc {
+ public:
+  /// Takes the next row in; true where it begins a new arc.
+  bool take(const WheelTravel& travel, double duration, double wheelbase, const WheelNoise& noise);
+  [[nodiscard]] const DriveArc& arc() const { return arc_; }
+
+ private:
+  [[nodiscard]] GrowingArc with(const WheelTravel& travel, double duration, double wheelbase) const;
+  [[nodiscard]] bool keeps_shape(double wheelbase) const;
+
+  DriveArc arc_;
+  Pose rows_;          ///< the rows' own displacement
+  double path_ = 0.0;  ///< of the wheels, m
+};
+
 /// The arcs of these rows, in order.
 [[nodiscard]] std::vector<DriveArc> merge_rows(const Drive& drive,
                                                const std::vector<DriveRow>& rows, double wheelbase,

@@ -71,7 +71,6 @@ std::vector<double> slopes(const Drive& drive, const std::vector<Span>& spans,
 }
 
 std::vector<double> reversals(const std::vector<double>& travel) {
-  constexpr double kMoving = 1e-6;  // m per row
   std::vector<double> events(travel.size(), 0.0);
   double sense = 0.0;
   for (std::size_t row = 0; row < travel.size(); ++row) {
@@ -93,20 +92,18 @@ std::vector<double> beginnings(const std::vector<MotionKind>& kinds, MotionKind 
 
 }  // namespace
 
+MotionKind motion_kind(double left, double right, double duration) {
+  const double fastest = std::max(std::abs(left), std::abs(right));
+  if (fastest < kStandingSpeed * duration) return MotionKind::standing;
+  if (std::abs(left + right) < kSpinShare * std::abs(right - left)) return MotionKind::spinning;
+  return MotionKind::driving;
+}
+
 std::vector<MotionKind> motion_kinds(const Drive& drive) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double left = drive.left[row];
-    const double right = drive.right[row];
-    const double fastest = std::max(std::abs(left), std::abs(right));
-    if (fastest < kStandingSpeed * drive.duration(row)) {
-      kinds.push_back(MotionKind::standing);
-    } else if (std::abs(left + right) < kSpinShare * std::abs(right - left)) {
-      kinds.push_back(MotionKind::spinning);
-    } else {
-      kinds.push_back(MotionKind::driving);
-    }
+    kinds.push_back(motion_kind(drive.left[row], drive.right[row], drive.duration(row)));
   }
   return kinds;
 }

@@ -28,12 +28,16 @@
 
 namespace trussmap {
 
+/// A wheel that travels less in a row is taken as standing, m: its sense tells nothing.
+inline constexpr double kMoving = 1e-6;
 /// Rates are means over so much time about a row, s; over half of it where the kind of motion
 /// changes.
 inline constexpr double kRateWindow = 1.0;
 
 enum class MotionKind { standing, spinning, driving };
 
+/// By a row's travels (m) and duration (s).
+[[nodiscard]] MotionKind motion_kind(double left, double right, double duration);
 /// Kind of motion of each row.
 [[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
 

@@ -51,7 +51,11 @@ std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
       return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
                          diagnosis.tried) +
              (off.empty() ? ""
-                          : " Legs end " + off + " off, as good as this robot's noise allows.");
+                          : " Legs end " + off + " off, as good as this robot's noise allows.") +
+             (diagnosis.under && diagnosis.under->noise.changed()
+                  ? " But the noise is not as the model states it: " +
+                        typeset(in_words(diagnosis.under->noise)) + "."
+                  : "");
     case Diagnosis::Verdict::unexplained_misfit:
       break;
   }

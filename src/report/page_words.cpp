@@ -181,6 +181,12 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
 
 std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
   std::vector<std::string> notes;
+  if (diagnosis.under && diagnosis.under->noise.changed()) {
+    notes.push_back(
+        fmt::format("The noise is not as the model states it: {}. All is judged by the "
+                    "noise as estimated; trussmap fit --noise takes it into the model.",
+                    typeset(in_words(diagnosis.under->noise))));
+  }
   for (const NoiseTest& one : diagnosis.noise) {
     if (one.p_adjusted >= kSignificance) continue;
     notes.push_back(

@@ -3,6 +3,7 @@
 #include "simulation/wheeled_robot.hpp"
 
 #include "geometry/index.hpp"
+#include "simulation/rough_noise.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
@@ -67,24 +68,30 @@ std::vector<SensorRow> sense(const TrueMotion& motion, const WheeledRobot& robot
   return seen;
 }
 
+/// As the wheels show a row of a leg that they misread.
+SensorRow misread(const SensorRow& row, const LegMisreading& leg) {
+  const double forward = 0.5 * (row.left + row.right) * leg.travel;
+  const double apart = 0.5 * (row.right - row.left) * leg.turn;
+  return {row.left + forward - apart, row.right + forward + apart, row.heading};
+}
+
 Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
                    const ChannelGains& gains) {
   const std::vector<SensorRow> sensed = sense(motion, robot, gains);
-  Dice wheels(seed, Stream::wheels);
-  Dice compass(seed, Stream::compass);
+  const std::vector<LegMisreading> legs = leg_misreadings(motion, robot.rough, seed);
+  SensorErrors errors(robot, seed);
   Drive drive;
   Covariate payload{"payload_kg", {}};
   Covariate lights{"lights", {}};
   Covariate temperature{"temperature_C", {}};
   for (const TrueRow& row : motion.rows) {
     const SensorRow& seen = sensed[drive.rows()];
+    const SensorRow shown = legs.empty() ? seen : misread(seen, legs[drive.rows()]);
     drive.t.push_back(row.t);
-    drive.left.push_back(seen.left +
-                         wheels.deviation(robot.noise.left * std::sqrt(std::abs(seen.left))));
-    drive.right.push_back(seen.right +
-                          wheels.deviation(robot.noise.right * std::sqrt(std::abs(seen.right))));
+    drive.left.push_back(shown.left + errors.left(seen.left, row.duration));
+    drive.right.push_back(shown.right + errors.right(seen.right, row.duration));
     if (robot.compass) {
-      drive.heading.push_back(wrap_angle(seen.heading + compass.deviation(robot.noise.compass)));
+      drive.heading.push_back(wrap_angle(seen.heading + errors.compass(row.duration)));
     }
     payload.values.push_back(row.surroundings.payload_kg);
     lights.values.push_back(row.surroundings.lights);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <cmath>
 #include <numbers>

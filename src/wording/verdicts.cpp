@@ -101,7 +101,9 @@ std::string verdict_in_words(const Diagnosis& result) {
       return text + ": " + result.missing;
     case Diagnosis::Verdict::nothing_missing:
       return text +
-             fmt::format(": none of {} effects tried explains more than chance", result.tried);
+             fmt::format(": none of {} effects tried explains more than chance", result.tried) +
+             (result.under && result.under->noise.changed() ? ", but its noise is not as stated"
+                                                            : "");
     case Diagnosis::Verdict::unexplained_misfit:
       break;
   }

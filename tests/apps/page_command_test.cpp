@@ -204,7 +204,8 @@ TEST(PageInBrowser, SaysPlainlyThatNothingExplainsTheErrors) {
     model.replace(value, end - value, std::to_string(std::stod(model.substr(value)) / 3.0));
   }
   const fs::path doubtful = scratch.write("doubtful.toml", model);
-  const json found = page_of(scratch, "diagnose " + folder + " --model " + doubtful.string());
+  const json found =
+      page_of(scratch, "diagnose --stated-noise " + folder + " --model " + doubtful.string());
   expect_alive(found, "diagnose");
   const std::string verdict = found["verdict"];
   EXPECT_NE(verdict.find("no effect explains"), std::string::npos) << verdict;
@@ -212,6 +213,12 @@ TEST(PageInBrowser, SaysPlainlyThatNothingExplainsTheErrors) {
   const std::string html = testing::text_in(scratch.path() / "page.html");
   EXPECT_NE(html.find("Check the noise in the model. Errors beside what it states: "),
             std::string::npos);
+  // Judged by the noise as estimated there is nothing wrong but the noise.
+  const json judged = page_of(scratch, "diagnose " + folder + " --model " + doubtful.string());
+  const std::string again = judged["verdict"];
+  EXPECT_NE(again.find("Nothing is missing"), std::string::npos) << again;
+  EXPECT_NE(again.find("the noise is not as the model states it: wheels "), std::string::npos)
+      << again;
 }
 
 TEST(PageInBrowser, SaysPlainlyThatNothingIsMissing) {

@@ -173,6 +173,10 @@ TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
                         {"--effects " + at + "fitless.toml", "has no coefficients"},
                         {"--effects " + at + "channel.toml", "channel \"lift\" is unknown"},
                         {"--hide --effect wheelbase=0.1", "excludes"},
+                        {"--rough fog", "half, memory, haze, tails, floor"},
+                        {"--rough half,", "unknown rough noise ''"},
+                        {"--rough ''", "unknown rough noise ''"},
+                        {"--rough half --noise-free", "--noise-free excludes --rough"},
                         {"--covariate speed", "\"speed\", which is taken"},
                         {"--covariate 2b", "expected a letter"},
                         {"--speeds 0.9,0.2", "slowest first"},
@@ -184,6 +188,39 @@ TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
     EXPECT_EQ(ran.output.rfind("trussmap: ", 0), 0U) << ran.output;
   }
   EXPECT_EQ(scratch.contents(), before);
+}
+
+TEST(SimulateCommand, RoughNoiseIsNotWhatTheModelStates) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string simulate = "simulate --mesh 3x3 --tours 1 --seed 5 ";
+  struct Pair {
+    const char* without;
+    const char* rough;
+  };
+  for (const Pair& pair : std::vector<Pair>{
+           {"", "--rough all"},
+           {"--hide", "--hide --rough half,haze"},
+           {"--no-compass", "--no-compass --rough tails"},
+           {"--effect 'hard iron=0.2,-0.1'", "--effect 'hard iron=0.2,-0.1' --rough floor"}}) {
+    ASSERT_EQ(run_trussmap(simulate + pair.without + " --out " + at + "a").status, 0);
+    const Ran ran = run_trussmap(simulate + pair.rough + " --out " + at + "b");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_NE(ran.output.find("not what model.toml states"), std::string::npos) << ran.output;
+    const auto files = scratch.contents();
+    EXPECT_NE(files.at("a/drive.csv"), files.at("b/drive.csv")) << pair.rough;
+    for (const char* file : {"model.toml", "sightings.csv", "survey.csv"}) {
+      EXPECT_EQ(files.at(std::string("a/") + file), files.at(std::string("b/") + file)) << file;
+    }
+    EXPECT_EQ(files.contains("a/truth.json"), files.contains("b/truth.json"));
+    if (files.contains("a/truth.json")) {
+      EXPECT_EQ(files.at("a/truth.json"), files.at("b/truth.json"));
+    }
+  }
+  ASSERT_EQ(run_trussmap(simulate + "--rough floor,haze --out " + at + "c --json " + at + "c.json")
+                .status,
+            0);
+  EXPECT_EQ(read_json(scratch.path() / "c.json")["rough"], json({"haze", "floor"}));
 }
 
 TEST(SimulateCommand, HelpListsTheCatalogue) {

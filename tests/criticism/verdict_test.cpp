@@ -34,8 +34,9 @@ TEST(Verdict, EitherQuestionHasHalfTheLevel) {
 
 void expect_agreement(const std::vector<Recording>& recordings, const ModelFit& fit,
                       const std::string& what) {
-  const Comparison compared = compare(recordings, fit);
   const Diagnosis diagnosed = diagnose(recordings, fit);
+  // The same fit: under the noise that the diagnosis has estimated.
+  const Comparison compared = compare(recordings, diagnosed.under->fit);
   EXPECT_EQ(compared.chi2, diagnosed.chi2) << what;
   EXPECT_EQ(compared.dof, diagnosed.dof) << what;
   EXPECT_EQ(compared.coefficients, diagnosed.coefficients) << what;

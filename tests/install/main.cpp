@@ -3,7 +3,6 @@
 //
 // A square of four routes that does not close: its last corner is pulled 0.4 m over to where the
 // first one is, and the bars, all equal, share that out.
-#include "trussmap/stiffness_law.hpp"
 #include "trussmap/truss.hpp"
 
 #include <cmath>

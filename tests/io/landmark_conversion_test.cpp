@@ -4,7 +4,6 @@
 
 #include "geometry/index.hpp"
 #include "trussmap/pose_graph.hpp"
-#include "trussmap/stiffness_law.hpp"
 #include "trussmap/truss.hpp"
 
 #include <Eigen/LU>

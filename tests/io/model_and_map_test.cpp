@@ -49,6 +49,11 @@ TEST_P(BadModel, IsRefusedWithItsLine) {
   EXPECT_EQ(message.rfind(GetParam().message, 0), 0U) << message;
 }
 
+/// A model whose only process begins in line 4, its keys in line 5.
+std::string process_of(const std::string& keys) {
+  return "[noise]\nleft = 0.01\n\n[[noise.process]]\n" + keys;
+}
+
 const Refused kBadModels[] = {
     {"NoToml", "[robot\n", ":1: no TOML: "},
     {"UnknownTable", "[robto]\n", ":1: key \"robto\" is unknown, expected robot, noise or effect"},
@@ -61,6 +66,54 @@ const Refused kBadModels[] = {
     {"NaNNoise", "[noise]\nleft = nan\n", ":2: left is not finite, expected a number"},
     {"UnknownNoise", "[noise]\nlefft = 1\n",
      ":2: key \"lefft\" in [noise] is unknown, expected one of left, right, compass"},
+    {"ProcessTable", "[noise]\n[noise.process]\nchannel = \"turn\"\n",
+     ":2: process is no list of tables, expected [[noise.process]]"},
+    {"UnknownProcess", process_of("channel = \"turn\"\nprocess = \"per lap\"\nsd = 0.01\n"),
+     ":6: process \"per lap\" is unknown, expected one of white, per leg, per session, per pass, "
+     "correlated in t, correlated in distance, walk in t, walk in distance"},
+    {"ChannelOfProcess", process_of("channel = \"spin\"\nprocess = \"per leg\"\nsd = 0.01\n"),
+     ":5: channel \"spin\" is unknown, expected one of travel, left,"},
+    {"KeyOfProcess", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsdd = 0.01\n"),
+     ":7: key \"sdd\" in [[noise.process]] is unknown, expected channel, process, sd, length or "
+     "tails"},
+    {"ProcessWithoutChannel", process_of("process = \"per leg\"\nsd = 0.01\n"),
+     ":4: a noise process has no channel, expected channel, process and sd"},
+    {"ProcessWithoutProcess", process_of("channel = \"turn\"\nsd = 0.01\n"),
+     ":4: a noise process has no process, expected channel, process and sd"},
+    {"ProcessWithoutSd", process_of("channel = \"turn\"\nprocess = \"per leg\"\n"),
+     ":4: a noise process has no sd, expected channel, process and sd"},
+    {"TextChannelOfProcess", process_of("channel = 1\nprocess = \"per leg\"\nsd = 0.01\n"),
+     ":5: channel is no text, expected \"...\""},
+    {"ProcessSdOf0", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = 0\n"),
+     ":7: sd is 0, expected more than 0"},
+    {"ProcessSdBelow0", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = -0.5\n"),
+     ":7: sd is -0.5, expected more than 0"},
+    {"TextSdOfProcess", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = \"1\"\n"),
+     ":7: sd is no number, expected one"},
+    {"EndlessSdOfProcess", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = inf\n"),
+     ":7: sd is not finite, expected a number"},
+    {"LengthOfALeg",
+     process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = 0.01\nlength = 2\n"),
+     ":8: a process per leg has a length, expected none"},
+    {"LengthOfAWalk",
+     process_of("channel = \"turn\"\nlength = 2\nprocess = \"walk in t\"\nsd = 0.01\n"),
+     ":6: a process walk in t has a length, expected none"},
+    {"NoLengthInTime", process_of("channel = \"turn\"\nprocess = \"correlated in t\"\nsd = 0.01\n"),
+     ":4: a process correlated in t has no length, expected one (s)"},
+    {"NoLengthOnTheWay",
+     process_of("channel = \"turn\"\nprocess = \"correlated in distance\"\nsd = 0.01\n"),
+     ":4: a process correlated in distance has no length, expected one (m)"},
+    {"LengthOf0",
+     process_of("channel = \"turn\"\nprocess = \"correlated in t\"\nsd = 0.01\nlength = 0\n"),
+     ":8: length is 0, expected more than 0"},
+    {"TailsTooHeavy", process_of("channel = \"turn\"\nprocess = \"white\"\nsd = 0.01\ntails = 2\n"),
+     ":8: tails is 2, expected more than 2"},
+    {"TurnOfAPass", process_of("channel = \"turn\"\nprocess = \"per pass\"\nsd = 0.01\n"),
+     ":4: channel turn has no passes, expected lever, lever_left, range, range_scale, bearing or "
+     "delay"},
+    {"CompassOfAPass", process_of("channel = \"compass\"\nprocess = \"per pass\"\nsd = 0.01\n"),
+     ":4: channel compass has no passes, expected lever, lever_left, range, range_scale, bearing "
+     "or delay"},
     {"EffectTable", "[effect]\nname = \"x\"\n",
      ":1: effect is no list of tables, expected [[effect]]"},
     {"NamelessEffect", "[[effect]]\nchannel = \"turn\"\nshape = [\"1\"]\n",
@@ -125,6 +178,65 @@ TEST(ModelToml, ReadsBackExactlyWhatItWrote) {
     EXPECT_EQ(in.effects[k].coefficients, out.effects[k].coefficients);
     EXPECT_EQ(in.effects[k].per_session, out.effects[k].per_session);
   }
+}
+
+/// Every kind of process, of channels in turn, with numbers of all digits.
+TEST(ModelToml, NoiseProcessesComeBackToTheSameBits) {
+  const ScratchFolder scratch;
+  Model out;
+  out.noise.processes = {{Channel::left, ProcessKind::white, 0.1 + 0.2, 0.0, 4.0 + 1.0 / 3.0},
+                         {Channel::travel, ProcessKind::per_leg, 1.0 / 3.0},
+                         {Channel::compass, ProcessKind::per_session, 1e-7},
+                         {Channel::range, ProcessKind::per_pass, 0.05},
+                         {Channel::bearing, ProcessKind::correlated_in_t, 0.02, 2.0 / 7.0},
+                         {Channel::turn, ProcessKind::correlated_in_distance, 0.01, 1e5 / 3.0},
+                         {Channel::drift, ProcessKind::walk_in_t, 1e-4 / 3.0},
+                         {Channel::difference, ProcessKind::walk_in_distance, 0.003}};
+  out.effects = {catalogue_effect("wheelbase")};
+  write_model(scratch.path() / "m.toml", out);
+  const Model in = read_model(scratch.path() / "m.toml");
+  ASSERT_EQ(in.noise.processes.size(), out.noise.processes.size());
+  for (std::size_t k = 0; k < in.noise.processes.size(); ++k) {
+    const NoiseProcess& read = in.noise.processes[k];
+    const NoiseProcess& written = out.noise.processes[k];
+    EXPECT_EQ(read.channel, written.channel) << k;
+    EXPECT_EQ(read.process, written.process) << k;
+    EXPECT_EQ(read.sd, written.sd) << k;
+    EXPECT_EQ(read.length, written.length) << k;
+    EXPECT_EQ(read.tails, written.tails) << k;
+    EXPECT_GT(read.line, k == 0 ? 0 : in.noise.processes[k - 1].line) << k;
+  }
+  ASSERT_EQ(in.effects.size(), 1U);
+  EXPECT_EQ(in.noise.left, out.noise.left);
+  EXPECT_EQ(format_model(in), format_model(out));
+}
+
+TEST(ModelToml, ANoiseProcessKnowsItsLineAndTheKeysComeInAnyOrder) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("m.toml",
+                                  "[noise]\nleft = 0.01\n\n[[noise.process]]\nlength = 3\n"
+                                  "sd = 0.02\nprocess = \"correlated in t\"\n"
+                                  "channel = \"compass\"\n\n[[noise.process]]\n"
+                                  "tails = 2.5\nsd = 1\nchannel = \"range\"\n"
+                                  "process = \"white\"\n");
+  const std::vector<NoiseProcess> read = read_model(file).noise.processes;
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].channel, Channel::compass);
+  EXPECT_EQ(read[0].process, ProcessKind::correlated_in_t);
+  EXPECT_EQ(read[0].sd, 0.02);
+  EXPECT_EQ(read[0].length, 3.0);
+  EXPECT_EQ(read[0].tails, 0.0);
+  EXPECT_EQ(read[0].line, 4);
+  EXPECT_EQ(read[1].channel, Channel::range);
+  EXPECT_EQ(read[1].process, ProcessKind::white);
+  EXPECT_EQ(read[1].length, 0.0);
+  EXPECT_EQ(read[1].tails, 2.5);
+  EXPECT_EQ(read[1].line, 10);
+}
+
+/// Without processes the file says nothing of them.
+TEST(ModelToml, WithoutProcessesNoneAreWritten) {
+  EXPECT_EQ(format_model(Model()).find("process"), std::string::npos);
 }
 
 /// Places, radii, thresholds and times of any digits, seed 5.

@@ -6,7 +6,7 @@
 
 #include "geometry/index.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/stiffness_law.hpp"
+#include "trussmap/truss.hpp"
 
 #include <algorithm>
 #include <cmath>

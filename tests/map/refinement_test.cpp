@@ -10,7 +10,6 @@
 #include "map/first_sight.hpp"
 #include "shared_data.hpp"
 #include "trussmap/map_builder.hpp"
-#include "trussmap/stiffness_law.hpp"
 #include "trussmap/truss.hpp"
 
 #include <optional>

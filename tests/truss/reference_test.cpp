@@ -5,7 +5,6 @@
 #include "geometry/index.hpp"
 #include "json_matrix.hpp"
 #include "shared_data.hpp"
-#include "trussmap/stiffness_law.hpp"
 #include "trussmap/truss.hpp"
 
 #include <cmath>

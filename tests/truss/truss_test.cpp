@@ -5,7 +5,6 @@
 #include "trussmap/truss.hpp"
 
 #include "geometry/index.hpp"
-#include "trussmap/stiffness_law.hpp"
 
 #include <random>
 

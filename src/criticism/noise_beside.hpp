@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Noise estimated beside the effects that a model may lack: what is missing looks like noise that
+// lasts, and too much noise hides what is missing.
+//
+//   fit --> the few plain effects that explain most, as suspects --> their columns set aside
+//       --> fit_noise --> fitted again under that noise
+//
+// Only where the errors are larger than the present noise allows (p < 0.05 of chi^2): noise that is
+// stated too large costs power, but names nothing that is not there.
+//
+// A suspect need not be right: it costs a few degrees of freedom where it is not.
+#pragma once
+
+#include "fit/noise_fit.hpp"
+
+namespace trussmap {
+
+/// `stated`: the noise that sizes are kept at where they can be. Throws as refit does.
+[[nodiscard]] FitWithNoise with_noise_beside(const std::vector<Recording>& recordings,
+                                             const ModelFit& fit, const Noise& stated);
+
+}  // namespace trussmap

@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/corrected_odometry.hpp"
+
+#include "effects/channel_physics.hpp"
+#include "fit/effect_columns.hpp"
+#include "fit/online_terms.hpp"
+#include "odometry/row_reckoner.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// Where the robot is, and by what.
+struct Reckoning {
+  RowReckoner reckoner;
+  Pose start_map = {};           ///< where the pose is counted from
+  bool heading_known = false;    ///< by a reading
+  double turned_variance = 0.0;  ///< rad^2, since the start, until a reading comes
+
+  [[nodiscard]] Pose map_pose(const Pose& pose) const { return compose(start_map, pose); }
+};
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw std::invalid_argument(why);
+}
+
+}  // namespace
+
+class CorrectedOdometry::State {
+ public:
+  State(const Model& model, OdometryInputs inputs)
+      : robot_(model.robot),
+        noise_(model.noise),
+        inputs_(std::move(inputs)),
+        variables_(robot_.wheelbase),
+        covariates_(inputs_.covariates.size(), kAbsent),
+        now_{RowReckoner({}, inputs_.compass)} {
+    if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
+    std::vector<std::string> taken = reserved_variables();
+    for (const std::string& name : inputs_.covariates) {
+      if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+        refuse("covariate \"" + name + "\" has the name of another variable");
+      }
+      taken.push_back(name);
+    }
+    for (const Effect& effect : model.effects) add(effect);
+  }
+
+  CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
+    check(row, covariates);
+    const CausalRow facts = variables_.next(row.left, row.right, row.duration);
+    // Shapes that speak of the pose see it first as the row says, then as corrected.
+    const bool twice = drives_.see_the_pose() || readings_.see_the_pose();
+    ReckonedRow clear{{row.left, row.right}, row.duration, 0.0, row.compass};
+    Reckoning after = twice ? reckoned(clear) : now_;
+    for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
+      clear = cleared(row, facts, covariates, after);
+      after = reckoned(clear);
+    }
+    variables_.take(row.left, row.right, row.duration);
+    last_ = facts;
+    std::copy(covariates.begin(), covariates.end(), covariates_.begin());
+    now_ = after;
+    return {{displacement_of(clear.travel, clear.slip, robot_.wheelbase),
+             arc_covariance(clear.travel, row.duration, robot_, noise_)},
+            now_.reckoner.at()};
+  }
+
+  [[nodiscard]] const PoseEstimate& pose() const { return now_.reckoner.at(); }
+
+  void reset() {
+    PoseEstimate start;
+    if (now_.heading_known) start.covariance(2, 2) = pose().covariance(2, 2);
+    now_ = {RowReckoner(start, inputs_.compass), now_.map_pose(pose().pose), now_.heading_known};
+  }
+
+  void set_map_pose(const Pose& pose_map) {
+    Pose& start = now_.start_map;
+    if (!now_.heading_known) start.heading = pose_map.heading - pose().pose.heading;
+    const Vector2 place = pose_map.position() - rotation(start.heading) * pose().pose.position();
+    start.x = place.x();
+    start.y = place.y();
+  }
+
+  [[nodiscard]] CorrectedSighting corrected(const Sighting& sighting) const {
+    CorrectedSighting result{sighting};
+    OnlineTerms delays = delays_;
+    delays.fill(last_, {}, covariates_);
+    for (const OnlineTerm& term : delays.all()) {
+      result.sighting.t -= term.coefficient * delays.value(term);
+    }
+    OnlineTerms views = views_;
+    views.fill(last_, now_.map_pose(pose().pose), covariates_);
+    ViewPattern sum;
+    for (const OnlineTerm& term : views.all()) {
+      const double g = term.coefficient * views.value(term);
+      const ViewPattern more = view_pattern(term.channel, g, 0.0, 0.0);
+      sum.ahead += more.ahead;
+      sum.left += more.left;
+      sum.range += more.range;
+      sum.range_scale += more.range_scale;
+      sum.bearing += more.bearing;
+    }
+    result.sensor_robot = {sum.ahead, sum.left};
+    if (sighting.standing()) return result;
+    result.sighting.range = std::max((sighting.range - sum.range) / (1.0 + sum.range_scale), 0.0);
+    result.sighting.bearing = wrap_angle(sighting.bearing - sum.bearing);
+    return result;
+  }
+
+ private:
+  void add(const Effect& effect) {
+    const std::vector<double> coefficients = coefficients_of(effect, 1);
+    const ActsOn acts = acts_on(effect.channel);
+    OnlineTerms& terms = effect.channel == Channel::delay ? delays_
+                         : acts == ActsOn::views          ? views_
+                         : acts == ActsOn::readings       ? readings_
+                                                          : drives_;
+    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+      try {
+        terms.add({effect.channel, coefficients[k], effect.shape[k], effect.name},
+                  inputs_.covariates);
+      } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
+      }
+    }
+  }
+
+  void check(const WheelRow& row, std::span<const double> covariates) const {
+    if (!std::isfinite(row.duration) || row.duration <= 0.0) {
+      refuse("a row lasts " + short_text(row.duration) + " s, expected more than 0");
+    }
+    if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
+      refuse("a row's travel is not finite");
+    }
+    if (std::isinf(row.compass)) refuse("a compass reading is infinite");
+    if (!inputs_.compass && !std::isnan(row.compass)) {
+      refuse("a row has a compass reading, but the robot was said to have no compass");
+    }
+    if (covariates.size() != inputs_.covariates.size()) {
+      refuse(joined("a row has ", covariates.size(), " covariates, expected ",
+                    inputs_.covariates.size()));
+    }
+    for (std::size_t k = 0; k < covariates.size(); ++k) {
+      if (std::isfinite(covariates[k])) continue;
+      refuse("covariate \"" + inputs_.covariates[k] + "\" is not finite");
+    }
+  }
+
+  /// The row less what the effects add to it; `after` is where it leads as far as is known.
+  ReckonedRow cleared(const WheelRow& row, const CausalRow& facts,
+                      std::span<const double> covariates, const Reckoning& after) {
+    const Pose before = after.map_pose(pose().pose);
+    const Pose end = after.map_pose(after.reckoner.at().pose);
+    const Pose middle{0.5 * (before.x + end.x), 0.5 * (before.y + end.y),
+                      before.heading + 0.5 * wrap_angle(end.heading - before.heading)};
+    const double wheelbase = robot_.wheelbase;
+    DrivePattern more;
+    drives_.fill(facts, middle, covariates);
+    for (const OnlineTerm& term : drives_.all()) {
+      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term),
+                                              {row.left, row.right, row.duration}, wheelbase);
+      more.advance += term.coefficient * unit.advance;
+      more.slip += term.coefficient * unit.slip;
+      more.turn += term.coefficient * unit.turn;
+    }
+    ReckonedRow clear{{row.left + more.advance - 0.5 * wheelbase * more.turn,
+                       row.right + more.advance + 0.5 * wheelbase * more.turn},
+                      row.duration,
+                      more.slip,
+                      row.compass};
+    if (std::isnan(row.compass)) return clear;
+    readings_.fill(facts, end, covariates);
+    for (const OnlineTerm& term : readings_.all()) {
+      clear.reading -= term.coefficient * readings_.value(term);
+    }
+    return clear;
+  }
+
+  /// Where a row leads from now.
+  [[nodiscard]] Reckoning reckoned(ReckonedRow row) const {
+    Reckoning after = now_;
+    const double reading = row.reading;
+    if (inputs_.compass && !now_.heading_known) {
+      row.reading = kAbsent;
+      after.reckoner.take(row, robot_, noise_);
+      after.turned_variance += arc_covariance(row.travel, row.duration, robot_, noise_)(2, 2);
+      if (std::isnan(reading)) return after;
+      after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
+      after.reckoner.add_first_variance(noise_.compass * noise_.compass + after.turned_variance);
+      after.heading_known = true;
+      return after;
+    }
+    row.reading -= now_.start_map.heading;
+    after.reckoner.take(row, robot_, noise_);
+    return after;
+  }
+
+  Robot robot_;
+  Noise noise_;
+  OdometryInputs inputs_;
+  OnlineTerms drives_{OnlineTerms::Instant::middle};
+  OnlineTerms readings_{OnlineTerms::Instant::end};
+  OnlineTerms views_{OnlineTerms::Instant::end};
+  OnlineTerms delays_{OnlineTerms::Instant::end};
+  CausalVariables variables_;
+  CausalRow last_;
+  std::vector<double> covariates_;  ///< of the last row
+  Reckoning now_;
+};
+
+CorrectedOdometry::CorrectedOdometry(const Model& model, const OdometryInputs& inputs)
+    : state_(std::make_unique<State>(model, inputs)) {}
+CorrectedOdometry::~CorrectedOdometry() = default;
+CorrectedOdometry::CorrectedOdometry(CorrectedOdometry&&) noexcept = default;
+CorrectedOdometry& CorrectedOdometry::operator=(CorrectedOdometry&&) noexcept = default;
+
+CorrectedRow CorrectedOdometry::drive(const WheelRow& row, std::span<const double> covariates) {
+  return state_->drive(row, covariates);
+}
+const PoseEstimate& CorrectedOdometry::pose() const {
+  return state_->pose();
+}
+void CorrectedOdometry::reset() {
+  state_->reset();
+}
+void CorrectedOdometry::set_map_pose(const Pose& pose_map) {
+  state_->set_map_pose(pose_map);
+}
+CorrectedSighting CorrectedOdometry::corrected(const Sighting& sighting) const {
+  return state_->corrected(sighting);
+}
+
+}  // namespace trussmap

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "effects/channel_physics.hpp"
+#include "estimation/noise_states.hpp"
+#include "fit/noise_reml.hpp"
+#include "trussmap/noise_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kMostWindows = 400;  // per recording, evenly spread
+
+/// Mean square of the position's error.
+double square_of(const Matrix4& covariance) {
+  return covariance.topLeftCorner<2, 2>().trace();
+}
+
+/// A piece of a drive that is reckoned by the wheels.
+struct Window {
+  const Drive& drive;
+  const Robot& robot;
+  std::vector<SegmentRow> rows;
+  double elapsed = 0.0;  ///< s, from the recording's start
+  double way = 0.0;      ///< m, likewise
+};
+
+/// What one white field of the noise makes, all others silent.
+double white_square(const Window& window, const Noise& noise,
+                    const std::vector<double Noise::*>& members) {
+  Noise alone = silent_noise();
+  for (double Noise::*member : members) alone.*member = noise.*member;
+  const Matrix4 floor = segment_covariance(window.drive, window.rows, window.robot, silent_noise());
+  return square_of(segment_covariance(window.drive, window.rows, window.robot, alone) - floor);
+}
+
+double process_square(const Window& window, const NoiseProcess& process) {
+  if (acts_on(process.channel) != ActsOn::drives) return 0.0;
+  const std::vector<Matrix4> influences = row_influences(window.rows, {}, Eigen::VectorXd());
+  const std::vector<Vector4> c =
+      unit_columns(window.drive, window.rows, influences, process.channel, window.robot);
+  Matrix4 unit = Matrix4::Zero();
+  if (is_chain(process.process)) {
+    const ProcessMoments m =
+        process_moments(window.rows, c, process.process, process.length, false);
+    double start = 1.0;
+    if (process.process == ProcessKind::walk_in_t) start = window.elapsed;
+    if (process.process == ProcessKind::walk_in_distance) start = window.way;
+    unit = m.uu + start * m.by_start * m.by_start.transpose();
+  } else if (process.process == ProcessKind::white) {
+    for (const Vector4& row : c) unit += row * row.transpose();
+  } else {
+    Vector4 sum = Vector4::Zero();
+    for (const Vector4& row : c) sum += row;
+    unit = sum * sum.transpose();
+  }
+  return process.sd * process.sd * square_of(unit);
+}
+
+class Budget {
+ public:
+  explicit Budget(const Model& model) : model_(model) {}
+
+  void add(const Window& window) {
+    const Noise& noise = model_.noise;
+    add("wheels", white_square(window, noise, {&Noise::left, &Noise::right}));
+    if (noise.heading_per_s > 0.0) {
+      add("heading_per_s", white_square(window, noise, {&Noise::heading_per_s}));
+    }
+    if (noise.heading_per_rad > 0.0) {
+      add("heading_per_rad", white_square(window, noise, {&Noise::heading_per_rad}));
+    }
+    if (noise.travel_per_s > 0.0) {
+      add("travel_per_s", white_square(window, noise, {&Noise::travel_per_s}));
+    }
+    for (const NoiseProcess& one : noise.processes) {
+      add(name_of_source(one), process_square(window, one));
+    }
+    ++windows_;
+  }
+
+  [[nodiscard]] NoiseBudget take(double horizon) const {
+    NoiseBudget budget;
+    budget.horizon = horizon;
+    budget.windows = windows_;
+    double whole = 0.0;
+    for (const auto& [source, square] : squares_) whole += square;
+    budget.rms = std::sqrt(whole / std::max(windows_, 1));
+    for (const auto& [source, square] : squares_) {
+      if (square > 0.0) budget.shares.push_back({source, square / whole});
+    }
+    std::stable_sort(budget.shares.begin(), budget.shares.end(),
+                     [](const NoiseShare& a, const NoiseShare& b) { return a.share > b.share; });
+    return budget;
+  }
+  [[nodiscard]] bool empty() const { return windows_ == 0; }
+
+ private:
+  void add(const std::string& source, double square) { squares_[source] += square; }
+
+  const Model& model_;
+  std::map<std::string, double> squares_;  ///< m^2, summed over the windows
+  int windows_ = 0;
+};
+
+void add_windows(const Recording& recording, const Robot& robot, double horizon, Budget& budget) {
+  const Drive& drive = recording.drive;
+  if (drive.rows() == 0) return;
+  const double length = drive.t.back() - drive.start();
+  const auto count = static_cast<std::size_t>(std::max(0.0, 2.0 * (length / horizon - 1.0) + 1.0));
+  const std::size_t stride = std::max<std::size_t>(1, count / kMostWindows);
+  double way = 0.0;
+  double reached = drive.start();
+  for (std::size_t k = 0; k < count; k += stride) {
+    const double from = drive.start() + 0.5 * horizon * static_cast<double>(k);
+    for (const SegmentRow& row : segment_rows(drive, reached, from, robot)) {
+      way += std::abs(row.path);
+    }
+    reached = from;
+    const Window window{drive, robot, segment_rows(drive, from, from + horizon, robot),
+                        from - drive.start(), way};
+    if (!window.rows.empty()) budget.add(window);
+  }
+}
+
+}  // namespace
+
+std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings, const Model& model,
+                                      const std::vector<double>& horizons) {
+  std::vector<NoiseBudget> result;
+  for (const double horizon : horizons) {
+    if (!(horizon > 0.0)) throw std::invalid_argument("a horizon has to be more than 0 s");
+    Budget budget(model);
+    for (const Recording& one : recordings) add_windows(one, model.robot, horizon, budget);
+    if (!budget.empty()) result.push_back(budget.take(horizon));
+  }
+  return result;
+}
+
+}  // namespace trussmap

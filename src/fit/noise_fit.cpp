@@ -1,0 +1,680 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/noise_fit.hpp"
+
+#include "effects/channel_physics.hpp"
+#include "estimation/measurement_rows.hpp"
+#include "fit/fit_projection.hpp"
+#include "fit/noise_fit.hpp"
+#include "fit/noise_reml.hpp"
+#include "linalg/dense.hpp"
+#include "statistics/distributions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr Eigen::Index kDraws = 96;
+constexpr double kWorthFitting = 2.0;  // sds of a score
+constexpr double kAsStated = 10.0;     // -2 log R: p = 0.0016
+constexpr double kStays = 10.0;        // -2 log R
+constexpr double kAlmostNothing = 1e-4;
+constexpr double kNegligible = 0.05;    // of a size
+constexpr double kLeastOfStated = 8.0;  // times smaller a white size may be
+constexpr double kLongest = 60.0;       // s or m: what lasts longer is an effect, and no noise
+constexpr double kLongestOfViews = 10.0;
+constexpr double kLeastStates = 6.0;
+constexpr double kOfALength = 3.0;   // -2 log R that it has to bring: the plainer is likelier
+constexpr double kStep = 1e-3;       // of a logarithm, for slopes
+constexpr double kWideStep = 0.05;   // the same, for curvatures
+constexpr double kLeastGain = 1e-3;  // of -2 log R, to go on for
+
+/// Sizes of components as logarithms: all sds that are free, then the lengths.
+struct Parameters {
+  struct Place {
+    std::size_t component = 0;
+    bool length = false;
+  };
+  std::vector<Place> places;
+  NoiseReml::Sizes sizes;
+
+  [[nodiscard]] Eigen::VectorXd values() const {
+    Eigen::VectorXd x(static_cast<Eigen::Index>(places.size()));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      x[static_cast<Eigen::Index>(k)] = std::log(at(places[k]));
+    }
+    return x;
+  }
+  [[nodiscard]] NoiseReml::Sizes with(const Eigen::VectorXd& x) const {
+    NoiseReml::Sizes result = sizes;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      auto& list = places[k].length ? result.length : result.sd;
+      list[places[k].component] = std::exp(x[static_cast<Eigen::Index>(k)]);
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] double at(const Place& place) const {
+    return place.length ? sizes.length[place.component] : sizes.sd[place.component];
+  }
+};
+
+/// Estimates sizes, and finds which processes there are.
+class NoiseFitter {
+ public:
+  NoiseFitter(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance,
+              const NoiseFitOptions& options)
+      : fit_(fit),
+        stated_(stated),
+        options_(options),
+        candidates_(candidate_components(fit, stated)),
+        reml_(fit, stated, nuisance) {}
+
+  FittedNoise run() {
+    take_stated();
+    choose();
+    const double at_stated = deviance(sizes_);
+    start_from_present();
+    measure_extents();
+    choose();
+    best_ = deviance(sizes_);
+    free_the_white();
+    drop_superfluous();
+    add_processes();
+    FittedNoise result;
+    result.tried = tried_;
+    report(at_stated, result);
+    return result;
+  }
+
+ private:
+  struct Member {
+    NoiseComponent component;
+    bool free = false;
+    double gain = 0.0;
+    double p_value = 1.0;
+  };
+
+  void take_stated() {
+    for (const NoiseComponent& one : white_components(fit_, stated_)) {
+      take(one, one.stated, 0.0, false);
+    }
+    for (const NoiseComponent& one : processes_of(stated_)) {
+      take(one, one.stated, one.process.length, true);
+    }
+  }
+
+  /// What the fit was made with, where that is more than what was stated.
+  void start_from_present() {
+    const Noise& present = fit_.model.noise;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      sizes_.sd[k] = size_in(present, members_[k].component);
+    }
+    for (const auto& more : {white_components(fit_, present), processes_of(present)}) {
+      for (NoiseComponent one : more) {
+        if (is_member(one)) continue;
+        const double sd = one.stated;
+        one.stated = 0.0;
+        take(one, sd, one.process.length, true);
+      }
+    }
+  }
+
+  void take(const NoiseComponent& one, double sd, double length, bool free) {
+    members_.push_back({one, free, 0.0, 1.0});
+    sizes_.sd.push_back(sd);
+    sizes_.length.push_back(length);
+  }
+
+  void choose() {
+    std::vector<NoiseComponent> components;
+    for (const Member& one : members_) components.push_back(one.component);
+    reml_.choose(components);
+  }
+
+  double deviance(const NoiseReml::Sizes& sizes) {
+    try {
+      return reml_.minus_two_log(sizes);
+    } catch (const NotPositiveDefinite&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+  /// How long lengths can be told from: between the pace of the instants and part of the whole.
+  void measure_extents() {
+    for (const Recording& one : fit_.recordings) {
+      longest_time_ += one.drive.rows() > 0 ? one.drive.t.back() - one.drive.start() : 0.0;
+    }
+    double path = 0.0;
+    for (const std::vector<SegmentRow>& rows : fit_.problem.segments) {
+      for (const SegmentRow& row : rows) path += std::abs(row.path);
+    }
+    longest_way_ = path;
+  }
+
+  [[nodiscard]] Parameters parameters(const std::vector<bool>& free) const {
+    Parameters result;
+    result.sizes = sizes_;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (free[k]) result.places.push_back({k, false});
+    }
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (free[k] && sizes_.length[k] > 0.0) result.places.push_back({k, true});
+    }
+    return result;
+  }
+
+  /// Where a logarithm may go.
+  [[nodiscard]] Eigen::VectorXd bounded(const Parameters& of, Eigen::VectorXd x) const {
+    constexpr double kReach = 5.0;
+    const double shrink = std::log(kLeastOfStated);
+    for (std::size_t k = 0; k < of.places.size(); ++k) {
+      const Member& member = members_[of.places[k].component];
+      double& value = x[static_cast<Eigen::Index>(k)];
+      if (of.places[k].length) {
+        const bool time = member.component.process.process == ProcessKind::correlated_in_t;
+        const bool view = acts_on(member.component.process.channel) == ActsOn::views;
+        const double limit = view ? kLongestOfViews : kLongest;
+        const double most = std::min(limit, 0.25 * (time ? longest_time_ : longest_way_));
+        value = std::clamp(value, std::log(0.2), std::log(std::max(most, 0.4)));
+      } else if (member.component.stated > 0.0) {
+        const double stated = std::log(member.component.stated);
+        const bool scattered = member.component.name == "compass";  // known from readings alone
+        value = std::clamp(value, stated - (scattered ? kReach : shrink), stated + kReach);
+      } else {
+        const double scale = std::log(facts_scale(member.component));
+        value = std::clamp(value, scale - 3.0 * kReach, scale + kReach);
+      }
+    }
+    return x;
+  }
+
+  [[nodiscard]] static double facts_scale(const NoiseComponent& one) {
+    return one.lasts() ? facts_of(one.process.channel).prior_sd : 0.01;
+  }
+
+  /// Quasi-Newton (BFGS) in the logarithms, from slopes by differences. Changes sizes_ and best_.
+  void optimise(const std::vector<bool>& free, int most_steps) {
+    Parameters of = parameters(free);
+    if (of.places.empty()) return;
+    Eigen::VectorXd x = of.values();
+    const Eigen::Index n = x.size();
+    best_ = deviance(of.with(x));
+    Eigen::VectorXd slope = slopes(of, x, best_);
+    Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      inverse(k, k) = 1.0 / std::max(curvature(of, x, k), 1.0);
+    }
+    for (int step = 0; step < most_steps; ++step) {
+      Eigen::VectorXd way = -(inverse * slope);
+      constexpr double kFarthest = 1.5;
+      way *= std::min(1.0, kFarthest / std::max(way.cwiseAbs().maxCoeff(), 1e-12));
+      if (-slope.dot(way) < kLeastGain) break;
+      Eigen::VectorXd next = x;
+      double value = best_;
+      for (int half = 0; half < 6; ++half, way *= 0.4) {
+        next = bounded(of, x + way);
+        value = deviance(of.with(next));
+        if (value < best_) break;
+      }
+      if (!(value < best_)) break;
+      const double gained = best_ - value;
+      const Eigen::VectorXd after = slopes(of, next, value);
+      const Eigen::VectorXd s = next - x;
+      const Eigen::VectorXd y = after - slope;
+      const double sy = s.dot(y);
+      if (sy > 1e-10) {
+        const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(n, n) - s * y.transpose() / sy;
+        inverse = (left * inverse * left.transpose() + s * s.transpose() / sy).eval();
+      }
+      x = next;
+      slope = after;
+      best_ = value;
+      if (gained < kLeastGain) break;
+    }
+    sizes_ = of.with(x);
+  }
+
+  [[nodiscard]] Eigen::VectorXd slopes(const Parameters& of, const Eigen::VectorXd& x,
+                                       double value) {
+    Eigen::VectorXd result(x.size());
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      Eigen::VectorXd moved = x;
+      moved[k] += kStep;
+      result[k] = (deviance(of.with(moved)) - value) / kStep;
+    }
+    return result;
+  }
+
+  /// What a log sd or length tells, roughly: 4 for each value that its source is checked by.
+  [[nodiscard]] double curvature(const Parameters& of, const Eigen::VectorXd& x, Eigen::Index k) {
+    Eigen::VectorXd up = x;
+    Eigen::VectorXd down = x;
+    up[k] += 4.0 * kWideStep;
+    down[k] -= 4.0 * kWideStep;
+    return (deviance(of.with(up)) + deviance(of.with(down)) - 2.0 * best_) /
+           std::pow(4.0 * kWideStep, 2);
+  }
+
+  [[nodiscard]] std::vector<bool> free_ones() const {
+    std::vector<bool> free;
+    for (const Member& one : members_) free.push_back(one.free);
+    return free;
+  }
+
+  // ----------------------------------------
+  // White sizes: other than stated only where the likelihood insists.
+
+  void free_the_white() {
+    for (Member& one : members_) one.free = true;
+    optimise(free_ones(), 12);
+    keep_stated_where_possible();
+  }
+
+  void keep_stated_where_possible() {
+    bool kept = false;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      Member& one = members_[k];
+      if (one.component.lasts() || one.component.stated == 0.0 || is_beside_a_process(k)) continue;
+      NoiseReml::Sizes as_stated = sizes_;
+      as_stated.sd[k] = one.component.stated;
+      one.gain = deviance(as_stated) - best_;
+      const double off = std::abs(std::log(sizes_.sd[k] / one.component.stated));
+      if (one.gain >= kAsStated && off > kNegligible) continue;
+      sizes_ = as_stated;
+      best_ = deviance(sizes_);
+      one.gain = 0.0;
+      one.free = false;
+      kept = true;
+    }
+    const std::vector<bool> free = free_ones();
+    if (kept && std::find(free.begin(), free.end(), true) != free.end()) optimise(free, 12);
+  }
+
+  /// A process takes its part of what the white source of its sensor had.
+  [[nodiscard]] bool is_beside_a_process(std::size_t k) const {
+    return std::any_of(members_.begin(), members_.end(), [&](const Member& one) {
+      return one.component.lasts() && source_of(one.component) == members_[k].component.name;
+    });
+  }
+
+  [[nodiscard]] static std::string source_of(const NoiseComponent& one) {
+    switch (one.process.channel) {
+      case Channel::compass:
+        return "compass";
+      case Channel::range:
+      case Channel::range_scale:
+        return "range";
+      case Channel::bearing:
+        return "bearing";
+      default:
+        return "wheels";
+    }
+  }
+
+  // ----------------------------------------
+  // Processes, one after the other.
+
+  /// What an earlier fit took in, perhaps for an effect that it lacked, goes where it is no longer
+  /// wanted.
+  void drop_superfluous() {
+    for (std::size_t k = members_.size(); k-- > 0;) {
+      if (members_[k].component.stated > 0.0) continue;
+      NoiseReml::Sizes without = sizes_;
+      without.sd[k] *= kAlmostNothing;
+      members_[k].gain = deviance(without) - best_;
+      members_[k].p_value = p_value_of(members_[k].gain, members_[k].component);
+      if (members_[k].gain >= kStays) continue;
+      members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(k));
+      sizes_.sd.erase(sizes_.sd.begin() + static_cast<std::ptrdiff_t>(k));
+      sizes_.length.erase(sizes_.length.begin() + static_cast<std::ptrdiff_t>(k));
+      choose();
+      best_ = deviance(sizes_);
+      free_the_white();
+    }
+  }
+
+  void add_processes() {
+    for (std::size_t round = 0; round < options_.most_processes; ++round) {
+      if (!add_one()) return;
+    }
+  }
+
+  bool add_one() {
+    const std::vector<Screened> screened = screen();
+    if (round_ == 0) tried_ = static_cast<int>(screened.size());
+    ++round_;
+    // The likeliest few, each with its own size: the length of a kind that scores best stands for
+    // it.
+    std::vector<Screened> worth;
+    for (const Screened& one : screened) {
+      if (one.z < kWorthFitting) continue;
+      const auto twin = std::find_if(worth.begin(), worth.end(), [&](const Screened& other) {
+        return other.component.name == one.component.name;
+      });
+      if (twin == worth.end()) {
+        worth.push_back(one);
+      } else if (one.z > twin->z) {
+        *twin = one;
+      }
+    }
+    std::sort(worth.begin(), worth.end(),
+              [](const Screened& a, const Screened& b) { return a.z > b.z; });
+    if (worth.size() > kMostFitted) worth.resize(kMostFitted);
+    const std::vector<Member> members = members_;
+    const NoiseReml::Sizes sizes = sizes_;
+    const double before = best_;
+    struct Tried {
+      std::vector<Member> members;
+      NoiseReml::Sizes sizes;
+      double value = 0.0;
+      double claim = 0.0;
+    };
+    std::optional<Tried> best;
+    for (const Screened& one : worth) {
+      members_ = members;
+      sizes_ = sizes;
+      take(one.component, std::max(one.sd, 1e-9), one.component.process.length, true);
+      for (std::size_t k = 0; k < members_.size(); ++k) {
+        if (!members_[k].component.lasts() && is_beside_a_process(k)) members_[k].free = true;
+      }
+      choose();
+      start_size(members_.size() - 1);
+      optimise(free_ones(), 10);
+      const double value = best_ + (one.component.process.length > 0.0 ? kOfALength : 0.0);
+      if (!best || value < best->claim) best = Tried{members_, sizes_, best_, value};
+    }
+    members_ = members;
+    sizes_ = sizes;
+    best_ = before;
+    if (best) {
+      const double gain = before - best->value;
+      const NoiseComponent& added = best->members.back().component;
+      const double p = p_value_of(gain, added);
+      if (gain > 0.0 && p < options_.level) {
+        members_ = best->members;
+        sizes_ = best->sizes;
+        members_.back().gain = gain;
+        members_.back().p_value = p;
+        choose();
+        optimise(free_ones(), 12);
+        return true;
+      }
+    }
+    choose();
+    static_cast<void>(deviance(sizes_));
+    return false;
+  }
+
+  /// Half of chi^2's (a variance cannot be negative; Self & Liang 1987), times the kinds asked of:
+  /// of one kind, lengths are as good as one.
+  [[nodiscard]] double p_value_of(double gain, const NoiseComponent& one) const {
+    const int dof = one.process.length > 0.0 ? 2 : 1;
+    std::size_t kinds = 0;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      kinds += k == 0 || candidates_[k].name != candidates_[k - 1].name ? 1U : 0U;
+    }
+    return std::min(1.0, 0.5 * static_cast<double>(kinds) * chi2_p_value(std::max(gain, 0.0), dof));
+  }
+
+  /// The best of a few sds about the score's guess.
+  void start_size(std::size_t k) {
+    double best = std::numeric_limits<double>::infinity();
+    const double guess = sizes_.sd[k];
+    double at = guess;
+    for (const double factor : {0.3, 1.0, 3.0}) {
+      NoiseReml::Sizes tried = sizes_;
+      tried.sd[k] = factor * guess;
+      const double value = deviance(tried);
+      if (value >= best) continue;
+      best = value;
+      at = tried.sd[k];
+    }
+    sizes_.sd[k] = at;
+  }
+
+  struct Screened {
+    NoiseComponent component;
+    double z = 0.0;
+    double sd = 0.0;
+  };
+
+  /// The score for a variance at 0, q = r'Vr, against draws under the present noise.
+  std::vector<Screened> screen() {
+    static_cast<void>(deviance(sizes_));
+    const RecordingSystem& system = reml_.system();
+    const FitProjection P(fit_, reml_.problem(), system, free_of_map(system, reml_.nuisance()));
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    Eigen::MatrixXd draws(system.rows(), kDraws + 1);
+    for (double& value : draws.reshaped()) value = normal(random);
+    draws.col(kDraws) = system.residuals();
+    draws = P.times(draws);
+    const Eigen::MatrixXd free = free_quadratics(draws);
+    std::vector<Screened> result;
+    for (const NoiseComponent& one : candidates_) {
+      if (is_member(one)) continue;
+      Eigen::VectorXd q;
+      if (one.lasts()) {
+        const LaidProcess laid =
+            reml_.layer().lay(one.process.channel, one.process.process, one.process.length);
+        if (static_cast<double>(laid.states.size()) < kLeastStates) continue;
+        q = quadratic(laid, draws);
+      } else {
+        q = quadratic(reml_.unit_covariances(one), draws);
+      }
+      q.array() -= q.head(kDraws).mean();
+      if (free.cols() > 0) q -= free * least_squares(free.topRows(kDraws), q.head(kDraws));
+      const double variance =
+          q.head(kDraws).squaredNorm() / static_cast<double>(kDraws - 1 - free.cols());
+      if (!(variance > 0.0)) continue;
+      const double z = q[kDraws] / std::sqrt(variance);
+      // Var q = 2 tr(PVPV), and q - E q rises by tr(PVPV) per unit of variance.
+      const double size = std::max(0.0, q[kDraws] / (0.5 * variance));
+      result.push_back({one, z, std::sqrt(size)});
+    }
+    return result;
+  }
+
+  /// The same of the sources that are estimated already, less their means: what they can take up
+  /// is no sign of another (efficient score).
+  [[nodiscard]] Eigen::MatrixXd free_quadratics(const Eigen::MatrixXd& draws) const {
+    Eigen::MatrixXd result(draws.cols(), 0);
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      const NoiseComponent& one = members_[k].component;
+      if (!members_[k].free) continue;
+      Eigen::VectorXd q =
+          one.lasts() ? quadratic(reml_.layer().lay(one.process.channel, one.process.process,
+                                                    std::max(sizes_.length[k], 1e-3)),
+                                  draws)
+                      : quadratic(reml_.unit_covariances(one), draws);
+      q.array() -= q.head(kDraws).mean();
+      result.conservativeResize(Eigen::NoChange, result.cols() + 1);
+      result.rightCols<1>() = q;
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool is_member(const NoiseComponent& one) const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [&](const Member& member) { return member.component.name == one.name; });
+  }
+
+  [[nodiscard]] static Eigen::MatrixXd free_of_map(const RecordingSystem& system,
+                                                   const Eigen::MatrixXd& columns) {
+    if (columns.cols() == 0) return columns;
+    return columns - system.times(system.solve_nodes(system.transposed_times(columns)));
+  }
+
+  /// y'V y of each column, V of a white component.
+  [[nodiscard]] Eigen::VectorXd quadratic(const std::vector<Matrix4>& added,
+                                          const Eigen::MatrixXd& draws) const {
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
+    const RecordingProblem& problem = reml_.problem();
+    for (std::size_t k = 0; k < added.size(); ++k) {
+      if (added[k].isZero(0.0) || reml_.left_out(k)) continue;
+      const Measurement& one = problem.measurements[k];
+      const Eigen::MatrixXd V =
+          (one.whitener * added[k] * one.whitener.transpose()).topLeftCorner(one.rows, one.rows);
+      const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
+      q += (y.cwiseProduct(V * y)).colwise().sum().transpose();
+    }
+    return q;
+  }
+
+  /// The same of a process: what its states' columns see of y, coloured by their prior.
+  [[nodiscard]] Eigen::VectorXd quadratic(const LaidProcess& laid,
+                                          const Eigen::MatrixXd& draws) const {
+    const RecordingProblem& problem = reml_.problem();
+    const auto states = static_cast<Eigen::Index>(laid.states.size());
+    Eigen::MatrixXd u = Eigen::MatrixXd::Zero(states, draws.cols());
+    for (std::size_t k = 0; k < laid.terms.size(); ++k) {
+      if (laid.terms[k].empty() || reml_.left_out(k)) continue;
+      const Measurement& one = problem.measurements[k];
+      const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
+      for (const NoiseTerm& term : laid.terms[k]) {
+        const Vector4 column = one.whitener * error_by(one, by_view_of(problem, k), term);
+        u.row(term.state) += column.head(one.rows).transpose() * y;
+      }
+    }
+    // u'K u with K = L L', L the chain: z = L eta.
+    for (Eigen::Index k = states; k-- > 0;) {
+      const NoiseState& state = laid.states[static_cast<std::size_t>(k)];
+      if (state.previous >= 0) u.row(state.previous) += state.keep * u.row(k);
+    }
+    Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
+    for (Eigen::Index k = 0; k < states; ++k) {
+      const double sd = laid.states[static_cast<std::size_t>(k)].sd;
+      q += sd * sd * u.row(k).cwiseAbs2().transpose();
+    }
+    return q + quadratic(laid.within, draws);
+  }
+
+  [[nodiscard]] Eigen::Matrix<double, 4, 6> by_view_of(const RecordingProblem& problem,
+                                                       std::size_t k) const {
+    const Measurement& one = problem.measurements[k];
+    if (one.kind == MeasurementKind::segment) return Eigen::Matrix<double, 4, 6>::Zero();
+    return measurement_rows(problem, one, fit_.adjustment.state, one.value,
+                            view_of(fit_.columns.border, offsets_of(fit_), one))
+        .by_view;
+  }
+
+  // ----------------------------------------
+
+  void report(double stated, FittedNoise& result) {
+    result.noise = stated_;
+    Eigen::VectorXd errors;
+    const Parameters of = parameters(free_ones());
+    if (options_.errors && !of.places.empty()) errors = standard_errors(of);
+    bool any = false;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      const Member& one = members_[k];
+      NoiseSource source;
+      source.name = one.component.name;
+      source.lasts = one.component.lasts();
+      source.process = one.component.process;
+      source.process.sd = sizes_.sd[k];
+      source.process.length = sizes_.length[k];
+      source.unit = one.component.unit;
+      source.stated = one.component.stated;
+      source.sd = sizes_.sd[k];
+      source.gain = one.gain;
+      source.p_value = one.p_value;
+      for (std::size_t place = 0; place < of.places.size(); ++place) {
+        if (of.places[place].component != k || errors.size() == 0) continue;
+        const double error = errors[static_cast<Eigen::Index>(place)];
+        (of.places[place].length ? source.length_error : source.sd_error) =
+            error * (of.places[place].length ? sizes_.length[k] : sizes_.sd[k]);
+      }
+      result.sources.push_back(source);
+      if (!one.free) continue;
+      any = true;
+      take_into(result.noise, one.component, sizes_.sd[k], sizes_.length[k]);
+    }
+    result.gain = any ? std::max(0.0, stated - best_) : 0.0;
+  }
+
+  /// Of the logarithms, by the curvature of -2 log R.
+  [[nodiscard]] Eigen::VectorXd standard_errors(const Parameters& of) {
+    const Eigen::VectorXd x = of.values();
+    const Eigen::Index n = x.size();
+    const double middle = deviance(of.with(x));
+    Eigen::VectorXd up(n);
+    Eigen::MatrixXd H(n, n);
+    const auto at = [&](Eigen::Index a, double by_a, Eigen::Index b, double by_b) {
+      Eigen::VectorXd moved = x;
+      moved[a] += by_a;
+      moved[b] += by_b;
+      return deviance(of.with(moved));
+    };
+    constexpr double h = kWideStep;
+    for (Eigen::Index a = 0; a < n; ++a) {
+      up[a] = at(a, h, a, 0.0);
+      H(a, a) = (up[a] + at(a, -h, a, 0.0) - 2.0 * middle) / (h * h);
+      for (Eigen::Index b = 0; b < a; ++b) {
+        const double both = at(a, h, b, h);
+        H(a, b) = H(b, a) = (both - up[a] - up[b] + middle) / (h * h);
+      }
+    }
+    // -2 log R is twice the information.
+    const SymmetricModes modes = symmetric_modes(0.5 * H);
+    Eigen::VectorXd variances = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double information = std::max(modes.eigenvalues[k], 1e-2);
+      variances += modes.eigenvectors.col(k).cwiseAbs2() / information;
+    }
+    return variances.cwiseSqrt();
+  }
+
+  static constexpr std::size_t kMostFitted = 4;
+
+  const FitState& fit_;
+  const Noise& stated_;
+  const NoiseFitOptions& options_;
+  std::vector<NoiseComponent> candidates_;
+  NoiseReml reml_;
+  std::vector<Member> members_;
+  NoiseReml::Sizes sizes_;
+  double best_ = 0.0;
+  double longest_time_ = 0.0;  ///< s
+  double longest_way_ = 0.0;   ///< m
+  int tried_ = 0;
+  int round_ = 0;
+};
+
+constexpr double kStillBetter = 1.0;  // of -2 log R
+
+}  // namespace
+
+FittedNoise fit_noise(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance,
+                      const NoiseFitOptions& options) {
+  return NoiseFitter(fit, stated, nuisance, options).run();
+}
+
+FittedNoise fit_noise(const ModelFit& fit, const NoiseFitOptions& options) {
+  return fit_noise(*fit.state, fit.model.noise, Eigen::MatrixXd(), options);
+}
+
+FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings, const Model& model,
+                                 const FitOptions& fit, const NoiseFitOptions& options) {
+  constexpr int kMostRounds = 3;
+  FitWithNoise result{fit_model(recordings, model, fit), {}};
+  double log_likelihood = 0.0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    result.noise = fit_noise(*result.fit.state, model.noise, Eigen::MatrixXd(), options);
+    if (!result.noise.changed() || result.noise.gain - log_likelihood < kStillBetter) break;
+    log_likelihood = result.noise.gain;
+    Model better = result.fit.model;
+    better.noise = result.noise.noise;
+    result.fit = refit(recordings, better, result.fit);
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,378 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/noise_reml.hpp"
+
+#include "effects/channel_physics.hpp"
+#include "estimation/segment_noise.hpp"
+#include "linalg/dense.hpp"
+#include "trussmap/dead_reckoning.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastSd = 1e-5;  // m and rad: of a segment
+constexpr double kExactSd = 1e-6;  // the same, of anything
+
+bool any_of_kind(const FitState& fit, MeasurementKind kind) {
+  return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(),
+                     [kind](const Measurement& one) { return one.kind == kind; });
+}
+
+bool has_compass(const FitState& fit) {
+  return std::any_of(
+      fit.problem.measurements.begin(), fit.problem.measurements.end(),
+      [](const Measurement& one) { return one.kind == MeasurementKind::segment && one.rows == 4; });
+}
+
+bool has_views(const FitState& fit) {
+  return any_of_kind(fit, MeasurementKind::view) ||
+         any_of_kind(fit, MeasurementKind::cartesian_view);
+}
+
+NoiseComponent white(const char* name, const char* unit, std::vector<double Noise::*> members,
+                     double stated) {
+  NoiseComponent one;
+  one.name = name;
+  one.unit = unit;
+  one.white = std::move(members);
+  one.stated = stated;
+  return one;
+}
+
+NoiseComponent lasting(const NoiseProcess& process) {
+  NoiseComponent one;
+  one.name = name_of_source(process);
+  one.unit = std::string(facts_of(process.channel).unit);
+  if (process.process == ProcessKind::walk_in_t) one.unit += "/sqrt(s)";
+  if (process.process == ProcessKind::walk_in_distance) one.unit += "/sqrt(m)";
+  one.process = process;
+  one.stated = process.sd;
+  return one;
+}
+
+double wheel_noise(const Noise& noise) {
+  return std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
+}
+
+}  // namespace
+
+Noise silent_noise() {
+  Noise none;
+  none.left = none.right = none.compass = none.sighting = none.range = none.bearing = 0.0;
+  none.survey = none.truth = none.truth_heading = 0.0;
+  return none;
+}
+
+std::string name_of_source(const NoiseProcess& process) {
+  return std::string(name_of(process.channel)) + ", " + std::string(name_of(process.process));
+}
+
+std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& noise) {
+  std::vector<NoiseComponent> result;
+  if (wheel_noise(noise) > 0.0) {
+    result.push_back(white("wheels", "m^1/2", {&Noise::left, &Noise::right}, wheel_noise(noise)));
+  }
+  const auto add = [&](const char* name, const char* unit, double Noise::*member, bool there) {
+    if (there && noise.*member > 0.0) result.push_back(white(name, unit, {member}, noise.*member));
+  };
+  add("compass", "rad", &Noise::compass, has_compass(fit));
+  add("sighting", "m", &Noise::sighting, any_of_kind(fit, MeasurementKind::standing));
+  add("range", "m", &Noise::range, has_views(fit));
+  add("bearing", "rad", &Noise::bearing, any_of_kind(fit, MeasurementKind::view));
+  add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
+  add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
+  add("travel_per_s", "m/s^1/2", &Noise::travel_per_s, true);
+  return result;
+}
+
+std::vector<NoiseComponent> processes_of(const Noise& noise) {
+  std::vector<NoiseComponent> result;
+  for (const NoiseProcess& one : noise.processes) result.push_back(lasting(one));
+  return result;
+}
+
+double size_in(const Noise& noise, const NoiseComponent& component) {
+  if (component.lasts()) {
+    for (const NoiseProcess& one : noise.processes) {
+      if (one.channel == component.process.channel && one.process == component.process.process) {
+        return one.sd;
+      }
+    }
+    return 0.0;
+  }
+  double squares = 0.0;
+  for (double Noise::*member : component.white) squares += std::pow(noise.*member, 2);
+  return std::sqrt(squares / static_cast<double>(component.white.size()));
+}
+
+std::vector<NoiseComponent> candidate_components(const FitState& fit, const Noise& noise) {
+  std::vector<NoiseComponent> result;
+  const auto add = [&](Channel channel, ProcessKind process, std::vector<double> lengths = {0.0}) {
+    for (const double length : lengths) {
+      NoiseProcess one;
+      one.channel = channel;
+      one.process = process;
+      one.length = length;
+      result.push_back(lasting(one));
+    }
+  };
+  const auto add_white = [&](const char* name, const char* unit, double Noise::*member) {
+    if (noise.*member == 0.0) result.push_back(white(name, unit, {member}, 0.0));
+  };
+  const std::vector<double> times{0.5, 2.0, 10.0};
+  const std::vector<double> ways{0.5, 3.0};
+  add(Channel::travel, ProcessKind::per_leg);
+  add(Channel::turn, ProcessKind::per_leg);
+  add(Channel::difference, ProcessKind::per_leg);
+  add(Channel::drift, ProcessKind::correlated_in_t, {2.0, 10.0});
+  add(Channel::difference, ProcessKind::correlated_in_distance, ways);
+  add(Channel::travel, ProcessKind::correlated_in_distance, ways);
+  add_white("heading_per_s", "rad/s^1/2", &Noise::heading_per_s);
+  add_white("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad);
+  add_white("travel_per_s", "m/s^1/2", &Noise::travel_per_s);
+  if (has_compass(fit)) {
+    add(Channel::compass, ProcessKind::correlated_in_t, times);
+    add(Channel::compass, ProcessKind::correlated_in_distance, ways);
+  }
+  if (has_views(fit)) {
+    add(Channel::range, ProcessKind::correlated_in_t, times);
+    add(Channel::bearing, ProcessKind::correlated_in_t, times);
+    add(Channel::range, ProcessKind::per_pass);
+    add(Channel::bearing, ProcessKind::per_pass);
+  }
+  return result;
+}
+
+void take_into(Noise& noise, const NoiseComponent& component, double sd, double length) {
+  if (!component.lasts()) {
+    const double factor = component.stated > 0.0 ? sd / component.stated : 0.0;
+    for (double Noise::*member : component.white) {
+      noise.*member = factor > 0.0 ? factor * noise.*member : sd;
+    }
+    return;
+  }
+  NoiseProcess process = component.process;
+  process.sd = sd;
+  process.length = length;
+  for (NoiseProcess& one : noise.processes) {
+    if (one.channel != process.channel || one.process != process.process) continue;
+    one.sd = sd;
+    one.length = length;
+    return;
+  }
+  noise.processes.push_back(process);
+}
+
+std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component) const {
+  Noise unit = silent_noise();
+  for (double Noise::*member : component.white) {
+    unit.*member = component.stated > 0.0 ? stated_.*member / component.stated : 1.0;
+  }
+  std::vector<Matrix4> result;
+  result.reserve(fit_.problem.measurements.size());
+  for (const Measurement& one : fit_.problem.measurements) {
+    Matrix4 added = Matrix4::Zero();
+    if (one.kind == MeasurementKind::segment) {
+      added = segment_covariance(one, unit);
+    } else if (one.kind == MeasurementKind::standing) {
+      added.diagonal().head<2>().setConstant(unit.sighting * unit.sighting);
+    } else if (one.kind == MeasurementKind::view) {
+      added(0, 0) = unit.range * unit.range;
+      if (one.rows == 2) added(1, 1) = unit.bearing * unit.bearing;
+    } else if (one.kind == MeasurementKind::cartesian_view) {
+      added.diagonal().head<2>().setConstant(unit.range * unit.range);
+    }
+    result.push_back(added);
+  }
+  return result;
+}
+
+Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise) const {
+  Matrix4 result = Matrix4::Zero();
+  const Rows& rows = rows_[one.source];
+  if (one.rows == 4) result(3, 3) = noise.compass * noise.compass / rows.readings;
+  const bool moves =
+      noise.left + noise.right + noise.heading_per_s + noise.heading_per_rad + noise.travel_per_s >
+      0.0;
+  if (!moves) return result;
+  const Drive& drive = fit_.recordings[idx(one.session)].drive;
+  const std::vector<SegmentRow>& parts = fit_.problem.segments[one.source];
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const SegmentRow& row = parts[k];
+    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
+    const Matrix3 Q = arc_covariance(travel, row.duration, fit_.model.robot, noise);
+    result += rows.H[k] * Q * rows.H[k].transpose();
+  }
+  return result;
+}
+
+Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
+  Matrix4 fixed = Matrix4::Zero();
+  const double relative = stated_.range_relative;
+  switch (one.kind) {
+    case MeasurementKind::segment:
+      fixed.diagonal().head<3>().setConstant(kLeastSd * kLeastSd);
+      if (one.rows == 4) fixed(3, 3) = kLeastSd * kLeastSd;
+      break;
+    case MeasurementKind::survey:
+    case MeasurementKind::truth: {
+      const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
+      fixed.topLeftCorner(one.rows, one.rows) = colour * colour.transpose();
+      break;
+    }
+    case MeasurementKind::standing:
+      break;
+    case MeasurementKind::view:
+      fixed(0, 0) = std::pow(relative * one.value[0], 2);
+      break;
+    case MeasurementKind::cartesian_view:
+      fixed(0, 0) = fixed(1, 1) = relative * relative * one.value.squaredNorm();
+      break;
+  }
+  return fixed;
+}
+
+NoiseReml::NoiseReml(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance)
+    : fit_(fit),
+      stated_(stated),
+      problem_(fit.problem),
+      layer_(problem_, fit.recordings, fit.model.robot),
+      left_out_(fit.problem.measurements.size(), false),
+      scatter_(fit) {
+  for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
+  const Eigen::VectorXd offsets = offsets_of(fit);
+  rows_.resize(problem_.segments.size());
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    if (one.kind != MeasurementKind::segment) continue;
+    rows_[one.source] = {believed_noise(problem_, k, fit.recordings, fit.model, fit.columns.border,
+                                        offsets, fit.adjustment.state)
+                             .H,
+                         readings_of(problem_.segments[one.source])};
+  }
+  for (const Measurement& one : problem_.measurements) fixed_.push_back(fixed_covariance(one));
+  plain_nuisance_.resize(0, nuisance.cols());
+  if (nuisance.cols() == 0) return;
+  int rows = 0;
+  for (const Measurement& one : fit.problem.measurements) rows += one.rows;
+  plain_nuisance_ = nuisance.topRows(rows);
+  int at = 0;
+  for (const Measurement& one : fit.problem.measurements) {
+    const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
+    plain_nuisance_.middleRows(at, one.rows) =
+        (colour * plain_nuisance_.middleRows(at, one.rows)).eval();
+    at += one.rows;
+  }
+}
+
+void NoiseReml::choose(const std::vector<NoiseComponent>& components) {
+  components_ = components;
+  units_.clear();
+  laid_.clear();
+  laid_length_.clear();
+  for (const NoiseComponent& one : components) {
+    if (one.lasts()) {
+      laid_.push_back(
+          layer_.lay(one.process.channel, one.process.process, std::max(one.process.length, 1.0)));
+      laid_length_.push_back(-1.0);
+    } else {
+      units_.push_back(unit_covariances(one));
+    }
+  }
+  put_processes(problem_, laid_, std::vector<double>(laid_.size(), 1.0));
+  system_ = std::make_unique<RecordingSystem>(problem_, fit_.columns.border);
+  std::vector<double> weights(problem_.measurements.size(), 1.0);
+  for (std::size_t k = 0; k < weights.size(); ++k) weights[k] = left_out_[k] ? 0.0 : 1.0;
+  system_->set_weights(weights);
+}
+
+void NoiseReml::whiten(const Sizes& sizes) {
+  std::vector<double> sds;
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    const NoiseComponent& one = components_[c];
+    if (!one.lasts()) continue;
+    const std::size_t p = sds.size();
+    sds.push_back(sizes.sd[c]);
+    if (sizes.length[c] == laid_length_[p]) continue;
+    laid_[p] = layer_.lay(one.process.channel, one.process.process, sizes.length[c]);
+    laid_length_[p] = sizes.length[c];
+  }
+  put_processes(problem_, laid_, sds);
+  nuisance_.resize(system_->rows(), plain_nuisance_.cols());
+  nuisance_.setZero();
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    Measurement& one = problem_.measurements[k];
+    Matrix4 covariance = fixed_[k];
+    std::size_t white = 0;
+    for (std::size_t c = 0; c < components_.size(); ++c) {
+      if (components_[c].lasts()) continue;
+      covariance += sizes.sd[c] * sizes.sd[c] * units_[white++][k];
+    }
+    if (!laid_.empty()) covariance += problem_.within[k];
+    covariance.diagonal().array() += kExactSd * kExactSd;
+    one.whitener = whitener_of(covariance, one.rows);
+    if (nuisance_.cols() == 0) continue;
+    const int at = system_->first_row(k);
+    nuisance_.middleRows(at, one.rows) =
+        one.whitener.topLeftCorner(one.rows, one.rows) * plain_nuisance_.middleRows(at, one.rows);
+  }
+}
+
+double NoiseReml::scatter(const Sizes& sizes) {
+  if (scatter_.empty()) return 0.0;
+  double white = 0.0;
+  double wheels = 1.0;
+  std::vector<ReadingProcess> processes;
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    const NoiseComponent& one = components_[c];
+    if (one.name == "compass") white = sizes.sd[c];
+    if (one.name == "wheels") wheels = std::pow(sizes.sd[c] / size_in(fit_.model.noise, one), 2);
+    const ProcessKind kind = one.process.process;
+    if (!one.lasts() || one.process.channel != Channel::compass) continue;
+    if (kind == ProcessKind::white) white = std::hypot(white, sizes.sd[c]);
+    if (is_chain(kind)) processes.push_back({kind, sizes.sd[c], sizes.length[c]});
+  }
+  std::vector<double> at{white, wheels};
+  for (const ReadingProcess& one : processes) {
+    at.insert(at.end(), {static_cast<double>(one.process), one.sd, one.length});
+  }
+  if (at != scattered_at_) scattered_ = scatter_.minus_two_log(white, wheels, processes);
+  scattered_at_ = std::move(at);
+  return scattered_;
+}
+
+double NoiseReml::minus_two_log(const Sizes& sizes) {
+  whiten(sizes);
+  double sum = scatter(sizes);
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    if (left_out_[k]) continue;
+    const Measurement& one = problem_.measurements[k];
+    sum -= 2.0 * one.whitener.diagonal().head(one.rows).array().log().sum();
+  }
+  for (const NoiseState& state : problem_.noise_states) sum += 2.0 * std::log(state.sd);
+  RecordingState at = fit_.adjustment.state;
+  at.noise.resize(0);  // states of other processes, or in other units
+  const double chi2 = system_->linearise(at, fit_.adjustment.coefficients);
+  const RecordingSystem::Step step = system_->solve_step();
+  sum += system_->log_determinant() + chi2 - step.predicted;
+  if (nuisance_.cols() == 0) return sum;
+  const Eigen::MatrixXd& M = system_->border();
+  const Eigen::Index nodes = step.nodes.size();
+  Eigen::MatrixXd right(nodes + M.cols(), nuisance_.cols());
+  right.topRows(nodes) = system_->transposed_times(nuisance_);
+  right.bottomRows(M.cols()) = M.transpose() * nuisance_;
+  const Eigen::MatrixXd S =
+      nuisance_.transpose() * nuisance_ - right.transpose() * system_->solve(right);
+  Eigen::VectorXd left = system_->residuals() + system_->times(step.nodes);
+  if (M.cols() > 0) left += M * step.coefficients;
+  const Eigen::VectorXd g = nuisance_.transpose() * left;
+  const DenseLdlt factor(S);
+  return sum + factor.log_determinant() - g.dot(factor.solve(g));
+}
+
+}  // namespace trussmap

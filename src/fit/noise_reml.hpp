@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Restricted likelihood of a fit as a function of its noise.
+//
+//   component   white: covariance per unit of its variance, measurement by measurement
+//               process: states (noise_states.hpp), with an sd and perhaps a length
+//
+//   -2 log R = log|S| + log|X' S^-1 X| + least chi^2
+//
+// To which the scatter of the compass readings within segments is added (reading_scatter.hpp).
+//
+// With states as further unknowns that is sum log of all rows' variances + log|normal matrix| +
+// chi^2 (Henderson 1950; Harville 1977). The least chi^2 is that of the problem linearised at the
+// fit: one step of Gauss-Newton.
+#pragma once
+
+#include "estimation/noise_states.hpp"
+#include "estimation/recording_system.hpp"
+#include "estimation/segment_noise.hpp"
+#include "fit/fit_state.hpp"
+#include "fit/reading_scatter.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct NoiseComponent {
+  std::string name;
+  std::string unit;
+  /// White: which of Noise it scales together; empty: a process.
+  std::vector<double Noise::*> white;
+  NoiseProcess process;
+  double stated = 0.0;  ///< sd that was stated, 0: none
+
+  [[nodiscard]] bool lasts() const { return white.empty(); }
+};
+
+/// All zero.
+[[nodiscard]] Noise silent_noise();
+/// "compass, correlated in t".
+[[nodiscard]] std::string name_of_source(const NoiseProcess& process);
+
+/// Of the fit's equipment: the white sources of this noise, and its processes.
+[[nodiscard]] std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& noise);
+[[nodiscard]] std::vector<NoiseComponent> processes_of(const Noise& noise);
+/// What may be missing: optional white laws and processes of this equipment, lengths to start from.
+[[nodiscard]] std::vector<NoiseComponent> candidate_components(const FitState& fit,
+                                                               const Noise& noise);
+
+/// What a noise has of a component: 0 nothing.
+[[nodiscard]] double size_in(const Noise& noise, const NoiseComponent& component);
+
+/// Noise with a component's sd (and length).
+void take_into(Noise& noise, const NoiseComponent& component, double sd, double length);
+
+class NoiseReml {
+ public:
+  /// `stated`: by which wheels share their noise, and ranges their part in proportion. `nuisance`:
+  /// whitened columns (of the fit's rows) of what else may be missing. Keeps a reference to the
+  /// fit.
+  NoiseReml(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance);
+
+  /// Of the components chosen, and no others.
+  struct Sizes {
+    std::vector<double> sd;
+    std::vector<double> length;  ///< 0 where there is none
+  };
+  void choose(const std::vector<NoiseComponent>& components);
+  [[nodiscard]] double minus_two_log(const Sizes& sizes);
+
+  /// Problem and system of the last call.
+  [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
+  [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  [[nodiscard]] const Eigen::MatrixXd& nuisance() const { return nuisance_; }
+  [[nodiscard]] const ProcessLayer& layer() const { return layer_; }
+  /// Covariance per unit of a white component's variance, per measurement.
+  [[nodiscard]] std::vector<Matrix4> unit_covariances(const NoiseComponent& component) const;
+  [[nodiscard]] bool left_out(std::size_t measurement) const { return left_out_[measurement]; }
+
+ private:
+  /// A segment's rows, linearised where the fit believes them to be.
+  struct Rows {
+    std::vector<Eigen::Matrix<double, 4, 3>> H;
+    int readings = 0;
+  };
+  [[nodiscard]] Matrix4 segment_covariance(const Measurement& one, const Noise& noise) const;
+  /// What no component changes.
+  [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
+  void whiten(const Sizes& sizes);
+
+  const FitState& fit_;
+  Noise stated_;
+  RecordingProblem problem_;
+  ProcessLayer layer_;
+  std::unique_ptr<RecordingSystem> system_;
+  std::vector<bool> left_out_;
+  [[nodiscard]] double scatter(const Sizes& sizes);
+
+  ReadingScatter scatter_;
+  std::vector<double> scattered_at_;  ///< sizes of the last scatter, and its value
+  double scattered_ = 0.0;
+  std::vector<Rows> rows_;      ///< per segment
+  std::vector<Matrix4> fixed_;  ///< per measurement
+  std::vector<NoiseComponent> components_;
+  std::vector<std::vector<Matrix4>> units_;  ///< per white component and measurement
+  std::vector<LaidProcess> laid_;            ///< per process
+  std::vector<double> laid_length_;
+  Eigen::MatrixXd plain_nuisance_;  ///< not whitened, rows of the measurements
+  Eigen::MatrixXd nuisance_;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "odometry/row_reckoner.hpp"
+
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+/// Moves the estimate by a motion given in the robot's frame.
+PoseEstimate moved(const PoseEstimate& start, const Pose& displacement, const Matrix3& covariance) {
+  const Motion end = then({start.pose, start.covariance}, {displacement, covariance});
+  return {end.displacement, end.covariance};
+}
+
+void correct_heading(PoseEstimate& estimate, double reading, double variance) {
+  const double innovation = wrap_angle(reading - estimate.pose.heading);
+  const double total = estimate.covariance(2, 2) + variance;
+  const Eigen::Vector3d gain = estimate.covariance.col(2) / total;
+  estimate.pose.x += gain(0) * innovation;
+  estimate.pose.y += gain(1) * innovation;
+  estimate.pose.heading += gain(2) * innovation;
+  estimate.covariance = symmetrised(estimate.covariance - gain * estimate.covariance.row(2));
+}
+
+}  // namespace
+
+Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
+  Pose end = arc_displacement(travel, wheelbase);
+  if (slip == 0.0) return end;
+  const double swing = 0.5 * (travel.right - travel.left);
+  const Vector2 aside =
+      quarter_turn(arc_displacement({slip - swing, slip + swing}, wheelbase).position());
+  end.x += aside.x();
+  end.y += aside.y();
+  return end;
+}
+
+void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
+  const Pose displacement = displacement_of(row.travel, row.slip, robot.wheelbase);
+  if (compass_) {
+    at_ = moved(at_, displacement, arc_covariance(row.travel, row.duration, robot, noise));
+    if (!std::isnan(row.reading)) {
+      correct_heading(at_, row.reading, noise.compass * noise.compass);
+    }
+    return;
+  }
+  if (arc_.take(row.travel, row.duration, robot.wheelbase, {noise.left, noise.right})) {
+    anchor_ = at_;
+  }
+  const DriveArc& arc = arc_.arc();
+  const Pose exact = compose(at_.pose, displacement);
+  at_ = moved(anchor_, arc_displacement(arc.travel, robot.wheelbase),
+              arc_covariance(arc.travel, arc.duration, robot, noise));
+  at_.pose = exact;
+}
+
+void RowReckoner::add_first_variance(double variance) {
+  Eigen::Vector3d by_heading;
+  by_heading << quarter_turn(at_.pose.position()), 1.0;
+  at_.covariance += variance * by_heading * by_heading.transpose();
+}
+
+}  // namespace trussmap

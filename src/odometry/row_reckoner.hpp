@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Dead reckoning row by row: what dead_reckoning.hpp does with a drive, as its rows come.
+//
+//   without a compass   covariance by the arc that the row belongs to: from the arc's start, one
+//                       closed form over all of its rows so far
+//   with one            row by row, and each reading corrects (extended Kalman filter)
+#pragma once
+
+#include "odometry/merge.hpp"
+#include "trussmap/arc.hpp"
+#include "trussmap/dead_reckoning.hpp"
+
+namespace trussmap {
+
+/// What wheels show, and a slip to the left besides (m) that is spread evenly along the same arc;
+/// in the frame of its start.
+[[nodiscard]] Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase);
+
+struct ReckonedRow {
+  WheelTravel travel;
+  double duration = 0.0;     ///< s
+  double slip = 0.0;         ///< m to the left
+  double reading = kAbsent;  ///< rad, compass at the row's end; NaN: none
+};
+
+class RowReckoner {
+ public:
+  RowReckoner(const PoseEstimate& start, bool compass)
+      : at_(start), anchor_(start), compass_(compass) {}
+
+  void take(const ReckonedRow& row, const Robot& robot, const Noise& noise);
+  /// The heading at the origin, that all was reckoned from, turns out to have this variance (rad^2)
+  /// besides; with a compass alone.
+  void add_first_variance(double variance);
+
+  [[nodiscard]] const PoseEstimate& at() const { return at_; }
+
+ private:
+  PoseEstimate at_;
+  PoseEstimate anchor_;  ///< where the arc began
+  GrowingArc arc_;
+  bool compass_;
+};
+
+}  // namespace trussmap
