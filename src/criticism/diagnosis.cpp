@@ -281,6 +281,17 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   if (!options.estimate_noise) return Diagnostician(recordings, fit, options).run();
   auto under = std::make_shared<const FitWithNoise>(with_noise_beside(recordings, fit, stated));
   DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
+  std::vector<Effect> missing;
+  for (const Finding* one : found_by(run.result)) missing.push_back(one->effect);
+  for (Effect& one : missing) one.coefficients.clear();
+  if (!missing.empty() && !(under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway)) {
+    Defended defended = defended_against_noise(
+        recordings, *under, stated, missing, static_cast<double>(run.result.tried), options.level);
+    if (defended.otherwise) {
+      under = std::make_shared<const FitWithNoise>(std::move(*defended.otherwise));
+      run = Diagnostician(recordings, under->fit, options).run();
+    }
+  }
   if (under->noise.changed()) {
     run.result.noise = noise_beyond(recordings, under->fit, stated, run.result);
   }

@@ -80,4 +80,46 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
   return result;
 }
 
+Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
+                                const Noise& stated, const std::vector<Effect>& effects,
+                                double tried, double level) {
+  const FitState& state = *found.fit.state;
+  const ScoreTest tests(state);
+  std::vector<Eigen::MatrixXd> columns;
+  for (const Effect& one : effects) columns.push_back(tests.columns(one));
+  const auto together = [&](const std::vector<bool>& wanted) {
+    Eigen::MatrixXd all(tests.system().rows(), 0);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (!wanted[k]) continue;
+      all.conservativeResize(Eigen::NoChange, all.cols() + columns[k].cols());
+      all.rightCols(columns[k].cols()) = columns[k];
+    }
+    return all;
+  };
+  NoiseFitOptions options;
+  options.errors = false;
+  Defended result;
+  result.effects.assign(effects.size(), true);
+  const double with_all =
+      minus_two_log_under(state, stated, found.fit.model.noise, together(result.effects));
+  const std::vector<bool> all = result.effects;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    std::vector<bool> others = all;
+    others[k] = false;
+    const FittedNoise noise = fit_noise(state, stated, together(others), options);
+    if (noise.noise == found.fit.model.noise) continue;
+    const double without = minus_two_log_under(state, stated, noise.noise, together(others));
+    const double p =
+        chi2_p_value(std::max(0.0, without - with_all), static_cast<int>(columns[k].cols()));
+    result.effects[k] = tried * p < level;
+  }
+  if (result.effects == all) return result;
+  FitWithNoise otherwise{found.fit, fit_noise(state, stated, together(result.effects), options)};
+  Model model = found.fit.model;
+  model.noise = otherwise.noise.noise;
+  otherwise.fit = refit(recordings, model, found.fit);
+  result.otherwise = std::move(otherwise);
+  return result;
+}
+
 }  // namespace trussmap

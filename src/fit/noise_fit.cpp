@@ -3,23 +3,20 @@
 #include "trussmap/noise_fit.hpp"
 
 #include "effects/channel_physics.hpp"
-#include "estimation/measurement_rows.hpp"
-#include "fit/fit_projection.hpp"
 #include "fit/noise_fit.hpp"
 #include "fit/noise_reml.hpp"
+#include "fit/noise_screening.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 #include <utility>
 
 namespace trussmap {
 namespace {
 
-constexpr Eigen::Index kDraws = 96;
 constexpr double kWorthFitting = 2.0;  // sds of a score
 constexpr double kAsStated = 10.0;     // -2 log R: p = 0.0016
 constexpr double kStays = 10.0;        // -2 log R
@@ -28,7 +25,6 @@ constexpr double kNegligible = 0.05;    // of a size
 constexpr double kLeastOfStated = 8.0;  // times smaller a white size may be
 constexpr double kLongest = 60.0;       // s or m: what lasts longer is an effect, and no noise
 constexpr double kLongestOfViews = 10.0;
-constexpr double kLeastStates = 6.0;
 constexpr double kOfALength = 3.0;   // -2 log R that it has to bring: the plainer is likelier
 constexpr double kStep = 1e-3;       // of a logarithm, for slopes
 constexpr double kWideStep = 0.05;   // the same, for curvatures
@@ -347,15 +343,15 @@ class NoiseFitter {
   }
 
   bool add_one() {
-    const std::vector<Screened> screened = screen();
+    const std::vector<ScreenedNoise> screened = screen();
     if (round_ == 0) tried_ = static_cast<int>(screened.size());
     ++round_;
     // The likeliest few, each with its own size: the length of a kind that scores best stands for
     // it.
-    std::vector<Screened> worth;
-    for (const Screened& one : screened) {
+    std::vector<ScreenedNoise> worth;
+    for (const ScreenedNoise& one : screened) {
       if (one.z < kWorthFitting) continue;
-      const auto twin = std::find_if(worth.begin(), worth.end(), [&](const Screened& other) {
+      const auto twin = std::find_if(worth.begin(), worth.end(), [&](const ScreenedNoise& other) {
         return other.component.name == one.component.name;
       });
       if (twin == worth.end()) {
@@ -365,7 +361,7 @@ class NoiseFitter {
       }
     }
     std::sort(worth.begin(), worth.end(),
-              [](const Screened& a, const Screened& b) { return a.z > b.z; });
+              [](const ScreenedNoise& a, const ScreenedNoise& b) { return a.z > b.z; });
     if (worth.size() > kMostFitted) worth.resize(kMostFitted);
     const std::vector<Member> members = members_;
     const NoiseReml::Sizes sizes = sizes_;
@@ -377,7 +373,7 @@ class NoiseFitter {
       double claim = 0.0;
     };
     std::optional<Tried> best;
-    for (const Screened& one : worth) {
+    for (const ScreenedNoise& one : worth) {
       members_ = members;
       sizes_ = sizes;
       take(one.component, std::max(one.sd, 1e-9), one.component.process.length, true);
@@ -439,130 +435,23 @@ class NoiseFitter {
     sizes_.sd[k] = at;
   }
 
-  struct Screened {
-    NoiseComponent component;
-    double z = 0.0;
-    double sd = 0.0;
-  };
-
-  /// The score for a variance at 0, q = r'Vr, against draws under the present noise.
-  std::vector<Screened> screen() {
+  /// The candidates that are not there yet, asked of the present fit.
+  std::vector<ScreenedNoise> screen() {
     static_cast<void>(deviance(sizes_));
-    const RecordingSystem& system = reml_.system();
-    const FitProjection P(fit_, reml_.problem(), system, free_of_map(system, reml_.nuisance()));
-    std::mt19937_64 random(3);
-    std::normal_distribution<double> normal;
-    Eigen::MatrixXd draws(system.rows(), kDraws + 1);
-    for (double& value : draws.reshaped()) value = normal(random);
-    draws.col(kDraws) = system.residuals();
-    draws = P.times(draws);
-    const Eigen::MatrixXd free = free_quadratics(draws);
-    std::vector<Screened> result;
-    for (const NoiseComponent& one : candidates_) {
-      if (is_member(one)) continue;
-      Eigen::VectorXd q;
-      if (one.lasts()) {
-        const LaidProcess laid =
-            reml_.layer().lay(one.process.channel, one.process.process, one.process.length);
-        if (static_cast<double>(laid.states.size()) < kLeastStates) continue;
-        q = quadratic(laid, draws);
-      } else {
-        q = quadratic(reml_.unit_covariances(one), draws);
-      }
-      q.array() -= q.head(kDraws).mean();
-      if (free.cols() > 0) q -= free * least_squares(free.topRows(kDraws), q.head(kDraws));
-      const double variance =
-          q.head(kDraws).squaredNorm() / static_cast<double>(kDraws - 1 - free.cols());
-      if (!(variance > 0.0)) continue;
-      const double z = q[kDraws] / std::sqrt(variance);
-      // Var q = 2 tr(PVPV), and q - E q rises by tr(PVPV) per unit of variance.
-      const double size = std::max(0.0, q[kDraws] / (0.5 * variance));
-      result.push_back({one, z, std::sqrt(size)});
-    }
-    return result;
-  }
-
-  /// The same of the sources that are estimated already, less their means: what they can take up
-  /// is no sign of another (efficient score).
-  [[nodiscard]] Eigen::MatrixXd free_quadratics(const Eigen::MatrixXd& draws) const {
-    Eigen::MatrixXd result(draws.cols(), 0);
+    std::vector<NoiseComponent> present;
     for (std::size_t k = 0; k < members_.size(); ++k) {
-      const NoiseComponent& one = members_[k].component;
       if (!members_[k].free) continue;
-      Eigen::VectorXd q =
-          one.lasts() ? quadratic(reml_.layer().lay(one.process.channel, one.process.process,
-                                                    std::max(sizes_.length[k], 1e-3)),
-                                  draws)
-                      : quadratic(reml_.unit_covariances(one), draws);
-      q.array() -= q.head(kDraws).mean();
-      result.conservativeResize(Eigen::NoChange, result.cols() + 1);
-      result.rightCols<1>() = q;
+      present.push_back(members_[k].component);
+      present.back().process.length = sizes_.length[k];
     }
-    return result;
+    std::vector<NoiseComponent> asked = candidates_;
+    std::erase_if(asked, [this](const NoiseComponent& one) { return is_member(one); });
+    return screened_noise(fit_, reml_, asked, present);
   }
 
   [[nodiscard]] bool is_member(const NoiseComponent& one) const {
     return std::any_of(members_.begin(), members_.end(),
                        [&](const Member& member) { return member.component.name == one.name; });
-  }
-
-  [[nodiscard]] static Eigen::MatrixXd free_of_map(const RecordingSystem& system,
-                                                   const Eigen::MatrixXd& columns) {
-    if (columns.cols() == 0) return columns;
-    return columns - system.times(system.solve_nodes(system.transposed_times(columns)));
-  }
-
-  /// y'V y of each column, V of a white component.
-  [[nodiscard]] Eigen::VectorXd quadratic(const std::vector<Matrix4>& added,
-                                          const Eigen::MatrixXd& draws) const {
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
-    const RecordingProblem& problem = reml_.problem();
-    for (std::size_t k = 0; k < added.size(); ++k) {
-      if (added[k].isZero(0.0) || reml_.left_out(k)) continue;
-      const Measurement& one = problem.measurements[k];
-      const Eigen::MatrixXd V =
-          (one.whitener * added[k] * one.whitener.transpose()).topLeftCorner(one.rows, one.rows);
-      const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
-      q += (y.cwiseProduct(V * y)).colwise().sum().transpose();
-    }
-    return q;
-  }
-
-  /// The same of a process: what its states' columns see of y, coloured by their prior.
-  [[nodiscard]] Eigen::VectorXd quadratic(const LaidProcess& laid,
-                                          const Eigen::MatrixXd& draws) const {
-    const RecordingProblem& problem = reml_.problem();
-    const auto states = static_cast<Eigen::Index>(laid.states.size());
-    Eigen::MatrixXd u = Eigen::MatrixXd::Zero(states, draws.cols());
-    for (std::size_t k = 0; k < laid.terms.size(); ++k) {
-      if (laid.terms[k].empty() || reml_.left_out(k)) continue;
-      const Measurement& one = problem.measurements[k];
-      const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
-      for (const NoiseTerm& term : laid.terms[k]) {
-        const Vector4 column = one.whitener * error_by(one, by_view_of(problem, k), term);
-        u.row(term.state) += column.head(one.rows).transpose() * y;
-      }
-    }
-    // u'K u with K = L L', L the chain: z = L eta.
-    for (Eigen::Index k = states; k-- > 0;) {
-      const NoiseState& state = laid.states[static_cast<std::size_t>(k)];
-      if (state.previous >= 0) u.row(state.previous) += state.keep * u.row(k);
-    }
-    Eigen::VectorXd q = Eigen::VectorXd::Zero(draws.cols());
-    for (Eigen::Index k = 0; k < states; ++k) {
-      const double sd = laid.states[static_cast<std::size_t>(k)].sd;
-      q += sd * sd * u.row(k).cwiseAbs2().transpose();
-    }
-    return q + quadratic(laid.within, draws);
-  }
-
-  [[nodiscard]] Eigen::Matrix<double, 4, 6> by_view_of(const RecordingProblem& problem,
-                                                       std::size_t k) const {
-    const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::segment) return Eigen::Matrix<double, 4, 6>::Zero();
-    return measurement_rows(problem, one, fit_.adjustment.state, one.value,
-                            view_of(fit_.columns.border, offsets_of(fit_), one))
-        .by_view;
   }
 
   // ----------------------------------------
@@ -655,6 +544,29 @@ constexpr double kStillBetter = 1.0;  // of -2 log R
 FittedNoise fit_noise(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance,
                       const NoiseFitOptions& options) {
   return NoiseFitter(fit, stated, nuisance, options).run();
+}
+
+double minus_two_log_under(const FitState& fit, const Noise& stated, const Noise& noise,
+                           const Eigen::MatrixXd& columns) {
+  NoiseReml reml(fit, stated, columns);
+  std::vector<NoiseComponent> components = white_components(fit, stated);
+  for (const auto& more : {white_components(fit, noise), processes_of(noise)}) {
+    for (NoiseComponent one : more) {
+      const bool known =
+          std::any_of(components.begin(), components.end(),
+                      [&one](const NoiseComponent& other) { return other.name == one.name; });
+      if (known) continue;
+      one.stated = 0.0;
+      components.push_back(one);
+    }
+  }
+  NoiseReml::Sizes sizes;
+  for (const NoiseComponent& one : components) {
+    sizes.sd.push_back(size_in(noise, one));
+    sizes.length.push_back(one.process.length);
+  }
+  reml.choose(components);
+  return reml.minus_two_log_at_best(sizes);
 }
 
 FittedNoise fit_noise(const ModelFit& fit, const NoiseFitOptions& options) {

@@ -16,4 +16,9 @@ namespace trussmap {
                                     const Eigen::MatrixXd& nuisance,
                                     const NoiseFitOptions& options);
 
+/// -2 log of the likelihood under a noise (restricted but for `columns`, whitened as above, whose
+/// sizes are at their likeliest). Differences between noises and columns of one fit count.
+[[nodiscard]] double minus_two_log_under(const FitState& fit, const Noise& stated,
+                                         const Noise& noise, const Eigen::MatrixXd& columns);
+
 }  // namespace trussmap

@@ -112,7 +112,8 @@ double size_in(const Noise& noise, const NoiseComponent& component) {
 
 std::vector<NoiseComponent> candidate_components(const FitState& fit, const Noise& noise) {
   std::vector<NoiseComponent> result;
-  const auto add = [&](Channel channel, ProcessKind process, std::vector<double> lengths = {0.0}) {
+  const auto add = [&](Channel channel, ProcessKind process,
+                       const std::vector<double>& lengths = {0.0}) {
     for (const double length : lengths) {
       NoiseProcess one;
       one.channel = channel;
@@ -346,7 +347,7 @@ double NoiseReml::scatter(const Sizes& sizes) {
   return scattered_;
 }
 
-double NoiseReml::minus_two_log(const Sizes& sizes) {
+NoiseReml::Parts NoiseReml::parts(const Sizes& sizes) {
   whiten(sizes);
   double sum = scatter(sizes);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
@@ -360,7 +361,7 @@ double NoiseReml::minus_two_log(const Sizes& sizes) {
   const double chi2 = system_->linearise(at, fit_.adjustment.coefficients);
   const RecordingSystem::Step step = system_->solve_step();
   sum += system_->log_determinant() + chi2 - step.predicted;
-  if (nuisance_.cols() == 0) return sum;
+  if (nuisance_.cols() == 0) return {sum, 0.0, 0.0};
   const Eigen::MatrixXd& M = system_->border();
   const Eigen::Index nodes = step.nodes.size();
   Eigen::MatrixXd right(nodes + M.cols(), nuisance_.cols());
@@ -372,7 +373,17 @@ double NoiseReml::minus_two_log(const Sizes& sizes) {
   if (M.cols() > 0) left += M * step.coefficients;
   const Eigen::VectorXd g = nuisance_.transpose() * left;
   const DenseLdlt factor(S);
-  return sum + factor.log_determinant() - g.dot(factor.solve(g));
+  return {sum, g.dot(factor.solve(g)), factor.log_determinant()};
+}
+
+double NoiseReml::minus_two_log(const Sizes& sizes) {
+  const Parts all = parts(sizes);
+  return all.without - all.taken + all.information;
+}
+
+double NoiseReml::minus_two_log_at_best(const Sizes& sizes) {
+  const Parts all = parts(sizes);
+  return all.without - all.taken;
 }
 
 }  // namespace trussmap

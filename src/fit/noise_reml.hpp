@@ -71,6 +71,9 @@ class NoiseReml {
   };
   void choose(const std::vector<NoiseComponent>& components);
   [[nodiscard]] double minus_two_log(const Sizes& sizes);
+  /// The same with the nuisance columns' sizes at their likeliest, instead of integrated out: to
+  /// compare with none, or with others.
+  [[nodiscard]] double minus_two_log_at_best(const Sizes& sizes);
 
   /// Problem and system of the last call.
   [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
@@ -90,6 +93,13 @@ class NoiseReml {
   [[nodiscard]] Matrix4 segment_covariance(const Measurement& one, const Noise& noise) const;
   /// What no component changes.
   [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
+  /// Without nuisance; and with it, what its columns take away and log|their information|.
+  struct Parts {
+    double without = 0.0;
+    double taken = 0.0;
+    double information = 0.0;
+  };
+  [[nodiscard]] Parts parts(const Sizes& sizes);
   void whiten(const Sizes& sizes);
 
   const FitState& fit_;
