@@ -38,12 +38,13 @@ std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand
   return adjusted_poses(fit);
 }
 
-/// Processes that act on what dead reckoning reads.
+/// Processes of the wheels' motion.
 bool motion_noise_lasts(const Noise& noise) {
   return std::any_of(noise.processes.begin(), noise.processes.end(), [](const NoiseProcess& one) {
-    static constexpr std::array kViews{Channel::lever,       Channel::lever_left, Channel::range,
-                                       Channel::range_scale, Channel::bearing,    Channel::delay};
-    return std::find(kViews.begin(), kViews.end(), one.channel) == kViews.end();
+    static constexpr std::array kOthers{Channel::lever,       Channel::lever_left, Channel::range,
+                                        Channel::range_scale, Channel::bearing,    Channel::delay,
+                                        Channel::compass};
+    return std::find(kOthers.begin(), kOthers.end(), one.channel) == kOthers.end();
   });
 }
 
@@ -75,8 +76,8 @@ void run_apply(ApplyCommand options) {
              std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
   fmt::print("written: {}\n", fmt::join(names, ", "));
   if (!options.adjusted && motion_noise_lasts(input.model.noise)) {
-    fmt::print("{}", warning_text("the covariances know the model's white noise alone: with noise "
-                                  "that lasts, as it has, they are too small"));
+    fmt::print("{}", warning_text("of the wheels' noise the covariances know what is white: with "
+                                  "motion noise that lasts, as the model has, they are too small"));
   }
 }
 

@@ -133,7 +133,8 @@ void print_verdict(const Diagnosis& result) {
 /// Noise laws and single events that are significant.
 void print_others(const Diagnosis& result, std::size_t count) {
   std::size_t shown = 0;
-  for (const NoiseTest& one : result.noise) {
+  const bool estimated = result.under && result.under->noise.changed();  // shown by itself
+  for (const NoiseTest& one : estimated ? std::vector<NoiseTest>() : result.noise) {
     if (one.p_adjusted >= kSignificance || shown >= 2) continue;
     if (shown++ == 0) fmt::print("\nMore noise than the model states\n");
     fmt::print("  {}: {} (score {:.1f}, p {})\n", one.law, in_words(one), one.score,

@@ -102,6 +102,13 @@ void print_estimates(const EffectGain& result) {
 
 void print(const EffectGain& result) {
   print_estimates(result);
+  if (result.with.model.effects.empty()) {
+    fmt::print("under the noise found: {}, p {}\n\n",
+               fit_in_words(result.with.chi2, result.with.dof, result.with.coefficients),
+               probability_text(result.with.p_value));
+    for (const std::string& warning : result.with.warnings) fmt::print("{}", warning_text(warning));
+    return;
+  }
   const ModelFit& before = result.without;
   const ModelFit& after = result.with;
   TextTable table{
@@ -161,7 +168,7 @@ void run_fit(const FitCommand& options) {
   progress.end();
   print(result);
   if (noise) {
-    fmt::print("\n");
+    if (!result.with.model.effects.empty()) fmt::print("\n");
     print_noise(*noise);
   }
   print_notes(input);

@@ -6,6 +6,8 @@
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace trussmap::app {
@@ -13,8 +15,15 @@ namespace {
 
 std::string size_text(double size, double error) {
   if (error == 0.0) return fmt::format("{:.3g}", size);
+  constexpr double kUnknown = 0.7;  // of the size
+  if (error > kUnknown * size) return fmt::format("about {:.1g}", size);
   const QuantityText text = quantity_text(size, error);
   return text.error.empty() ? text.value : text.value + " +- " + text.error;
+}
+
+/// Absent: 0.
+nlohmann::ordered_json number_or_null(double value) {
+  return value > 0.0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace
@@ -24,7 +33,7 @@ void print_noise(const FittedNoise& noise) {
     fmt::print("Noise is as the model states it.\n");
     return;
   }
-  fmt::print("Noise, estimated (the likelihood rises: -2 log R by {:.1f})\n", noise.gain);
+  fmt::print("Noise, estimated\n");
   TextTable table{
       {Align::left, Align::right, Align::right, Align::left, Align::right}, {}, true, 2};
   table.rows.push_back({"noise of", "stated", "found", "unit", "lasts for"});
@@ -33,15 +42,20 @@ void print_noise(const FittedNoise& noise) {
     const char* unit = one.process.process == ProcessKind::correlated_in_t ? " s" : " m";
     table.rows.push_back(
         {one.name, one.stated > 0.0 ? fmt::format("{:.4g}", one.stated) : "-",
-         as_stated ? "as stated" : size_text(one.sd, one.sd_error), one.unit,
+         as_stated ? "as stated" : size_text(one.sd, one.sd_error) + (one.at_limit ? " *" : ""),
+         one.unit,
          one.process.length > 0.0 ? size_text(one.process.length, one.length_error) + unit : ""});
   }
   fmt::print("{}", table_text(table));
+  if (std::any_of(noise.sources.begin(), noise.sources.end(),
+                  [](const NoiseSource& one) { return one.at_limit; })) {
+    fmt::print("  * as far as sizes and lengths are sought: it may lie beyond\n");
+  }
 }
 
 void print_budget(const std::vector<NoiseBudget>& budget) {
   if (budget.empty() || budget.back().shares.size() < 2) return;
-  fmt::print("\nWhat dead reckoning by the wheels owes to each source of noise\n");
+  fmt::print("\nWhat dead reckoning by the wheels alone owes to each source of noise\n");
   TextTable table{{Align::left}, {}, true, 2};
   table.rows.push_back({"noise of"});
   for (const NoiseBudget& one : budget) {
@@ -91,10 +105,11 @@ nlohmann::ordered_json noise_json(const FittedNoise& noise) {
     }
     source["stated"] = one.stated;
     source["sd"] = one.sd;
-    source["sd_error"] = one.sd_error;
+    source["sd_error"] = number_or_null(one.sd_error);
+    source["at_limit"] = one.at_limit;
     if (one.process.length > 0.0) {
       source["length"] = one.process.length;
-      source["length_error"] = one.length_error;
+      source["length_error"] = number_or_null(one.length_error);
     }
     source["gain"] = one.gain;
     if (one.lasts) source["p_adjusted"] = one.p_value;

@@ -19,8 +19,9 @@
 //
 // `compass` effects are taken off each reading, which then corrects heading and pose. Without a
 // compass they do nothing. `lever`, `range`, `range_scale`, `bearing` and `delay` change no pose:
-// corrected() applies them to a sighting. Truth does not occur here, and neither does noise that
-// lasts (Noise::processes): covariances are those of the white noise alone.
+// corrected() applies them to a sighting. Truth does not occur here. Of noise that lasts
+// (Noise::processes) a compass's counts, as white noise whose mean is as uncertain; that of the
+// motion does not: covariances are those of the wheels' white noise.
 //
 // Cost: a microsecond or so per row and shape; memory for the rows of two seconds.
 #pragma once

@@ -40,8 +40,9 @@ struct NoiseSource {
   double sd = 0.0;       ///< wheels: k of both, root mean square, m^(1/2)
   double sd_error = 0.0;
   double length_error = 0.0;
-  double gain = 0.0;     ///< fall of -2 log R by it; of a white source by its new size
-  double p_value = 1.0;  ///< of a process: chance of as much, times the processes tried
+  bool at_limit = false;  ///< size or length went as far as is sought: it may lie beyond
+  double gain = 0.0;      ///< fall of -2 log R by it; of a white source by its new size
+  double p_value = 1.0;   ///< of a process: chance of as much, times the processes tried
 };
 
 struct FittedNoise {

@@ -295,6 +295,11 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   if (under->noise.changed()) {
     run.result.noise = noise_beyond(recordings, under->fit, stated, run.result);
   }
+  // What is missing says why the errors are too large; the noise is not the model's any more.
+  if (under->noise.changed() && run.result.verdict == Diagnosis::Verdict::missing) {
+    std::erase_if(run.result.warnings,
+                  [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; });
+  }
   run.result.under = std::move(under);
   return run;
 }

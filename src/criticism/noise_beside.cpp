@@ -69,6 +69,7 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
     if (round > 0) options.most_processes = 0;
     FittedNoise next = fit_noise(*result.fit.state, stated, suspects(*result.fit.state), options);
     if (round > 0 && next.gain < gain + kStillBetter) break;
+    next.tried = std::max(next.tried, result.noise.tried);
     result.noise = std::move(next);
     gain = result.noise.gain;
     if (result.noise.noise == result.fit.model.noise) break;
@@ -86,6 +87,7 @@ Defended defended_against_noise(const std::vector<Recording>& recordings, const 
   const FitState& state = *found.fit.state;
   const ScoreTest tests(state);
   std::vector<Eigen::MatrixXd> columns;
+  columns.reserve(effects.size());
   for (const Effect& one : effects) columns.push_back(tests.columns(one));
   const auto together = [&](const std::vector<bool>& wanted) {
     Eigen::MatrixXd all(tests.system().rows(), 0);

@@ -193,7 +193,7 @@ class CorrectedOdometry::State {
       after.turned_variance += arc_covariance(row.travel, row.duration, robot_, noise_)(2, 2);
       if (std::isnan(reading)) return after;
       after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
-      after.reckoner.add_first_variance(noise_.compass * noise_.compass + after.turned_variance);
+      after.reckoner.add_first_variance(reading_variance(noise_) + after.turned_variance);
       after.heading_known = true;
       return after;
     }

@@ -22,8 +22,9 @@ constexpr double kAsStated = 10.0;     // -2 log R: p = 0.0016
 constexpr double kStays = 10.0;        // -2 log R
 constexpr double kAlmostNothing = 1e-4;
 constexpr double kNegligible = 0.05;    // of a size
-constexpr double kLeastOfStated = 8.0;  // times smaller a white size may be
-constexpr double kLongest = 60.0;       // s or m: what lasts longer is an effect, and no noise
+constexpr double kLeastOfStated = 2.0;  // times smaller a white size may be
+constexpr double kLeastBesideAProcess = 8.0;
+constexpr double kLongest = 60.0;  // s or m: what lasts longer is an effect, and no noise
 constexpr double kLongestOfViews = 10.0;
 constexpr double kOfALength = 3.0;   // -2 log R that it has to bring: the plainer is likelier
 constexpr double kStep = 1e-3;       // of a logarithm, for slopes
@@ -169,7 +170,6 @@ class NoiseFitter {
   /// Where a logarithm may go.
   [[nodiscard]] Eigen::VectorXd bounded(const Parameters& of, Eigen::VectorXd x) const {
     constexpr double kReach = 5.0;
-    const double shrink = std::log(kLeastOfStated);
     for (std::size_t k = 0; k < of.places.size(); ++k) {
       const Member& member = members_[of.places[k].component];
       double& value = x[static_cast<Eigen::Index>(k)];
@@ -182,7 +182,9 @@ class NoiseFitter {
       } else if (member.component.stated > 0.0) {
         const double stated = std::log(member.component.stated);
         const bool scattered = member.component.name == "compass";  // known from readings alone
-        value = std::clamp(value, stated - (scattered ? kReach : shrink), stated + kReach);
+        const bool beside = is_beside_a_process(of.places[k].component);
+        const double least = std::log(beside ? kLeastBesideAProcess : kLeastOfStated);
+        value = std::clamp(value, stated - (scattered ? kReach : least), stated + kReach);
       } else {
         const double scale = std::log(facts_scale(member.component));
         value = std::clamp(value, scale - 3.0 * kReach, scale + kReach);
@@ -456,6 +458,21 @@ class NoiseFitter {
 
   // ----------------------------------------
 
+  /// Whether a size or a length of the component would go further than it may.
+  [[nodiscard]] bool at_limit(const Parameters& of, std::size_t component) const {
+    constexpr double kBeyond = 1e-6;
+    const Eigen::VectorXd x = of.values();
+    const Eigen::VectorXd away = Eigen::VectorXd::Constant(x.size(), kBeyond);
+    const Eigen::VectorXd less = bounded(of, x - away);
+    const Eigen::VectorXd more = bounded(of, x + away);
+    for (std::size_t k = 0; k < of.places.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (of.places[k].component != component) continue;
+      if (less[at] > x[at] - 0.5 * kBeyond || more[at] < x[at] + 0.5 * kBeyond) return true;
+    }
+    return false;
+  }
+
   void report(double stated, FittedNoise& result) {
     result.noise = stated_;
     Eigen::VectorXd errors;
@@ -481,12 +498,14 @@ class NoiseFitter {
         (of.places[place].length ? source.length_error : source.sd_error) =
             error * (of.places[place].length ? sizes_.length[k] : sizes_.sd[k]);
       }
+      source.at_limit = one.free && at_limit(of, k);
       result.sources.push_back(source);
       if (!one.free) continue;
       any = true;
       take_into(result.noise, one.component, sizes_.sd[k], sizes_.length[k]);
     }
     result.gain = any ? std::max(0.0, stated - best_) : 0.0;
+    for (NoiseSource& one : result.sources) one.gain = std::min(one.gain, result.gain);
   }
 
   /// Of the logarithms, by the curvature of -2 log R.

@@ -41,8 +41,7 @@ InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
     variance += arc_covariance(travel, row.duration, robot, noise)(2, 2);
     const double reading = drive.heading[row.row];
     if (!std::isnan(reading)) {
-      return {{wrap_angle(reading - turn), noise.compass * noise.compass + variance},
-              drive.t[row.row]};
+      return {{wrap_angle(reading - turn), reading_variance(noise) + variance}, drive.t[row.row]};
     }
   }
   return {};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/row_reckoner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trussmap {
@@ -36,12 +37,38 @@ Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
   return end;
 }
 
+double reading_variance(const Noise& noise) {
+  double variance = noise.compass * noise.compass;
+  for (const NoiseProcess& one : noise.processes) {
+    if (one.channel == Channel::compass) variance += one.sd * one.sd;
+  }
+  return variance;
+}
+
+double white_equivalent(const Noise& noise, double duration, double way) {
+  constexpr double kMost = 2000.0;  // rows: what lasts for longer is hardly ever averaged
+  double variance = noise.compass * noise.compass;
+  for (const NoiseProcess& one : noise.processes) {
+    if (one.channel != Channel::compass) continue;
+    double times = kMost;
+    if (one.process == ProcessKind::white) times = 1.0;
+    if (is_correlated(one.process)) {
+      const double lag = one.process == ProcessKind::correlated_in_t ? duration : way;
+      const double phi = std::exp(-lag / one.length);
+      times = phi < 1.0 ? std::min(kMost, (1.0 + phi) / (1.0 - phi)) : kMost;
+    }
+    variance += times * one.sd * one.sd;
+  }
+  return variance;
+}
+
 void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
   const Pose displacement = displacement_of(row.travel, row.slip, robot.wheelbase);
   if (compass_) {
     at_ = moved(at_, displacement, arc_covariance(row.travel, row.duration, robot, noise));
     if (!std::isnan(row.reading)) {
-      correct_heading(at_, row.reading, noise.compass * noise.compass);
+      const double way = 0.5 * std::abs(row.travel.left + row.travel.right);
+      correct_heading(at_, row.reading, white_equivalent(noise, row.duration, way));
     }
     return;
   }

@@ -18,6 +18,13 @@ namespace trussmap {
 /// in the frame of its start.
 [[nodiscard]] Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase);
 
+/// Variance of a single compass reading, rad^2: white noise and what lasts.
+[[nodiscard]] double reading_variance(const Noise& noise);
+/// The white noise that a row's reading has to be given, lest a filter that knows no other average
+/// away what lasts: of a process with correlation phi from row to row sd^2 (1 + phi)/(1 - phi), the
+/// variance of its mean over many times their number.
+[[nodiscard]] double white_equivalent(const Noise& noise, double duration, double way);
+
 struct ReckonedRow {
   WheelTravel travel;
   double duration = 0.0;     ///< s

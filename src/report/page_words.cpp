@@ -188,7 +188,7 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
                     typeset(in_words(diagnosis.under->noise))));
   }
   for (const NoiseTest& one : diagnosis.noise) {
-    if (one.p_adjusted >= kSignificance) continue;
+    if (one.p_adjusted >= kSignificance || !notes.empty()) continue;
     notes.push_back(
         fmt::format("More noise than the model states ({}): {}.", one.law, typeset(in_words(one))));
     break;

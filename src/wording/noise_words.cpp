@@ -23,7 +23,7 @@ struct Remedy {
 
 Remedy remedy_of(const std::string& source) {
   if (source == "wheels") {
-    return {"what the wheels misread from metre to metre", "a gyro would help against its turning"};
+    return {"what the wheels misread from metre to metre", "a gyro would help most"};
   }
   for (const char* turning : {"heading_per_s", "heading_per_rad", "turn", "drift", "difference",
                               "left", "right", "rotate"}) {

@@ -123,8 +123,10 @@ std::string verdict_in_words(const Discovery& result) {
   const auto added =
       std::count_if(result.steps.begin(), result.steps.end(),
                     [](const DiscoveryStep& step) { return step.added.has_value(); });
-  const std::string found = added == 0   ? "nothing found, the model stays as it is"
-                            : added == 1 ? "one effect found"
+  const bool noise = result.last.under && result.last.under->noise.changed();
+  const std::string found = added == 0 && noise ? "nothing found but noise that is not as stated"
+                            : added == 0        ? "nothing found, the model stays as it is"
+                            : added == 1        ? "one effect found"
                                          : fmt::format("{} effects found, one by one", added);
   return fmt::format("{}: {}; {}", verdict_of(result), found, stop_in_words(result));
 }
