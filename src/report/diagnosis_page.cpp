@@ -179,6 +179,8 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   page.facts = facts_on(diagnosis, evidence);
   page.answers = answers_on(diagnosis, evidence);
   page.sections.push_back({"Part by part", {parts_table(sized)}});
+  PageTable noise = noise_table(diagnosis);
+  if (!noise.rows.empty()) page.sections.back().blocks.emplace_back(std::move(noise));
   const NamedModel given{kGiven, evidence.given};
   if (!evidence.effects.empty()) {
     page.sections.push_back(effect_section("What is missing", evidence.effects));

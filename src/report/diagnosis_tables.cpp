@@ -115,6 +115,12 @@ void add_found(PageTable& table, EffectPart part, const std::vector<EffectEviden
 }
 
 void add_noise(PageTable& table, const Diagnosis& diagnosis) {
+  if (diagnosis.under && diagnosis.under->noise.changed()) {
+    table.rows.push_back({"noise", "other than the model states", "estimated",
+                          typeset(in_words(diagnosis.under->noise)), "-", "-"});
+    table.tones.push_back(Tone::bad);
+    return;
+  }
   if (diagnosis.noise.empty()) return;
   const NoiseTest& first = diagnosis.noise.front();
   const bool more = first.p_adjusted < kSignificance;
@@ -177,6 +183,29 @@ std::vector<std::string> well_known(const SizedDiagnosis& sized) {
   }
   return texts;
 }
+
+}  // namespace
+
+PageTable noise_table(const Diagnosis& diagnosis) {
+  PageTable table;
+  table.caption = "Noise, as estimated";
+  table.headings = {"noise of", "unit", "lasts for", "stated", "found"};
+  table.texts = 3;
+  if (!diagnosis.under || !diagnosis.under->noise.changed()) return table;
+  for (const NoiseSource& one : diagnosis.under->noise.sources) {
+    const bool by_time = one.process.process == ProcessKind::correlated_in_t;
+    table.rows.push_back({one.name, one.unit,
+                          one.process.length > 0.0
+                              ? fmt::format("{:.3g} {}", one.process.length, by_time ? "s" : "m")
+                              : "",
+                          one.stated > 0.0 ? fmt::format("{:.3g}", one.stated) : "-",
+                          fmt::format("{:.3g}{}", one.sd, one.at_limit ? " (or beyond)" : "")});
+    table.tones.push_back(one.sd == one.stated ? Tone::neutral : Tone::bad);
+  }
+  return table;
+}
+
+namespace {
 
 PageTable others_table(const Diagnosis& diagnosis) {
   PageTable table;

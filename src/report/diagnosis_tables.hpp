@@ -24,6 +24,9 @@ struct SizedDiagnosis {
 [[nodiscard]] PageTable parts_table(const SizedDiagnosis& sized,
                                     const std::vector<EffectEvidence>& found = {});
 
+/// Every source of noise, where it is other than stated; else no rows.
+[[nodiscard]] PageTable noise_table(const Diagnosis& diagnosis);
+
 /// What these recordings cannot tell from the first finding; no rows where nothing looks the same.
 [[nodiscard]] PageTable rivals_table(const SizedDiagnosis& sized);
 

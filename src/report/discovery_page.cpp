@@ -177,6 +177,8 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   page.facts = found_facts(discovery, evidence);
   page.answers = found_answers(discovery, evidence);
   page.sections.push_back({"Part by part", {parts_table(sized, evidence.effects)}});
+  PageTable noise = noise_table(discovery.last);
+  if (!noise.rows.empty()) page.sections.back().blocks.emplace_back(std::move(noise));
   const NamedModel given{kModelGiven, evidence.given};
   const NamedModel found{kModelFound, evidence.found};
   if (evidence.effects.empty()) {

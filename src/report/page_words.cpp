@@ -184,7 +184,7 @@ std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
   if (diagnosis.under && diagnosis.under->noise.changed()) {
     notes.push_back(
         fmt::format("The noise is not as the model states it: {}. All is judged by the "
-                    "noise as estimated; trussmap fit --noise takes it into the model.",
+                    "noise as estimated; fit --noise and discover write it with --out.",
                     typeset(in_words(diagnosis.under->noise))));
   }
   for (const NoiseTest& one : diagnosis.noise) {
