@@ -61,7 +61,7 @@ struct ProcessMoments {
                                                 const std::vector<Matrix4>& influences,
                                                 Channel channel, const Robot& robot);
 
-/// Keeps references. The rows' influences are reckoned once.
+/// Keeps references to problem and recordings. The rows' influences are reckoned once.
 class ProcessLayer {
  public:
   ProcessLayer(const RecordingProblem& problem, const std::vector<Recording>& recordings,
@@ -74,7 +74,7 @@ class ProcessLayer {
   friend class ProcessLayout;
   const RecordingProblem& problem_;
   const std::vector<Recording>& recordings_;
-  const Robot& robot_;
+  Robot robot_;
   std::vector<std::vector<Matrix4>> influences_;  ///< per segment and row
 };
 
