@@ -130,10 +130,10 @@ void print(const EffectGain& result) {
 
 void run_fit(const FitCommand& options) {
   std::vector<ProgressStep> steps{{"reading", 0.5},
-                                  {"estimating the noise", 8},
                                   {"fitting without effects", 2.5},
                                   {"fitting the effects", 5},
                                   {"predicting held-out legs", 8}};
+  if (options.noise) steps.insert(steps.begin() + 1, {"estimating the noise", 8});
   if (options.page.wanted()) steps.push_back({"comparing both", 50});
   Progress progress(steps);
   progress.next();
@@ -142,10 +142,10 @@ void run_fit(const FitCommand& options) {
     throw UsageError(options.input.model +
                      " has no effect to fit, expected one or more (see trussmap add)");
   }
-  progress.next();
   Model model = input.model;
   std::optional<FittedNoise> noise;
   if (options.noise) {
+    progress.next();
     noise = fit_model_and_noise(input.recordings, model, fit_options(options.input)).noise;
     model.noise = noise->noise;
   }

@@ -256,6 +256,16 @@ class Diagnostician {
 
 namespace {
 
+/// Without coefficients.
+std::vector<Effect> effects_found(const Diagnosis& diagnosis) {
+  std::vector<Effect> effects;
+  for (const Finding* one : found_by(diagnosis)) {
+    effects.push_back(one->effect);
+    effects.back().coefficients.clear();
+  }
+  return effects;
+}
+
 /// Laws of noise beyond what is stated, beside what is missing.
 std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, const ModelFit& fit,
                                     const Noise& stated, const Diagnosis& found) {
@@ -263,11 +273,8 @@ std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, co
   model.noise = stated;
   const ModelFit as_stated = refit(recordings, model, fit);
   const ScoreTest tests(*as_stated.state);
-  std::vector<Effect> missing;
-  for (const Finding* one : found_by(found)) missing.push_back(one->effect);
-  for (Effect& one : missing) one.coefficients.clear();
   Eigen::MatrixXd nuisance(tests.system().rows(), 0);
-  for (const Score& one : tests.test(missing)) {
+  for (const Score& one : tests.test(effects_found(found))) {
     nuisance.conservativeResize(Eigen::NoChange, nuisance.cols() + one.projected.cols());
     nuisance.rightCols(one.projected.cols()) = one.projected;
   }
@@ -281,9 +288,7 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   if (!options.estimate_noise) return Diagnostician(recordings, fit, options).run();
   auto under = std::make_shared<const FitWithNoise>(with_noise_beside(recordings, fit, stated));
   DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
-  std::vector<Effect> missing;
-  for (const Finding* one : found_by(run.result)) missing.push_back(one->effect);
-  for (Effect& one : missing) one.coefficients.clear();
+  const std::vector<Effect> missing = effects_found(run.result);
   if (!missing.empty() && !(under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway)) {
     Defended defended = defended_against_noise(
         recordings, *under, stated, missing, static_cast<double>(run.result.tried), options.level);

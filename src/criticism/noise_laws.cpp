@@ -28,10 +28,6 @@ struct DriveLaw {
   std::function<Matrix3(std::size_t session, const SegmentRow&)> row;
 };
 
-double mean_wheel_noise(const Noise& noise) {
-  return std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
-}
-
 std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& context) {
   std::vector<DriveLaw> laws;
   const auto add = [&](const char* name, const char* unit, double margin, const Noise& noise) {

@@ -282,11 +282,12 @@ class NoiseFitter {
       if (one.component.lasts() || one.component.stated == 0.0 || is_beside_a_process(k)) continue;
       NoiseReml::Sizes as_stated = sizes_;
       as_stated.sd[k] = one.component.stated;
-      one.gain = deviance(as_stated) - best_;
+      const double value = deviance(as_stated);
+      one.gain = value - best_;
       const double off = std::abs(std::log(sizes_.sd[k] / one.component.stated));
       if (one.gain >= kAsStated && off > kNegligible) continue;
       sizes_ = as_stated;
-      best_ = deviance(sizes_);
+      best_ = value;
       one.gain = 0.0;
       one.free = false;
       kept = true;
@@ -406,7 +407,6 @@ class NoiseFitter {
       }
     }
     choose();
-    static_cast<void>(deviance(sizes_));
     return false;
   }
 

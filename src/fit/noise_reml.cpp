@@ -55,11 +55,11 @@ NoiseComponent lasting(const NoiseProcess& process) {
   return one;
 }
 
-double wheel_noise(const Noise& noise) {
+}  // namespace
+
+double mean_wheel_noise(const Noise& noise) {
   return std::sqrt(0.5 * (noise.left * noise.left + noise.right * noise.right));
 }
-
-}  // namespace
 
 Noise silent_noise() {
   Noise none;
@@ -74,8 +74,9 @@ std::string name_of_source(const NoiseProcess& process) {
 
 std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& noise) {
   std::vector<NoiseComponent> result;
-  if (wheel_noise(noise) > 0.0) {
-    result.push_back(white("wheels", "m^1/2", {&Noise::left, &Noise::right}, wheel_noise(noise)));
+  const double wheels = mean_wheel_noise(noise);
+  if (wheels > 0.0) {
+    result.push_back(white("wheels", "m^1/2", {&Noise::left, &Noise::right}, wheels));
   }
   const auto add = [&](const char* name, const char* unit, double Noise::*member, bool there) {
     if (there && noise.*member > 0.0) result.push_back(white(name, unit, {member}, noise.*member));

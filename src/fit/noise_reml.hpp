@@ -41,6 +41,8 @@ struct NoiseComponent {
 
 /// All zero.
 [[nodiscard]] Noise silent_noise();
+/// k of both wheels, root mean square, m^(1/2).
+[[nodiscard]] double mean_wheel_noise(const Noise& noise);
 /// "compass, correlated in t".
 [[nodiscard]] std::string name_of_source(const NoiseProcess& process);
 
