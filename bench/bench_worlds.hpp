@@ -4,6 +4,7 @@
 // Worlds, robots and effects for the criticism's figures: all drawn from a seed.
 #pragma once
 
+#include "criticism/score_test.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/simulation.hpp"
@@ -47,5 +48,18 @@ struct Subject {
 
 /// Shapes that no catalogue has.
 [[nodiscard]] std::vector<Subject> odd_subjects(const World& world);
+
+[[nodiscard]] double percent(int part, int whole);
+
+/// Coefficients along a random direction whose expected score is `times`^2 * 24.4; empty where the
+/// world does not show the effect at a plausible size.
+[[nodiscard]] std::vector<double> sized(const Subject& subject, const World& world,
+                                        const ScoreTest& tests, double times, std::uint64_t seed);
+
+/// How much of one effect's trace the other's columns can show.
+[[nodiscard]] double cosine(const Effect& truth, const Effect& found, const ScoreTest& tests);
+
+/// Whether the world's robot has what the effect acts on.
+[[nodiscard]] bool shows(const World& world, const Subject& subject);
 
 }  // namespace trussmap::bench

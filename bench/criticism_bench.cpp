@@ -30,7 +30,6 @@
 #include <random>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 namespace trussmap::bench {
@@ -46,49 +45,6 @@ struct Options {
   bool ladder = true;
   bool verbose = false;
 };
-
-double percent(int part, int whole) {
-  return whole > 0 ? 100.0 * part / whole : 0.0;
-}
-
-/// Coefficients along a random direction whose expected score is `times`^2 * 24.4; empty where the
-/// world does not show the effect at a plausible size.
-std::vector<double> sized(const Subject& subject, const World& world, const ScoreTest& tests,
-                          double times, std::uint64_t seed) {
-  const Score score = tests.test({subject.effect}).front();
-  if (score.dof < static_cast<int>(subject.effect.shape.size())) return {};
-  std::mt19937_64 random(seed * 1299709 + world.seed);
-  Eigen::VectorXd direction(score.projected.cols());
-  std::normal_distribution<double> normal;
-  for (double& d : direction) d = normal(random);
-  // A loss is one.
-  if (subject.effect.channel == Channel::advance) direction = -direction.cwiseAbs();
-  const double size = (score.projected * direction).norm();
-  if (!(size > 0.0)) return {};
-  direction *= times * std::sqrt(kDetectableScore) / size;
-  // What would have to be implausibly large counts as not shown.
-  const double prior_sd = facts_of(subject.effect.channel).prior_sd;
-  for (Eigen::Index k = 0; k < direction.size(); ++k) {
-    if (std::abs(direction[k]) * score.largest[static_cast<std::size_t>(k)] > prior_sd) return {};
-  }
-  return {direction.begin(), direction.end()};
-}
-
-/// How much of one effect's trace the other's columns can show.
-double cosine(const Effect& truth, const Effect& found, const ScoreTest& tests) {
-  const std::vector<Score> scores = tests.test({truth, found});
-  Eigen::VectorXd trace = Eigen::VectorXd::Zero(scores[0].projected.rows());
-  for (std::size_t k = 0; k < truth.coefficients.size(); ++k) {
-    trace += truth.coefficients[k] * scores[0].projected.col(static_cast<Eigen::Index>(k));
-  }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor(scores[1].projected);
-  return (scores[1].projected * factor.solve(trace)).norm() / std::max(trace.norm(), 1e-300);
-}
-
-bool shows(const World& world, const Subject& subject) {
-  return (world.robot.compass || !subject.needs_compass) &&
-         (world.robot.range_sensor || !subject.needs_range);
-}
 
 void false_alarms(const Options& options) {
   int named = 0;

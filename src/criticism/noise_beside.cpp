@@ -67,7 +67,8 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
   for (int round = 0; round < kMostRounds; ++round) {
     // Which processes there are is asked once.
     if (round > 0) options.most_processes = 0;
-    FittedNoise next = fit_noise(*result.fit.state, stated, suspects(*result.fit.state), options);
+    NoiseReml reml(*result.fit.state, stated);
+    FittedNoise next = fit_noise(reml, suspects(*result.fit.state), options);
     if (round > 0 && next.gain < gain + kStillBetter) break;
     next.tried = std::max(next.tried, result.noise.tried);
     result.noise = std::move(next);
@@ -102,21 +103,22 @@ Defended defended_against_noise(const std::vector<Recording>& recordings, const 
   options.errors = false;
   Defended result;
   result.effects.assign(effects.size(), true);
+  NoiseReml reml(state, stated);
   const double with_all =
-      minus_two_log_under(state, stated, found.fit.model.noise, together(result.effects));
+      minus_two_log_under(reml, found.fit.model.noise, together(result.effects));
   const std::vector<bool> all = result.effects;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     std::vector<bool> others = all;
     others[k] = false;
-    const FittedNoise noise = fit_noise(state, stated, together(others), options);
+    const FittedNoise noise = fit_noise(reml, together(others), options);
     if (noise.noise == found.fit.model.noise) continue;
-    const double without = minus_two_log_under(state, stated, noise.noise, together(others));
+    const double without = minus_two_log_under(reml, noise.noise, together(others));
     const double p =
         chi2_p_value(std::max(0.0, without - with_all), static_cast<int>(columns[k].cols()));
     result.effects[k] = tried * p < level;
   }
   if (result.effects == all) return result;
-  FitWithNoise otherwise{found.fit, fit_noise(state, stated, together(result.effects), options)};
+  FitWithNoise otherwise{found.fit, fit_noise(reml, together(result.effects), options)};
   Model model = found.fit.model;
   model.noise = otherwise.noise.noise;
   otherwise.fit = refit(recordings, model, found.fit);

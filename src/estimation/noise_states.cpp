@@ -15,7 +15,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLongestGap = 5.0;      // s: a landmark unseen for longer is met anew
 constexpr double kLeastRest = 0.5;       // s: a shorter rest ends no leg
 constexpr double kLeastVariance = 1e-8;  // of a step of a unit process
 
@@ -50,11 +49,12 @@ Lag lag_of(ProcessKind process, double lag, double length) {
   return is_correlated(process) ? correlated(lag / length) : walked(lag);
 }
 
+}  // namespace
+
 bool goes_with_distance(ProcessKind process) {
   return process == ProcessKind::correlated_in_distance || process == ProcessKind::walk_in_distance;
 }
 
-/// Ends of a session's legs, s, ascending.
 std::vector<double> ends_of_legs(const Recording& recording) {
   std::vector<double> ends;
   for (const Sighting& sighting : recording.sightings) {
@@ -73,8 +73,6 @@ std::vector<double> ends_of_legs(const Recording& recording) {
   return ends;
 }
 
-}  // namespace
-
 std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentRow>& rows,
                                   const std::vector<Matrix4>& influences, Channel channel,
                                   const Robot& robot) {
@@ -92,11 +90,17 @@ std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentR
 
 ProcessMoments process_moments(const std::vector<SegmentRow>& rows, const std::vector<Vector4>& c,
                                ProcessKind process, double length, bool at_ends) {
+  constexpr double kSame = 1e-12;  // of a lag: rows mostly last equally long, but for rounding
   ProcessMoments at;
+  double last = -1.0;
+  Lag lag;
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const Lag lag =
-        lag_of(process, goes_with_distance(process) ? std::abs(rows[row].path) : rows[row].duration,
-               length);
+    const double elapsed =
+        goes_with_distance(process) ? std::abs(rows[row].path) : rows[row].duration;
+    if (!(std::abs(elapsed - last) <= kSame * elapsed)) {
+      lag = lag_of(process, elapsed, length);
+      last = elapsed;
+    }
     const Vector4& own = c[row];
     if (!at_ends) {
       at.by_start += lag.mean_keep * at.keep * own;

@@ -33,6 +33,13 @@
 
 namespace trussmap {
 
+inline constexpr double kLongestGap = 5.0;  ///< s: a landmark unseen for longer is met anew
+
+/// Correlated in it, or walking: else, where a process is either, in time.
+[[nodiscard]] bool goes_with_distance(ProcessKind process);
+/// Ends of a session's legs, s, ascending.
+[[nodiscard]] std::vector<double> ends_of_legs(const Recording& recording);
+
 /// One process for sd = 1, laid over a problem.
 struct LaidProcess {
   std::vector<NoiseState> states;             ///< `previous` counts from the process's first

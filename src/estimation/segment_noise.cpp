@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -17,7 +18,8 @@ namespace {
 constexpr double kLeastSd = 1e-5;  // m and rad
 
 struct Path {
-  std::vector<Pose> poses;  ///< at the start of each row, and the end
+  std::vector<Matrix2> turned;   ///< axes at the start of each row
+  std::vector<Vector2> reached;  ///< at the end of each row
   Vector4 numbers = Vector4::Zero();
 };
 
@@ -25,21 +27,25 @@ struct Path {
 Path lay(const std::vector<SegmentRow>& rows, const std::vector<Pose>& steps,
          const std::vector<double>& offsets) {
   Path path;
-  Pose pose;
-  path.poses.push_back(pose);
+  path.turned.reserve(rows.size());
+  path.reached.reserve(rows.size());
+  Vector2 place = Vector2::Zero();
+  double heading = 0.0;
   double first = 0.0;
   double sum = 0.0;
   int readings = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    pose = compose(pose, steps[k]);
-    path.poses.push_back(pose);
+    path.turned.push_back(rotation(heading));
+    place += path.turned.back() * steps[k].position();
+    heading += steps[k].heading;
+    path.reached.push_back(place);
     if (std::isnan(rows[k].reading)) continue;
-    const double angle = rows[k].reading - offsets[k] - pose.heading;
+    const double angle = rows[k].reading - offsets[k] - heading;
     if (readings == 0) first = angle;
     sum += wrap_angle(angle - first);
     ++readings;
   }
-  path.numbers << pose.x, pose.y, pose.heading,
+  path.numbers << place.x(), place.y(), heading,
       readings == 0 ? 0.0 : wrap_angle(first + sum / readings);
   return path;
 }
@@ -50,6 +56,7 @@ struct RowsAlone {
   std::vector<double> offsets;  ///< of the readings, of which there are so many
   int readings = 0;
   std::vector<Matrix3> Q;
+  Path recorded;
 };
 
 RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, const Robot& robot,
@@ -68,6 +75,7 @@ RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, co
     const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
     alone.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
   }
+  alone.recorded = lay(rows, alone.steps, alone.offsets);
   return alone;
 }
 
@@ -75,25 +83,29 @@ RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, co
 SegmentNoise noise_at(const std::vector<SegmentRow>& rows, const RowsAlone& alone,
                       const Noise& noise, const std::vector<Eigen::Vector3d>& missing) {
   SegmentNoise result;
-  std::vector<Pose> steps = alone.steps;
-  result.recorded = lay(rows, steps, alone.offsets).numbers;
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    steps[k].x += missing[k][0];
-    steps[k].y += missing[k][1];
-    steps[k].heading += missing[k][2];
+  result.recorded = alone.recorded.numbers;
+  std::optional<Path> moved;
+  if (!missing.empty()) {
+    std::vector<Pose> steps = alone.steps;
+    for (std::size_t k = 0; k < missing.size(); ++k) {
+      steps[k].x += missing[k][0];
+      steps[k].y += missing[k][1];
+      steps[k].heading += missing[k][2];
+    }
+    moved = lay(rows, steps, alone.offsets);
   }
-  const Path path = lay(rows, steps, alone.offsets);
+  const Path& path = moved ? *moved : alone.recorded;
   result.value = path.numbers;
   result.H.resize(rows.size());
-  const Vector2 end = path.poses.back().position();
+  const Vector2 end = path.reached.empty() ? Vector2(Vector2::Zero()) : path.reached.back();
   const int readings = alone.readings;
   int after = 0;
   for (std::size_t k = rows.size(); k-- > 0;) {
     if (!std::isnan(rows[k].reading)) ++after;
     Eigen::Matrix<double, 4, 3>& H = result.H[k];
     H.setZero();
-    H.topLeftCorner<2, 2>() = rotation(path.poses[k].heading);
-    H.block<2, 1>(0, 2) = quarter_turn(end - path.poses[k + 1].position());
+    H.topLeftCorner<2, 2>() = path.turned[k];
+    H.block<2, 1>(0, 2) = quarter_turn(end - path.reached[k]);
     H(2, 2) = 1.0;
     if (readings > 0) H(3, 2) = -static_cast<double>(after) / readings;
     result.covariance += H * alone.Q[k] * H.transpose();

@@ -30,6 +30,7 @@ constexpr double kOfALength = 3.0;   // -2 log R that it has to bring: the plain
 constexpr double kStep = 1e-3;       // of a logarithm, for slopes
 constexpr double kWideStep = 0.05;   // the same, for curvatures
 constexpr double kLeastGain = 1e-3;  // of -2 log R, to go on for
+constexpr double kRoughly = 0.05;    // the same, to compare processes
 
 /// Sizes of components as logarithms: all sds that are free, then the lengths.
 struct Parameters {
@@ -65,13 +66,12 @@ struct Parameters {
 /// Estimates sizes, and finds which processes there are.
 class NoiseFitter {
  public:
-  NoiseFitter(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance,
-              const NoiseFitOptions& options)
-      : fit_(fit),
-        stated_(stated),
+  NoiseFitter(NoiseReml& reml, const NoiseFitOptions& options)
+      : fit_(reml.fit()),
+        stated_(reml.stated()),
         options_(options),
-        candidates_(candidate_components(fit, stated)),
-        reml_(fit, stated, nuisance) {}
+        candidates_(candidate_components(fit_, stated_)),
+        reml_(reml) {}
 
   FittedNoise run() {
     take_stated();
@@ -198,7 +198,7 @@ class NoiseFitter {
   }
 
   /// Quasi-Newton (BFGS) in the logarithms, from slopes by differences. Changes sizes_ and best_.
-  void optimise(const std::vector<bool>& free, int most_steps) {
+  void optimise(const std::vector<bool>& free, int most_steps, double least_gain = kLeastGain) {
     Parameters of = parameters(free);
     if (of.places.empty()) return;
     Eigen::VectorXd x = of.values();
@@ -213,7 +213,7 @@ class NoiseFitter {
       Eigen::VectorXd way = -(inverse * slope);
       constexpr double kFarthest = 1.5;
       way *= std::min(1.0, kFarthest / std::max(way.cwiseAbs().maxCoeff(), 1e-12));
-      if (-slope.dot(way) < kLeastGain) break;
+      if (-slope.dot(way) < least_gain) break;
       Eigen::VectorXd next = x;
       double value = best_;
       for (int half = 0; half < 6; ++half, way *= 0.4) {
@@ -223,6 +223,11 @@ class NoiseFitter {
       }
       if (!(value < best_)) break;
       const double gained = best_ - value;
+      if (gained < least_gain) {
+        x = next;
+        best_ = value;
+        break;
+      }
       const Eigen::VectorXd after = slopes(of, next, value);
       const Eigen::VectorXd s = next - x;
       const Eigen::VectorXd y = after - slope;
@@ -234,7 +239,6 @@ class NoiseFitter {
       x = next;
       slope = after;
       best_ = value;
-      if (gained < kLeastGain) break;
     }
     sizes_ = of.with(x);
   }
@@ -385,29 +389,40 @@ class NoiseFitter {
       }
       choose();
       start_size(members_.size() - 1);
-      optimise(free_ones(), 10);
+      optimise(with_its_sensor(members_.size() - 1), 10, kRoughly);
       const double value = best_ + (one.component.process.length > 0.0 ? kOfALength : 0.0);
       if (!best || value < best->claim) best = Tried{members_, sizes_, best_, value};
+    }
+    if (best) {
+      members_ = best->members;
+      sizes_ = best->sizes;
+      choose();
+      optimise(free_ones(), 12);
+      const double gain = before - best_;
+      const double p = p_value_of(gain, members_.back().component);
+      if (gain > 0.0 && p < options_.level) {
+        members_.back().gain = gain;
+        members_.back().p_value = p;
+        return true;
+      }
     }
     members_ = members;
     sizes_ = sizes;
     best_ = before;
-    if (best) {
-      const double gain = before - best->value;
-      const NoiseComponent& added = best->members.back().component;
-      const double p = p_value_of(gain, added);
-      if (gain > 0.0 && p < options_.level) {
-        members_ = best->members;
-        sizes_ = best->sizes;
-        members_.back().gain = gain;
-        members_.back().p_value = p;
-        choose();
-        optimise(free_ones(), 12);
-        return true;
-      }
-    }
     choose();
     return false;
+  }
+
+  /// A process and the white source that it takes its part of.
+  [[nodiscard]] std::vector<bool> with_its_sensor(std::size_t k) const {
+    std::vector<bool> free(members_.size(), false);
+    free[k] = true;
+    for (std::size_t other = 0; other < members_.size(); ++other) {
+      if (members_[other].free && members_[other].component.name == source_of(members_[k].component)) {
+        free[other] = true;
+      }
+    }
+    return free;
   }
 
   /// Half of chi^2's (a variance cannot be negative; Self & Liang 1987), times the kinds asked of:
@@ -546,7 +561,7 @@ class NoiseFitter {
   const Noise& stated_;
   const NoiseFitOptions& options_;
   std::vector<NoiseComponent> candidates_;
-  NoiseReml reml_;
+  NoiseReml& reml_;
   std::vector<Member> members_;
   NoiseReml::Sizes sizes_;
   double best_ = 0.0;
@@ -560,15 +575,16 @@ constexpr double kStillBetter = 1.0;  // of -2 log R
 
 }  // namespace
 
-FittedNoise fit_noise(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance,
+FittedNoise fit_noise(NoiseReml& reml, const Eigen::MatrixXd& nuisance,
                       const NoiseFitOptions& options) {
-  return NoiseFitter(fit, stated, nuisance, options).run();
+  reml.set_nuisance(nuisance);
+  return NoiseFitter(reml, options).run();
 }
 
-double minus_two_log_under(const FitState& fit, const Noise& stated, const Noise& noise,
-                           const Eigen::MatrixXd& columns) {
-  NoiseReml reml(fit, stated, columns);
-  std::vector<NoiseComponent> components = white_components(fit, stated);
+double minus_two_log_under(NoiseReml& reml, const Noise& noise, const Eigen::MatrixXd& columns) {
+  reml.set_nuisance(columns);
+  const FitState& fit = reml.fit();
+  std::vector<NoiseComponent> components = white_components(fit, reml.stated());
   for (const auto& more : {white_components(fit, noise), processes_of(noise)}) {
     for (NoiseComponent one : more) {
       const bool known =
@@ -589,7 +605,8 @@ double minus_two_log_under(const FitState& fit, const Noise& stated, const Noise
 }
 
 FittedNoise fit_noise(const ModelFit& fit, const NoiseFitOptions& options) {
-  return fit_noise(*fit.state, fit.model.noise, Eigen::MatrixXd(), options);
+  NoiseReml reml(*fit.state, fit.model.noise);
+  return fit_noise(reml, Eigen::MatrixXd(), options);
 }
 
 FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings, const Model& model,
@@ -598,7 +615,8 @@ FitWithNoise fit_model_and_noise(const std::vector<Recording>& recordings, const
   FitWithNoise result{fit_model(recordings, model, fit), {}};
   double log_likelihood = 0.0;
   for (int round = 0; round < kMostRounds; ++round) {
-    result.noise = fit_noise(*result.fit.state, model.noise, Eigen::MatrixXd(), options);
+    NoiseReml reml(*result.fit.state, model.noise);
+    result.noise = fit_noise(reml, Eigen::MatrixXd(), options);
     if (!result.noise.changed() || result.noise.gain - log_likelihood < kStillBetter) break;
     log_likelihood = result.noise.gain;
     Model better = result.fit.model;

@@ -43,8 +43,10 @@ RecordingProblem without_noise(const RecordingProblem& problem,
   return result;
 }
 
-EffectParameters border_at(const Model& model, const ShapeContext& context,
-                           const EffectParameters& fitted) {
+}  // namespace
+
+EffectParameters border_as_fitted(const Model& model, const ShapeContext& context,
+                                  const EffectParameters& fitted) {
   EffectParameters border = effect_columns(model.effects, context).border;
   for (std::size_t k = 0; k < border.size(); ++k) {
     border[k].held = fitted[k].held;
@@ -53,8 +55,6 @@ EffectParameters border_at(const Model& model, const ShapeContext& context,
   return border;
 }
 
-}  // namespace
-
 NoiseFree::NoiseFree(const std::vector<Recording>& recordings, const Model& model,
                      const RecordingProblem& fitted, const EffectParameters& fitted_border,
                      const Eigen::VectorXd& offsets, const RecordingState& fitted_state)
@@ -62,6 +62,6 @@ NoiseFree::NoiseFree(const std::vector<Recording>& recordings, const Model& mode
       paths(fitted_paths(recordings, model.robot, fitted, fitted_border, offsets, state)),
       problem(without_noise(fitted, paths)),
       context(recordings, model.robot, paths),
-      border(border_at(model, context, fitted_border)) {}
+      border(border_as_fitted(model, context, fitted_border)) {}
 
 }  // namespace trussmap

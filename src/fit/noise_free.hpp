@@ -19,6 +19,10 @@
 
 namespace trussmap {
 
+/// The effects' columns in a context, held and referred as in the fit.
+[[nodiscard]] EffectParameters border_as_fitted(const Model& model, const ShapeContext& context,
+                                                const EffectParameters& fitted);
+
 struct NoiseFree {
   /// `border` and the `offsets` of its coefficients are those of the fit. Keeps a reference to the
   /// recordings.

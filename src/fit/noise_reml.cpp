@@ -239,7 +239,7 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
   return fixed;
 }
 
-NoiseReml::NoiseReml(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance)
+NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
     : fit_(fit),
       stated_(stated),
       problem_(fit.problem),
@@ -258,13 +258,16 @@ NoiseReml::NoiseReml(const FitState& fit, const Noise& stated, const Eigen::Matr
                          readings_of(problem_.segments[one.source])};
   }
   for (const Measurement& one : problem_.measurements) fixed_.push_back(fixed_covariance(one));
+}
+
+void NoiseReml::set_nuisance(const Eigen::MatrixXd& nuisance) {
   plain_nuisance_.resize(0, nuisance.cols());
   if (nuisance.cols() == 0) return;
   int rows = 0;
-  for (const Measurement& one : fit.problem.measurements) rows += one.rows;
+  for (const Measurement& one : fit_.problem.measurements) rows += one.rows;
   plain_nuisance_ = nuisance.topRows(rows);
   int at = 0;
-  for (const Measurement& one : fit.problem.measurements) {
+  for (const Measurement& one : fit_.problem.measurements) {
     const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
     plain_nuisance_.middleRows(at, one.rows) =
         (colour * plain_nuisance_.middleRows(at, one.rows)).eval();
@@ -277,13 +280,21 @@ void NoiseReml::choose(const std::vector<NoiseComponent>& components) {
   units_.clear();
   laid_.clear();
   laid_length_.clear();
+  laid_before_.clear();
+  laid_length_before_.clear();
   for (const NoiseComponent& one : components) {
     if (one.lasts()) {
       laid_.push_back(
           layer_.lay(one.process.channel, one.process.process, std::max(one.process.length, 1.0)));
       laid_length_.push_back(-1.0);
+      laid_before_.emplace_back();
+      laid_length_before_.push_back(-1.0);
     } else {
-      units_.push_back(unit_covariances(one));
+      auto known = units_known_.find(one.name);
+      if (known == units_known_.end()) {
+        known = units_known_.emplace(one.name, unit_covariances(one)).first;
+      }
+      units_.push_back(known->second);
     }
   }
   put_processes(problem_, laid_, std::vector<double>(laid_.size(), 1.0));
@@ -300,6 +311,10 @@ void NoiseReml::whiten(const Sizes& sizes) {
     if (!one.lasts()) continue;
     const std::size_t p = sds.size();
     sds.push_back(sizes.sd[c]);
+    if (sizes.length[c] == laid_length_[p]) continue;
+    // Slopes go from one length to the next and back.
+    std::swap(laid_[p], laid_before_[p]);
+    std::swap(laid_length_[p], laid_length_before_[p]);
     if (sizes.length[c] == laid_length_[p]) continue;
     laid_[p] = layer_.lay(one.process.channel, one.process.process, sizes.length[c]);
     laid_length_[p] = sizes.length[c];
@@ -327,25 +342,31 @@ void NoiseReml::whiten(const Sizes& sizes) {
 
 double NoiseReml::scatter(const Sizes& sizes) {
   if (scatter_.empty()) return 0.0;
-  double white = 0.0;
-  double wheels = 1.0;
-  std::vector<ReadingProcess> processes;
+  ReadingNoise noise;
   for (std::size_t c = 0; c < components_.size(); ++c) {
     const NoiseComponent& one = components_[c];
-    if (one.name == "compass") white = sizes.sd[c];
-    if (one.name == "wheels") wheels = std::pow(sizes.sd[c] / size_in(fit_.model.noise, one), 2);
-    const ProcessKind kind = one.process.process;
-    if (!one.lasts() || one.process.channel != Channel::compass) continue;
-    if (kind == ProcessKind::white) white = std::hypot(white, sizes.sd[c]);
-    if (is_chain(kind)) processes.push_back({kind, sizes.sd[c], sizes.length[c]});
+    const double sd = sizes.sd[c];
+    if (one.name == "compass") noise.white = std::hypot(noise.white, sd);
+    if (one.name == "wheels") noise.wheels = std::pow(sd / size_in(fit_.model.noise, one), 2);
+    if (one.name == "heading_per_s") noise.heading_per_s = sd;
+    if (one.name == "heading_per_rad") noise.heading_per_rad = sd;
+    if (!one.lasts()) continue;
+    if (one.process.process == ProcessKind::white && one.process.channel == Channel::compass) {
+      noise.white = std::hypot(noise.white, sd);
+    }
+    if (!shows_in_readings(one.process)) continue;
+    noise.processes.push_back(one.process);
+    noise.processes.back().sd = sd;
+    noise.processes.back().length = sizes.length[c];
   }
-  std::vector<double> at{white, wheels};
-  for (const ReadingProcess& one : processes) {
-    at.insert(at.end(), {static_cast<double>(one.process), one.sd, one.length});
+  for (const Scattered& known : scattered_) {
+    if (known.at == noise) return known.value;
   }
-  if (at != scattered_at_) scattered_ = scatter_.minus_two_log(white, wheels, processes);
-  scattered_at_ = std::move(at);
-  return scattered_;
+  constexpr std::size_t kKept = 4;  // slopes come back to where they were taken
+  if (scattered_.size() == kKept) scattered_.erase(scattered_.begin());
+  const double value = scatter_.minus_two_log(noise);
+  scattered_.push_back({std::move(noise), value});
+  return value;
 }
 
 NoiseReml::Parts NoiseReml::parts(const Sizes& sizes) {

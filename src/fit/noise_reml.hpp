@@ -21,6 +21,7 @@
 #include "fit/fit_state.hpp"
 #include "fit/reading_scatter.hpp"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,10 +62,15 @@ void take_into(Noise& noise, const NoiseComponent& component, double sd, double 
 
 class NoiseReml {
  public:
-  /// `stated`: by which wheels share their noise, and ranges their part in proportion. `nuisance`:
-  /// whitened columns (of the fit's rows) of what else may be missing. Keeps a reference to the
-  /// fit.
-  NoiseReml(const FitState& fit, const Noise& stated, const Eigen::MatrixXd& nuisance);
+  /// `stated`: by which wheels share their noise, and ranges their part in proportion. Keeps a
+  /// reference to the fit.
+  NoiseReml(const FitState& fit, const Noise& stated);
+
+  /// Whitened columns (of the fit's rows) of what else may be missing, instead of those before.
+  void set_nuisance(const Eigen::MatrixXd& nuisance);
+
+  [[nodiscard]] const FitState& fit() const { return fit_; }
+  [[nodiscard]] const Noise& stated() const { return stated_; }
 
   /// Of the components chosen, and no others.
   struct Sizes {
@@ -113,14 +119,20 @@ class NoiseReml {
   [[nodiscard]] double scatter(const Sizes& sizes);
 
   ReadingScatter scatter_;
-  std::vector<double> scattered_at_;  ///< sizes of the last scatter, and its value
-  double scattered_ = 0.0;
+  struct Scattered {
+    ReadingNoise at;
+    double value = 0.0;
+  };
+  std::vector<Scattered> scattered_;  ///< of late
   std::vector<Rows> rows_;      ///< per segment
   std::vector<Matrix4> fixed_;  ///< per measurement
   std::vector<NoiseComponent> components_;
   std::vector<std::vector<Matrix4>> units_;  ///< per white component and measurement
-  std::vector<LaidProcess> laid_;            ///< per process
+  std::map<std::string, std::vector<Matrix4>> units_known_;  ///< by the components' names
+  std::vector<LaidProcess> laid_;                            ///< per process
   std::vector<double> laid_length_;
+  std::vector<LaidProcess> laid_before_;  ///< with another length
+  std::vector<double> laid_length_before_;
   Eigen::MatrixXd plain_nuisance_;  ///< not whitened, rows of the measurements
   Eigen::MatrixXd nuisance_;
 };

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "fit/reading_scatter.hpp"
 
+#include "effects/channel_physics.hpp"
+#include "estimation/noise_states.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace trussmap {
 namespace {
@@ -17,8 +19,19 @@ constexpr double kLeastVariance = 1e-12;
 
 }  // namespace
 
-ReadingScatter::ReadingScatter(const FitState& fit) {
+bool shows_in_readings(const NoiseProcess& process) {
+  if (process.process == ProcessKind::white) return false;
+  if (process.channel == Channel::compass) return is_chain(process.process);
+  const RowTravel some{0.5, 1.0, 1.0};
+  return acts_on(process.channel) == ActsOn::drives &&
+         drive_pattern(process.channel, 1.0, some, 1.0).turn != 0.0;
+}
+
+ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot.wheelbase) {
   const Eigen::VectorXd offsets = offsets_of(fit);
+  Noise wheels_alone;
+  wheels_alone.left = fit.model.noise.left;
+  wheels_alone.right = fit.model.noise.right;
   std::vector<std::vector<Habits>> habits;
   for (const Measurement& one : fit.problem.measurements) {
     if (one.kind != MeasurementKind::segment || one.rows < 4) continue;
@@ -38,9 +51,10 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
       turned += motion.displacement.heading;
       const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
       Row next;
-      next.lag = row.duration;
+      next.travel = {travel.left, travel.right, row.duration};
       next.way = std::abs(row.path);
-      next.wheels = arc_covariance(travel, row.duration, fit.model.robot, fit.model.noise)(2, 2);
+      next.turn = std::abs(row.turn);
+      next.wheels = arc_covariance(travel, row.duration, fit.model.robot, wheels_alone)(2, 2);
       // The row's own mean heading is its reading less its turn.
       next.y = std::isnan(row.reading) ? kAbsent
                                        : motion.mean_heading + motion.displacement.heading - turned;
@@ -65,27 +79,37 @@ ReadingScatter::Habits ReadingScatter::habits_of(double heading, double turned) 
 }
 
 void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habits) {
-  constexpr double kLeast = 1e-9;  // of the largest, lest a robot that never turns be singular
   using Square = Eigen::Matrix<double, kHabits, kHabits>;
   Square S = Square::Zero();
   Habits g = Habits::Zero();
-  const auto each_step = [&](const auto& visit) {
-    for (std::size_t s = 0; s < segments_.size(); ++s) {
-      std::size_t last = segments_[s].size();
-      for (std::size_t k = 0; k < segments_[s].size(); ++k) {
-        if (std::isnan(segments_[s][k].y)) continue;
-        if (last < segments_[s].size()) visit(s, last, k);
-        last = k;
-      }
+  double steps = 0.0;
+  double noise = 0.0;
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    std::vector<std::size_t> read;
+    for (std::size_t k = 0; k < segments_[s].size(); ++k) {
+      if (!std::isnan(segments_[s][k].y)) read.push_back(k);
     }
-  };
-  each_step([&](std::size_t s, std::size_t a, std::size_t b) {
-    const Habits x = habits[s][b] - habits[s][a];
-    S += x * x.transpose();
-    g += x * (segments_[s][b].y - segments_[s][a].y);
-  });
-  S.diagonal().array() += kLeast * std::max(S.diagonal().maxCoeff(), kLeast);
-  const Habits size = S.ldlt().solve(g);
+    const auto step = [&](std::size_t n) -> Habits {
+      return habits[s][read[n + 1]] - habits[s][read[n]];
+    };
+    for (std::size_t n = 1; n + 2 < read.size(); ++n) {
+      const Habits instrument = 0.5 * (step(n - 1) + step(n + 1));
+      S += instrument * step(n).transpose();
+      g += instrument * (segments_[s][read[n + 1]].y - segments_[s][read[n]].y);
+      noise += segments_[s][read[n + 1]].wheels;
+      steps += 1.0;
+    }
+  }
+  if (steps == 0.0) return;
+  // Of a robot that never turns S is what chance makes of the wheels' noise.
+  constexpr double kBeyondChance = 6.0;
+  constexpr double kLeast = 1e-9;  // of the largest
+  const double chance = kBeyondChance * noise / std::sqrt(steps);
+  Habits ridge;
+  ridge << chance, chance, 4.0 * chance, 4.0 * chance, chance;
+  S.diagonal() += ridge;
+  S.diagonal().array() += kLeast * std::max(S.diagonal().cwiseAbs().maxCoeff(), kLeast);
+  const Habits size = S.partialPivLu().solve(g);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     for (std::size_t k = 0; k < segments_[s].size(); ++k) {
       segments_[s][k].y -= size.dot(habits[s][k] - habits[s].front());
@@ -93,52 +117,91 @@ void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habi
   }
 }
 
-double ReadingScatter::minus_two_log(double white, double wheels,
-                                     const std::vector<ReadingProcess>& processes) const {
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
-  const auto count = static_cast<Eigen::Index>(std::min<std::size_t>(processes.size(), 3));
+double ReadingScatter::minus_two_log(const ReadingNoise& noise) const {
+  ReadingNoise matter = noise;
+  std::erase_if(matter.processes, [](const NoiseProcess& one) { return !shows_in_readings(one); });
+  switch (matter.processes.size()) {
+    case 0:
+      return filtered<0>(matter);
+    case 1:
+      return filtered<1>(matter);
+    case 2:
+      return filtered<2>(matter);
+    case 3:
+      return filtered<3>(matter);
+    default:
+      return filtered<4>(matter);
+  }
+}
+
+template <int Count>
+double ReadingScatter::filtered(const ReadingNoise& noise) const {
+  const std::vector<NoiseProcess>& processes = noise.processes;
+  const double white = noise.white * noise.white + kLeastVariance;
+  const double per_s = noise.heading_per_s * noise.heading_per_s;
+  const double per_rad = noise.heading_per_rad * noise.heading_per_rad;
+  using Square = Eigen::Matrix<double, Count + 1, Count + 1>;
+  using Column = Eigen::Matrix<double, Count + 1, 1>;
+  constexpr double kLargest = 1e100;
   double sum = 0.0;
+  double product = 1.0;  // of variances: one logarithm for many
   for (const std::vector<Row>& rows : segments_) {
-    Column x = Column::Zero(count + 1);  // start heading less b, then the processes
-    Square P = Square::Zero(count + 1, count + 1);
+    Column x = Column::Zero();  // start heading less b, then the processes
+    Square P = Square::Zero();
     P(0, 0) = kDiffuse;
-    for (Eigen::Index p = 0; p < count; ++p) {
-      const ReadingProcess& one = processes[static_cast<std::size_t>(p)];
-      if (is_correlated(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
+    Column seen = Column::Ones();  // (1, then 1 for the compass's)
+    Column keeps = Column::Ones();
+    for (int p = 0; p < Count; ++p) {
+      const NoiseProcess& one = processes[idx(p)];
+      const bool walks = is_chain(one.process) && !is_correlated(one.process);
+      if (!walks) P(p + 1, p + 1) = one.sd * one.sd;
+      if (acts_on(one.channel) == ActsOn::drives) seen[p + 1] = 0.0;
     }
     bool first = true;
     double last = -1.0;  // rows mostly last equally long
-    Column keeps = Column::Ones(count + 1);
     for (const Row& row : rows) {
-      P(0, 0) += wheels * row.wheels;
-      for (Eigen::Index p = 0; p < count; ++p) {
-        const ReadingProcess& one = processes[static_cast<std::size_t>(p)];
-        const bool by_way = one.process == ProcessKind::correlated_in_distance ||
-                            one.process == ProcessKind::walk_in_distance;
-        const double lag = by_way ? row.way : row.lag;
-        if ((by_way || row.lag != last) && is_correlated(one.process)) {
-          keeps[p + 1] = std::exp(-lag / one.length);
+      P(0, 0) += noise.wheels * row.wheels + per_s * row.travel.duration + per_rad * row.turn;
+      for (int p = 0; p < Count; ++p) {
+        const NoiseProcess& one = processes[idx(p)];
+        const int at = p + 1;
+        const bool by_way = goes_with_distance(one.process);
+        const double lag = by_way ? row.way : row.travel.duration;
+        if (is_correlated(one.process) && (by_way || lag != last)) {
+          keeps[at] = std::exp(-lag / one.length);
         }
-        const double keep = keeps[p + 1];
-        const double fresh = is_correlated(one.process) ? 1.0 - keep * keep : lag;
-        x[p + 1] *= keep;
-        P.row(p + 1) *= keep;
-        P.col(p + 1) *= keep;
-        P(p + 1, p + 1) += one.sd * one.sd * fresh;
+        const double keep = keeps[at];
+        if (seen[at] == 0.0) {
+          const double turn =
+              drive_pattern(one.channel, 0.5 * (1.0 + keep), row.travel, wheelbase_).turn;
+          x[0] += turn * x[at];
+          P.row(0) += turn * P.row(at);
+          P.col(0) += turn * P.col(at);
+        }
+        if (!is_chain(one.process)) continue;
+        x[at] *= keep;
+        P.row(at) *= keep;
+        P.col(at) *= keep;
+        P(at, at) += one.sd * one.sd * (is_correlated(one.process) ? 1.0 - keep * keep : lag);
       }
-      last = row.lag;
+      last = row.travel.duration;
       if (std::isnan(row.y)) continue;
-      const Column gain = P.rowwise().sum();  // P H', H = (1, 1, ...)
-      const double variance = gain.sum() + white * white + kLeastVariance;
-      const double error = row.y - x.sum();
-      if (!first) sum += std::log(variance) + error * error / variance;
+      const Column gain = P * seen;
+      const double variance = seen.dot(gain) + white;
+      const double error = row.y - seen.dot(x);
+      if (!first) {
+        product *= variance;
+        sum += error * error / variance;
+        if (product < 1.0 / kLargest || product > kLargest) {
+          sum += std::log(product);
+          product = 1.0;
+        }
+      }
       first = false;
       x += gain * (error / variance);
       P -= gain * gain.transpose() / variance;
     }
   }
-  return sum;
+  return sum + std::log(product);
 }
 
 }  // namespace trussmap

@@ -9,7 +9,8 @@
 //       = start heading + z_k + w_k - b_k
 //
 //   z   Ornstein-Uhlenbeck or walk (the compass's processes)     w   white
-//   b   the wheels' heading error, a random walk
+//   b   the wheels' heading error: a random walk, and what their processes add to the turn (a row's
+//       mean as that of its ends; what lasts for a leg as lasting for the segment)
 //
 // Compasses are misled in a way that goes round with the heading, and wheelbases are off, whether
 // or not the model knows: sines and cosines of the heading and of twice it, and the turn, are taken
@@ -25,12 +26,19 @@
 
 namespace trussmap {
 
-/// A chain process of the compass.
-struct ReadingProcess {
-  ProcessKind process = ProcessKind::correlated_in_t;
-  double sd = 0.0;
-  double length = 0.0;
+/// Noise as far as it shows in readings.
+struct ReadingNoise {
+  double white = 0.0;            ///< sd of a reading, rad
+  double wheels = 1.0;           ///< by what the wheels' variance is larger than the fit's model has it
+  double heading_per_s = 0.0;    ///< rad/s^(1/2)
+  double heading_per_rad = 0.0;  ///< rad/rad^(1/2)
+  std::vector<NoiseProcess> processes = {};
+
+  friend bool operator==(const ReadingNoise& a, const ReadingNoise& b) = default;
 };
+
+/// Whether a process matters here: white ones of the compass are not asked for.
+[[nodiscard]] bool shows_in_readings(const NoiseProcess& process);
 
 class ReadingScatter {
  public:
@@ -39,24 +47,31 @@ class ReadingScatter {
 
   [[nodiscard]] bool empty() const { return segments_.empty(); }
 
-  /// -2 log likelihood. `white`: sd of a reading, rad. `wheels`: by what the wheels' heading
-  /// variance is larger than the fit's model has it.
-  [[nodiscard]] double minus_two_log(double white, double wheels,
-                                     const std::vector<ReadingProcess>& processes) const;
+  /// -2 log likelihood. Processes that do not matter here are passed over, and what comes after the
+  /// fourth that does.
+  [[nodiscard]] double minus_two_log(const ReadingNoise& noise) const;
 
  private:
   struct Row {
     double y = 0.0;       ///< rad; NaN: no reading
-    double lag = 0.0;     ///< s
+    RowTravel travel;
     double way = 0.0;     ///< m
-    double wheels = 0.0;  ///< variance of the wheels' heading error, rad^2
+    double turn = 0.0;    ///< rad, not signed
+    double wheels = 0.0;  ///< variance that the wheels' k give the turn, rad^2
   };
+  /// With so many of the processes.
+  template <int Count>
+  [[nodiscard]] double filtered(const ReadingNoise& noise) const;
+
   static constexpr int kHabits = 5;
   using Habits = Eigen::Matrix<double, kHabits, 1>;
   [[nodiscard]] static Habits habits_of(double heading, double turned);
-  /// Takes out what the readings' steps have in common with these, by least squares.
+  /// Takes out what the readings' steps have in common with these. A step's turn holds the same
+  /// noise of the wheels as its reading's y, which least squares would take for a habit; the mean of
+  /// the steps before and after it, which turn alike, does not (instrumental variables).
   void free_of_habits(const std::vector<std::vector<Habits>>& habits);
 
+  double wheelbase_ = 0.0;
   std::vector<std::vector<Row>> segments_;
 };
 

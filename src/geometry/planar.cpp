@@ -8,6 +8,7 @@
 namespace trussmap {
 
 double wrap_angle(double angle) {
+  if (angle > -std::numbers::pi && angle <= std::numbers::pi) return angle;
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }

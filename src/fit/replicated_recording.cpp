@@ -1,0 +1,358 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fit/replicated_recording.hpp"
+
+#include "effects/channel_physics.hpp"
+#include "estimation/measurement_rows.hpp"
+#include "estimation/noise_states.hpp"
+#include "fit/noise_free.hpp"
+#include "recording/row_variables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr int kRounds = 4;  // shapes see the rows that they change
+constexpr double kLeastRange = 1e-6;  // m
+constexpr double kMoved = 0.05;  // m: less is none between two stops
+
+class Replicator {
+ public:
+  Replicator(const std::vector<Recording>& recordings, const FitState& fit, std::uint64_t seed)
+      : fit_(fit),
+        noise_(fit.model.noise),
+        offsets_(offsets_of(fit)),
+        random_(seed),
+        recordings_(recordings),
+        timed_(fit.recordings),
+        state_(NoiseFree(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets_,
+                         fit.adjustment.state)
+                   .state) {}
+
+  std::vector<Recording> run() {
+    state_.noise.resize(0);
+    miss_landmarks();
+    lead_through_poses();
+    measure_places();
+    see_landmarks();
+    for (std::size_t s = 0; s < timed_.size(); ++s) {
+      disturb_drive(s);
+      for (const NoiseProcess& one : noise_.processes) add(one, timed_[s]);
+    }
+    return in_own_times();
+  }
+
+ private:
+  double drawn(double sd) { return sd * normal_(random_); }
+
+  /// Anew wherever the robot has driven on. Between two landmarks the path gives way little by
+  /// little: a robot that turns on the spot goes nowhere.
+  void miss_landmarks() {
+    struct Stop {
+      std::size_t pose = 0;
+      Vector2 missed = Vector2::Zero();
+    };
+    const std::vector<double> driven = driven_to_poses();
+    std::map<int, std::vector<Stop>> stops;  // per session
+    for (const Measurement& one : fit_.problem.measurements) {
+      if (one.kind == MeasurementKind::standing) stops[one.session].push_back({pose_of(one.from)});
+    }
+    for (auto& [session, list] : stops) {
+      std::sort(list.begin(), list.end(),
+                [](const Stop& a, const Stop& b) { return a.pose < b.pose; });
+      for (std::size_t k = 0; k < list.size(); ++k) {
+        const bool moved = k == 0 || driven[list[k].pose] - driven[list[k - 1].pose] > kMoved;
+        list[k].missed = moved ? Vector2(drawn(noise_.sighting), drawn(noise_.sighting))
+                               : list[k - 1].missed;
+      }
+    }
+    for (std::size_t k = 0; k < state_.poses.size(); ++k) {
+      const std::vector<Stop>& list = stops[fit_.problem.poses[k].session];
+      if (list.empty()) continue;
+      const auto next = std::find_if(list.begin(), list.end(),
+                                     [k](const Stop& one) { return one.pose >= k; });
+      const Stop& to = next == list.end() ? list.back() : *next;
+      const Stop& from = next == list.begin() || next == list.end() ? to : *(next - 1);
+      const double way = driven[to.pose] - driven[from.pose];
+      const double share = way > kMoved ? (driven[k] - driven[from.pose]) / way : 1.0;
+      const Vector2 missed = from.missed + share * (to.missed - from.missed);
+      state_.poses[k].x += missed.x();
+      state_.poses[k].y += missed.y();
+    }
+  }
+
+  /// m from the first pose.
+  [[nodiscard]] std::vector<double> driven_to_poses() const {
+    std::vector<double> driven(state_.poses.size(), 0.0);
+    for (const Measurement& one : fit_.problem.measurements) {
+      if (one.kind != MeasurementKind::segment) continue;
+      for (const SegmentRow& row : fit_.problem.segments[one.source]) {
+        driven[pose_of(one.to)] += std::abs(row.path);
+      }
+    }
+    std::partial_sum(driven.begin(), driven.end(), driven.begin());
+    return driven;
+  }
+
+  [[nodiscard]] std::size_t pose_of(int node) const {
+    return idx(node - fit_.problem.landmark_count());
+  }
+
+  void lead_through_poses() {
+    const Robot& robot = fit_.model.robot;
+    for (int round = 0; round < kRounds; ++round) {
+      const ShapeContext context(timed_, robot, paths_.empty() ? fit_.paths : paths_);
+      border_ = border_as_fitted(fit_.model, context, fit_.columns.border);
+      paths_ = fitted_paths(timed_, robot, fit_.problem, border_, offsets_, state_);
+      for (std::size_t s = 0; s < timed_.size(); ++s) {
+        Drive& drive = timed_[s].drive;
+        for (std::size_t row = 0; row < drive.rows(); ++row) {
+          Vector2& missing = paths_[s].missing[row];
+          drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
+          drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
+          missing.setZero();
+        }
+      }
+    }
+  }
+
+  void measure_places() {
+    const auto& landmarks = fit_.problem.landmarks;
+    for (std::size_t s = 0; s < timed_.size(); ++s) {
+      for (SurveyPoint& one : timed_[s].survey) {
+        const auto at = std::find(landmarks.begin(), landmarks.end(), one.landmark);
+        if (at == landmarks.end()) continue;
+        const Vector2& place = state_.landmarks[idx(static_cast<int>(at - landmarks.begin()))];
+        const double sd = std::isnan(one.sd) ? noise_.survey : one.sd;
+        one.x = place.x() + drawn(sd);
+        one.y = place.y() + drawn(sd);
+      }
+      for (std::size_t row = 0; row < timed_[s].truth.size(); ++row) {
+        TruthRow& one = timed_[s].truth[row];
+        const Pose pose = pose_at(timed_[s].drive, paths_[s], one.t);
+        ViewPattern view;
+        for_each_pattern([&](const EffectPattern& effect, double offset) {
+          if (effect.truths.size() <= s || effect.truths[s].empty()) return;
+          view.ahead += offset * effect.truths[s][row].ahead;
+          view.left += offset * effect.truths[s][row].left;
+          view.heading += offset * effect.truths[s][row].heading;
+        });
+        const Vector2 place =
+            pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
+        one.x = place.x() + drawn(noise_.truth);
+        one.y = place.y() + drawn(noise_.truth);
+        one.heading = wrap_angle(pose.heading + view.heading + drawn(noise_.truth_heading));
+      }
+    }
+  }
+
+  template <typename Visit>
+  void for_each_pattern(const Visit& visit) const {
+    for (std::size_t k = 0; k < border_.size(); ++k) {
+      visit(border_[k], offsets_[static_cast<Eigen::Index>(k)]);
+    }
+  }
+
+  void see_landmarks() {
+    for (const Measurement& one : fit_.problem.measurements) {
+      if (one.kind != MeasurementKind::view && one.kind != MeasurementKind::cartesian_view) {
+        continue;
+      }
+      Sighting& sighting = timed_[idx(one.session)].sightings[one.source];
+      const Vector4 seen = one.value + measurement_rows(fit_.problem, one, state_, one.value,
+                                                        view_of(border_, offsets_, one))
+                                           .error;
+      const bool offset = one.kind == MeasurementKind::cartesian_view;
+      const double range = offset ? seen.head<2>().norm() : seen[0];
+      const double bearing = offset ? direction(seen.head<2>()) : seen[1];
+      const double sd = std::hypot(noise_.range, noise_.range_relative * range);
+      sighting.range = std::max(range + drawn(sd), kLeastRange);
+      if (!std::isnan(sighting.bearing)) {
+        sighting.bearing = wrap_angle(bearing + drawn(noise_.bearing));
+      }
+    }
+  }
+
+  void disturb_drive(std::size_t s) {
+    Drive& drive = timed_[s].drive;
+    const double half = 0.5 * fit_.model.robot.wheelbase;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      double& left = drive.left[row];
+      double& right = drive.right[row];
+      const double duration = drive.duration(row);
+      const double turned = std::abs(right - left) / (2.0 * half);
+      const double heading =
+          drawn(std::sqrt(noise_.heading_per_s * noise_.heading_per_s * duration +
+                          noise_.heading_per_rad * noise_.heading_per_rad * turned));
+      const double travel = drawn(noise_.travel_per_s * std::sqrt(duration));
+      left += drawn(noise_.left * std::sqrt(std::abs(left))) + travel - half * heading;
+      right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + half * heading;
+      if (!drive.has_compass() || std::isnan(drive.heading[row])) continue;
+      double shown = paths_[s].ends[row].heading;
+      for_each_pattern([&](const EffectPattern& effect, double offset) {
+        if (effect.drives.size() <= s || effect.drives[s].empty()) return;
+        shown += offset * effect.drives[s][row].compass;
+      });
+      drive.heading[row] = wrap_angle(shown + drawn(noise_.compass));
+    }
+  }
+
+  /// Delays back in their places: a fit moves what was sighted to when it was seen.
+  std::vector<Recording> in_own_times() {
+    for (std::size_t s = 0; s < recordings_.size(); ++s) {
+      Recording& own = recordings_[s];
+      own.drive = std::move(timed_[s].drive);
+      own.survey = std::move(timed_[s].survey);
+      take_events(s, own.sightings, timed_[s].sightings);
+      take_events(s, own.truth, timed_[s].truth);
+    }
+    return std::move(recordings_);
+  }
+
+  template <typename Event>
+  void take_events(std::size_t s, std::vector<Event>& own, const std::vector<Event>& timed) const {
+    const Recording& recording = recordings_[s];
+    std::vector<double> instants;
+    for (const Event& one : own) instants.push_back(one.t);
+    instants = retimed(instants, recording, s, recordings_.size(), fit_.model.effects,
+                       fit_.model.robot);
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      if (instants[k] >= recording.drive.start() && instants[k] <= recording.drive.t.back()) {
+        order.push_back(k);
+      }
+    }
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return instants[a] < instants[b];
+    });
+    for (std::size_t k = 0; k < std::min(order.size(), timed.size()); ++k) {
+      const double t = own[order[k]].t;
+      own[order[k]] = timed[k];
+      own[order[k]].t = t;
+    }
+  }
+
+  // ----------------------------------------
+  // Processes: g of the channel, drawn for every row's end.
+
+  void add(const NoiseProcess& process, Recording& recording) {
+    if (!is_recordable(process.channel)) {
+      throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
+                                  "\" cannot be drawn: no recording can hold it");
+    }
+    Drive& drive = recording.drive;
+    const std::vector<double> g = gains(process, recording);
+    switch (acts_on(process.channel)) {
+      case ActsOn::readings:
+        for (std::size_t row = 0; row < drive.heading.size(); ++row) {
+          drive.heading[row] = wrap_angle(drive.heading[row] + g[row]);
+        }
+        return;
+      case ActsOn::drives:
+        for (std::size_t row = 0; row < drive.rows(); ++row) {
+          const RowTravel shown{drive.left[row], drive.right[row], drive.duration(row)};
+          const RowTravel other =
+              without(process.channel, g[row], shown, fit_.model.robot.wheelbase);
+          drive.left[row] = other.left;
+          drive.right[row] = other.right;
+        }
+        return;
+      case ActsOn::views:
+        see_through(process, g, recording);
+        return;
+    }
+  }
+
+  void see_through(const NoiseProcess& process, const std::vector<double>& g,
+                   Recording& recording) {
+    struct Pass {
+      double seen = 0.0;
+      double value = 0.0;
+    };
+    std::map<std::string, Pass> passes;
+    for (Sighting& one : recording.sightings) {
+      if (one.standing()) continue;
+      double value = g[row_at(recording.drive, one.t)];
+      if (process.process == ProcessKind::white) value = drawn(process.sd);
+      if (process.process == ProcessKind::per_pass) {
+        const auto [at, fresh] = passes.try_emplace(one.landmark, Pass{});
+        if (fresh || one.t - at->second.seen > kLongestGap) at->second.value = drawn(process.sd);
+        at->second.seen = one.t;
+        value = at->second.value;
+      }
+      one = without(process.channel, value, one);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> gains(const NoiseProcess& process, const Recording& recording) {
+    const Drive& drive = recording.drive;
+    const std::vector<double> ends = ends_of_legs(recording);
+    const bool way = goes_with_distance(process.process);
+    std::vector<double> g(drive.rows(), 0.0);
+    const bool walks = is_chain(process.process) && !is_correlated(process.process);
+    double value = walks ? 0.0 : drawn(process.sd);
+    std::size_t leg = 0;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      const double lag =
+          way ? 0.5 * std::abs(drive.left[row] + drive.right[row]) : drive.duration(row);
+      const double middle = drive.t[row] - 0.5 * drive.duration(row);
+      const double before = value;
+      switch (process.process) {
+        case ProcessKind::white:
+          value = drawn(process.sd);
+          break;
+        case ProcessKind::per_leg: {
+          const auto at = idx(static_cast<int>(
+              std::lower_bound(ends.begin(), ends.end(), middle) - ends.begin()));
+          if (at != leg) value = drawn(process.sd);
+          leg = at;
+          break;
+        }
+        case ProcessKind::per_session:
+        case ProcessKind::per_pass:
+          break;
+        case ProcessKind::correlated_in_t:
+        case ProcessKind::correlated_in_distance: {
+          const double keep = std::exp(-lag / process.length);
+          value = keep * value + drawn(process.sd * std::sqrt(1.0 - keep * keep));
+          break;
+        }
+        case ProcessKind::walk_in_t:
+        case ProcessKind::walk_in_distance:
+          value += drawn(process.sd * std::sqrt(lag));
+          break;
+      }
+      // Wheels take the mean over a row, of a chain nearly that of its ends.
+      const bool mean = is_chain(process.process) && acts_on(process.channel) == ActsOn::drives;
+      g[row] = mean ? 0.5 * (before + value) : value;
+    }
+    return g;
+  }
+
+  const FitState& fit_;
+  const Noise& noise_;
+  Eigen::VectorXd offsets_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  std::vector<Recording> recordings_;
+  std::vector<Recording> timed_;  ///< as fitted: moved back by the delays
+  RecordingState state_;          ///< without lasting noise
+  std::vector<SessionPath> paths_;
+  EffectParameters border_;
+};
+
+}  // namespace
+
+std::vector<Recording> replicated(const std::vector<Recording>& recordings, const FitState& fit,
+                                  std::uint64_t seed) {
+  return Replicator(recordings, fit, seed).run();
+}
+
+}  // namespace trussmap
