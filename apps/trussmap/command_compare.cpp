@@ -190,16 +190,23 @@ void print_worst(const Comparison& result, std::size_t count) {
   if (routes.rows.size() > 1) fmt::print("\nMost strained routes\n{}", table_text(routes));
 }
 
-void print_sources(const Comparison& result) {
+void print_sources(const Comparison& result, const Noise& noise) {
   constexpr double kSure = 3.0;
+  constexpr double kLikely = 2.0;
   TextTable table{{Align::left, Align::right, Align::left}, {}, true, 2};
   table.rows.push_back({"noise of", "true/stated", "verdict"});
   for (const SourceCalibration& one : result.sources) {
     const double off = (one.factor - 1.0) / one.sd;
     table.rows.push_back({one.source, fmt::format("{:.2f} +- {:.2f}", one.factor, one.sd),
-                          off > kSure    ? "stated too small, or an effect is missing"
-                          : off < -kSure ? "stated too large"
-                                         : "as stated"});
+                          off > kSure      ? "stated too small, or an effect is missing"
+                          : off < -kSure   ? "stated too large"
+                          : off > kLikely  ? "perhaps stated too small"
+                          : off < -kLikely ? "perhaps stated too large"
+                                           : "as stated"});
+  }
+  for (const NoiseProcess& one : noise.processes) {
+    table.rows.push_back({fmt::format("{}, {}", name_of(one.channel), name_of(one.process)), "-",
+                          "taken as stated (fit --noise estimates it)"});
   }
   if (table.rows.size() > 1) fmt::print("\nNoise\n{}", table_text(table));
 }
@@ -215,7 +222,7 @@ void print_outliers(const Comparison& result, std::size_t count) {
   if (table.rows.size() > 1) fmt::print("\nOutliers\n{}", table_text(table));
 }
 
-void print(const Comparison& result, const CompareCommand& options) {
+void print(const Comparison& result, const Noise& noise, const CompareCommand& options) {
   fmt::print("{}\n",
              verdict_text(result.consistent() ? Mood::good : Mood::bad, verdict_in_words(result)));
   fmt::print("  {}, p {}; {} legs, {} landmarks\n  {}\n",
@@ -225,7 +232,7 @@ void print(const Comparison& result, const CompareCommand& options) {
   print_trends(result);
   if (!result.consistent()) print_worst(result, options.worst);
   print_outliers(result, options.worst);
-  print_sources(result);
+  print_sources(result, noise);
   if (!result.lacks.empty()) fmt::print("\nWhat these data lack\n");
   for (const std::string& line : in_words(result.lacks)) fmt::print("  {}\n", line);
   for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
@@ -256,7 +263,7 @@ void run_compare(const CompareCommand& options) {
   }
   write_files(files);
   progress.end();
-  print(result, options);
+  print(result, input.model.noise, options);
   print_budget(budget);
   print_notes(input);
 }

@@ -46,6 +46,7 @@ ordered_json json(const Finding& finding) {
   one["heldout"] = metrics_json(finding.held_out);
   one["log_evidence"] = finding.evidence;
   one["tried"] = finding.tried;
+  one["implausible"] = finding.implausible;
   one["indistinguishable_from"] = look_alikes_json(finding.look_alikes);
   return one;
 }
@@ -151,6 +152,8 @@ void print_others(const Diagnosis& result, std::size_t count) {
 
 /// What is significant by itself and yet absent is explained by what comes before it.
 std::string status_text(const Finding& one) {
+  if (one.implausible && one.status != Status::missing && one.p_adjusted < kSignificance)
+    return "implausibly large";
   if (one.status == Status::absent && one.p_adjusted < kSignificance)
     return "explained by the above";
   return std::string(name_of(one.status));

@@ -159,9 +159,9 @@ void run_fit(const FitCommand& options) {
   }
   progress.next();
   if (options.page.wanted()) {
-    add_page(files,
-             fit_page(evidence_of(input.recordings, result, compare_options(options.input)),
-                      subject_of(options.input.recordings, options.input.model)),
+    FitEvidence evidence = evidence_of(input.recordings, result, compare_options(options.input));
+    if (noise) evidence.noise = in_words(*noise);
+    add_page(files, fit_page(evidence, subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
   write_files(files);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulate_options.hpp"
 
+#include "command_line.hpp"
 #include "option_checks.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -144,7 +145,14 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   robot.noise.right = options.wheel_noise;
   robot.noise.compass = options.compass_noise;
   robot.noise.survey = options.survey_noise;
-  if (!options.rough.empty()) robot.rough = parse_rough(options.rough);
+  if (!options.rough.empty()) {
+    robot.rough = parse_rough(options.rough);
+    if (options.no_compass) robot.rough.haze = false;
+    if (rough_names(robot.rough).empty()) {
+      throw UsageError(
+          "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
+    }
+  }
   if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   return robot;
 }

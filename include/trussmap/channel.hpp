@@ -9,7 +9,7 @@
 //   creep             slips to its left by g ds       lever, lever_left     sensor's point on the
 //   compass           reading = heading + g                                 robot
 //   range, bearing    reading + g                     range_scale           range (1 + g)
-//   delay             stamped g late
+//   delay             stamped g late                          truth_heading   truth's heading + g
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.
 #pragma once
@@ -38,7 +38,8 @@ enum class Channel {
   range,
   range_scale,
   bearing,
-  delay
+  delay,
+  truth_heading
 };
 
 struct ChannelFacts {

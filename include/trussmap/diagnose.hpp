@@ -54,6 +54,9 @@ struct Finding {
   std::vector<double> sd;
   std::vector<double> minimal_detectable;  ///< per coefficient alone: 90 % power at p = 0.05/200
   Status status = Status::cannot_tell;
+  /// More than three times as large as such effects are at most: look for another cause, a wrong
+  /// unit or a sensor at fault.
+  bool implausible = false;
   HeldOutMetrics held_out;             ///< predicted, with it added
   std::vector<LookAlike> look_alikes;  ///< of those that are missing
   /// Of those that are missing: the coefficients with all that is missing added at once.

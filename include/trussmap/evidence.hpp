@@ -82,6 +82,7 @@ struct FitEvidence {
   ModelEvidence without;
   ModelEvidence with;
   std::vector<EffectEvidence> effects;
+  std::string noise = {};  ///< in words, where it was estimated and is other than stated
 };
 
 struct DiagnosisEvidence {

@@ -45,9 +45,10 @@ class Gatherer {
       has_compass_ |= one.kind == MeasurementKind::segment && one.rows == 4;
       has_views_ |=
           one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
+      has_truth_ |= one.kind == MeasurementKind::truth;
     }
     for (const std::string name :
-         {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
+         {"speed", "turn_rate", "curvature", "acceleration", "x", "y", "t", "distance"}) {
       take_variable(name);
     }
     if (context.recordings().size() > 1) take_variable("session");
@@ -65,8 +66,9 @@ class Gatherer {
       if (channel == Channel::compass && !has_compass_) continue;
       take_drive_channel(channel);
     }
-    for (const Channel channel : {Channel::lever, Channel::lever_left, Channel::range,
-                                  Channel::range_scale, Channel::bearing, Channel::delay}) {
+    for (const Channel channel :
+         {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale,
+          Channel::bearing, Channel::delay, Channel::truth_heading}) {
       if (!is_possible(channel)) continue;
       take_view_channel(channel);
     }
@@ -92,6 +94,7 @@ class Gatherer {
 
   [[nodiscard]] bool is_possible(Channel channel) const {
     if (channel == Channel::compass) return has_compass_;
+    if (channel == Channel::truth_heading) return has_truth_;
     if (channel == Channel::range || channel == Channel::range_scale ||
         channel == Channel::bearing) {
       return has_views_;
@@ -319,6 +322,7 @@ class Gatherer {
   Area area_;
   bool has_compass_ = false;
   bool has_views_ = false;
+  bool has_truth_ = false;
   std::vector<Spread> variables_;
   std::vector<std::string> covariates_;
   std::vector<Candidate> candidates_;

@@ -6,8 +6,10 @@
 #include "criticism/effect_search.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/noise_beside.hpp"
+#include "criticism/place_uncertainty.hpp"
 #include "criticism/trends.hpp"
 #include "criticism/verdict.hpp"
+#include "linalg/dense.hpp"
 #include "recording/slow_covariates.hpp"
 
 #include <algorithm>
@@ -213,12 +215,31 @@ class Diagnostician {
     finding.tried = one.tried;
     finding.held_out = predicted(one);
     finding.status = status_of(k, finding.held_out, floor);
+    finding.implausible = one.score.dof > 0 && is_implausible(one);
     if (rank(k) < search_.missing().size()) {
       finding.look_alikes = look_alikes_[rank(k)];
       finding.joint = search_.missing()[rank(k)].joint.coefficients;
       finding.joint_sd = search_.missing()[rank(k)].joint.sd;
+      const std::vector<double> factors = widening_of(k);
+      for (std::size_t c = 0; c < factors.size(); ++c) {
+        finding.sd[c] *= factors[c];
+        finding.joint_sd[c] *= factors[c];
+      }
     }
     return finding;
+  }
+
+  /// Of one that is missing, beside the others.
+  [[nodiscard]] std::vector<double> widening_of(std::size_t k) const {
+    const Tested& one = search_.tested()[k];
+    if (one.candidate.parameters.empty()) return {};
+    Eigen::MatrixXd others = tests_.present();
+    for (const MissingEffect& other : search_.missing()) {
+      if (other.tested == k) continue;
+      append_columns(others, tests_.free_of_map(
+                                 tests_.columns(search_.tested()[other.tested].candidate.effect)));
+    }
+    return widening(tests_, one.candidate, search_.missing()[rank(k)].joint.coefficients, others);
   }
 
   void find_verdict() {
@@ -275,8 +296,7 @@ std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, co
   const ScoreTest tests(*as_stated.state);
   Eigen::MatrixXd nuisance(tests.system().rows(), 0);
   for (const Score& one : tests.test(effects_found(found))) {
-    nuisance.conservativeResize(Eigen::NoChange, nuisance.cols() + one.projected.cols());
-    nuisance.rightCols(one.projected.cols()) = one.projected;
+    append_columns(nuisance, one.projected);
   }
   return test_noise_laws(*as_stated.state, tests, nuisance);
 }

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
+#include "criticism/place_uncertainty.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
@@ -62,6 +63,7 @@ class Discoverer {
       if (!add_best()) break;
     }
     result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
+    widen_for_places();
     return std::move(result_);
   }
 
@@ -345,6 +347,26 @@ class Discoverer {
       effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(weakest));
       found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(weakest));
       result_.found = fitted(effects);
+    }
+  }
+
+  /// Standard errors of what was found at a place or threshold that was sought.
+  void widen_for_places() {
+    const auto sought = [](const Candidate& one) { return !one.parameters.empty(); };
+    if (std::none_of(found_.begin(), found_.end(), sought)) return;
+    const ScoreTest tests(*result_.found.state);
+    for (std::size_t k = given_; k < found_.size(); ++k) {
+      if (!sought(found_[k])) continue;
+      Eigen::MatrixXd others(tests.system().rows(), 0);
+      for (std::size_t other = 0; other < found_.size(); ++other) {
+        if (other == k) continue;
+        append_columns(others,
+                       tests.free_of_map(tests.columns(result_.found.model.effects[other])));
+      }
+      EffectEstimate& estimate = result_.found.effects[k];
+      const std::vector<double> factors =
+          widening(tests, found_[k], estimate.effect.coefficients, others);
+      for (std::size_t c = 0; c < factors.size(); ++c) estimate.sd[c] *= factors[c];
     }
   }
 

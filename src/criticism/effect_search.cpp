@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/effect_search.hpp"
 
+#include "linalg/dense.hpp"
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -19,11 +21,6 @@ constexpr std::size_t kMostEvents = 8;
 
 double dispersion_of(const Score& score, const LocalDispersion& local) {
   return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
-}
-
-void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
-  columns.conservativeResize(more.rows(), columns.cols() + more.cols());
-  columns.rightCols(more.cols()) = more;
 }
 
 /// Tests again those for which `wanted` holds.
@@ -150,7 +147,7 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
   if (best_of(still, options_.level) == nullptr) return std::nullopt;
   double p = 1.0;
   for (const Tested& one : still) {
-    if (one.score.dof > 0 && !is_implausible(one)) p = std::min(p, one.p_adjusted);
+    if (one.score.dof > 0) p = std::min(p, one.p_adjusted);
   }
   std::vector<TestedEvent> events = test_events(ground, left, nuisance);
   const auto event = std::find_if(events.begin(), events.end(), [](const TestedEvent& one) {
@@ -177,7 +174,7 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
     const std::optional<TestedEvent> event = claiming_event(ground, left, still, nuisance);
     if (!event) return;
     left.condition_on(event->projected);
-    append(nuisance, event->projected);
+    append_columns(nuisance, event->projected);
     dof -= event->dof;
     std::vector<double> p_before;
     p_before.reserve(still.size());
@@ -229,7 +226,7 @@ void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<T
     missing_.push_back({at, {}});
     const Score whole = tests_.test({tested_[at].candidate.effect}).front();
     left.condition_on(left.columns(tested_[at].candidate.effect));
-    append(nuisance_, whole.projected);
+    append_columns(nuisance_, whole.projected);
     dof -= whole.dof;
     if (missing_.size() == options_.most_missing) break;
     test_again(ground, left, still, all);

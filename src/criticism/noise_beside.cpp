@@ -4,6 +4,7 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/tested_candidate.hpp"
+#include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
@@ -44,8 +45,7 @@ Eigen::MatrixXd suspects(const FitState& fit) {
     if (!best) break;
     const Score found = tests.test({candidates[*best].effect}).front();
     if (found.dof == 0) break;
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + found.columns.cols());
-    columns.rightCols(found.columns.cols()) = found.columns;
+    append_columns(columns, found.columns);
     tests.condition_on(found.columns);
     dof -= found.dof;
   }
@@ -93,9 +93,7 @@ Defended defended_against_noise(const std::vector<Recording>& recordings, const 
   const auto together = [&](const std::vector<bool>& wanted) {
     Eigen::MatrixXd all(tests.system().rows(), 0);
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (!wanted[k]) continue;
-      all.conservativeResize(Eigen::NoChange, all.cols() + columns[k].cols());
-      all.rightCols(columns[k].cols()) = columns[k];
+      if (wanted[k]) append_columns(all, columns[k]);
     }
     return all;
   };

@@ -18,11 +18,6 @@ constexpr Eigen::Index kBatch = 64;  // columns at a time
 constexpr double kQuick = 1.0;       // s of driving at a time
 constexpr double kShows = 0.05;      // p
 
-/// Less what landmarks and poses absorb.
-Eigen::MatrixXd free_of_map(const RecordingSystem& system, const Eigen::MatrixXd& M) {
-  return M - system.times(system.solve_nodes(system.transposed_times(M)));
-}
-
 Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
   if (present.cols() > 0) M -= present * (present.transpose() * M);
   return M;
@@ -57,7 +52,7 @@ ScoreTest::ScoreTest(const FitState& fit)
       Builders{ColumnBuilder(clean_->context, clean_->problem, clean_->border, offsets_of(fit),
                              clean_->state, weights),
                std::nullopt});
-  residuals_ = free_of_map(*clean_system_, system_->residuals());
+  residuals_ = free_of_map(system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   condition_on(clean_system_->border());
   if (fit.adjustment.dof > 0) {
@@ -65,13 +60,17 @@ ScoreTest::ScoreTest(const FitState& fit)
   }
 }
 
+Eigen::MatrixXd ScoreTest::free_of_map(const Eigen::MatrixXd& M) const {
+  return M - clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(M)));
+}
+
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
-  return free_of(present_, free_of_map(*clean_system_, M));
+  return free_of(present_, free_of_map(M));
 }
 
 bool ScoreTest::is_present(const Effect& effect) const {
   const Eigen::MatrixXd M = columns(effect);
-  const Eigen::MatrixXd left = free_of_map(*clean_system_, M);
+  const Eigen::MatrixXd left = free_of_map(M);
   return left.squaredNorm() > kLeastShare * M.squaredNorm() &&
          free_of(present_, left).squaredNorm() <= kLeastShare * left.squaredNorm();
 }
@@ -222,9 +221,7 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
 double ScoreTest::joint_score(const std::vector<Effect>& effects) const {
   Eigen::MatrixXd M(system_->rows(), 0);
   for (const Score& one : test(effects)) {
-    const Eigen::Index before = M.cols();
-    M.conservativeResize(Eigen::NoChange, before + one.projected.cols());
-    M.rightCols(one.projected.cols()) = one.projected;
+    append_columns(M, one.projected);
   }
   if (M.cols() == 0) return 0.0;
   const Eigen::VectorXd nearest = least_squares(M, residuals_);

@@ -72,6 +72,8 @@ class ScoreTest {
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) const {
     return builders_->exact.columns(effect);
   }
+  /// M less what landmarks and poses absorb of it (its projection on J).
+  [[nodiscard]] Eigen::MatrixXd free_of_map(const Eigen::MatrixXd& M) const;
   /// M less its projections on J and on what is present.
   [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& M) const;
 

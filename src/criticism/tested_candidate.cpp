@@ -104,22 +104,37 @@ void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
   }
 }
 
-bool is_implausible(const Tested& one) {
-  if (one.candidate.effect.is_constant()) return false;
+namespace {
+
+/// Its largest value in standard deviations of what is known of its channel.
+double size_in_priors(const Tested& one) {
+  if (one.candidate.effect.is_constant()) return 0.0;
   const double prior_sd = facts_of(one.candidate.effect.channel).prior_sd;
+  double most = 0.0;
   for (std::size_t k = 0; k < one.score.coefficients.size(); ++k) {
-    if (std::abs(one.score.coefficients[k]) * one.score.largest[k] > kLargestPriorSd * prior_sd) {
-      return true;
-    }
+    most = std::max(most, std::abs(one.score.coefficients[k]) * one.score.largest[k] / prior_sd);
   }
-  return false;
+  return most;
+}
+
+/// Evidence less what an implausible size costs: a prior that misfit does not widen, and once more
+/// as much, for a proxy of what is missing is seldom of a possible size.
+double plausible_evidence(const Tested& one) {
+  const double size = size_in_priors(one);
+  return is_implausible(one) ? one.evidence - size * size : one.evidence;
+}
+
+}  // namespace
+
+bool is_implausible(const Tested& one) {
+  return size_in_priors(one) > kLargestPriorSd;
 }
 
 const Tested* best_of(const std::vector<Tested>& tested, double level) {
   const Tested* best = nullptr;
   for (const Tested& one : tested) {
-    if (one.score.dof == 0 || one.p_adjusted >= level || is_implausible(one)) continue;
-    if (best == nullptr || one.evidence > best->evidence) best = &one;
+    if (one.score.dof == 0 || one.p_adjusted >= level) continue;
+    if (best == nullptr || plausible_evidence(one) > plausible_evidence(*best)) best = &one;
   }
   return best;
 }

@@ -39,12 +39,12 @@ void drop_columns(Score& score);
 /// whole and where it acts; evidence against the least there is. `tried`: tests in all.
 void judge(std::vector<Tested>& tested, double chi2, int dof, int tried);
 
-/// What would have to be far larger than anything known is none, but for a plain factor: a
-/// wheelbase may be given quite wrong.
+/// Whether it would have to be far larger than anything known; never so a plain factor: a wheelbase
+/// may be given quite wrong.
 [[nodiscard]] bool is_implausible(const Tested& one);
 
-/// Of those that are significant at this level and plausible, the one of most evidence; nullptr
-/// where there is none.
+/// Of those that are significant at this level the one of most evidence, which an implausible size
+/// weighs against; nullptr where there is none.
 [[nodiscard]] const Tested* best_of(const std::vector<Tested>& tested, double level);
 
 }  // namespace trussmap

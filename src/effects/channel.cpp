@@ -26,7 +26,8 @@ const std::vector<ChannelFacts>& channels() {
       {range, "range", "m", 0.3, "range reading"},
       {range_scale, "range_scale", "", 0.1, "range reading, in proportion"},
       {bearing, "bearing", "rad", 0.5, "bearing reading"},
-      {delay, "delay", "s", 0.5, "time stamp of sightings and truth"}};
+      {delay, "delay", "s", 0.5, "time stamp of sightings and truth"},
+      {truth_heading, "truth_heading", "rad", 0.5, "heading of truth rows"}};
   return all;
 }
 

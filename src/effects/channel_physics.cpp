@@ -14,6 +14,7 @@ ActsOn acts_on(Channel channel) {
     case Channel::range_scale:
     case Channel::bearing:
     case Channel::delay:
+    case Channel::truth_heading:
       return ActsOn::views;
     case Channel::travel:
     case Channel::left:
@@ -62,6 +63,7 @@ DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, doub
     case Channel::range_scale:
     case Channel::bearing:
     case Channel::delay:
+    case Channel::truth_heading:
       break;
   }
   return {};
@@ -89,6 +91,9 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
       view.ahead = -g * speed;
       view.heading = -g * turn_rate;
       break;
+    case Channel::truth_heading:
+      view.heading = g;
+      break;
     default:
       break;
   }
@@ -97,7 +102,11 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
 
 bool is_recordable(Channel channel) {
   return channel != Channel::creep && channel != Channel::lever && channel != Channel::lever_left &&
-         channel != Channel::delay;
+         channel != Channel::delay && channel != Channel::truth_heading;
+}
+
+bool acts_on_sightings(Channel channel) {
+  return acts_on(channel) == ActsOn::views && channel != Channel::truth_heading;
 }
 
 RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase) {

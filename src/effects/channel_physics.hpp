@@ -19,6 +19,7 @@
 //   lever, lever_left   f ahead, to the left                  its instant
 //   range, range_scale, bearing   f (sightings only)          its instant
 //   delay               -speed f ahead, -turn rate f          its instant
+//   truth_heading     f further left (truth rows only)      its instant
 //
 // Path and turn are those of a row's wheels: (left + right)/2 and (right - left)/wheelbase. The
 // simulator finds readings by turning the physics round; it shares no formula with this file.
@@ -71,8 +72,12 @@ struct ViewPattern {
 /// The same for a view or truth row at this speed (m/s) and turn rate (rad/s).
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
-/// Whether a recording without the effect can be written down: not so for creep, lever, lever_left
-/// and delay.
+/// Whether it acts on sightings: of what acts on views all but truth_heading, which acts on truth
+/// rows alone.
+[[nodiscard]] bool acts_on_sightings(Channel channel);
+
+/// Whether a recording without the effect can be written down: not so for creep, lever, lever_left,
+/// delay and truth_heading.
 [[nodiscard]] bool is_recordable(Channel channel);
 
 /// The wheels' travels as they would be if the nominal model held, for a recordable channel that

@@ -185,6 +185,8 @@ class ProcessLayout {
         return one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
       case Channel::bearing:
         return one.kind == MeasurementKind::view && one.rows == 2;
+      case Channel::truth_heading:
+        return one.kind == MeasurementKind::truth;
       default:
         return one.kind != MeasurementKind::segment;
     }

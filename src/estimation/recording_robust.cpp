@@ -3,6 +3,7 @@
 #include "estimation/recording_robust.hpp"
 
 #include "estimation/pose_reckoner.hpp"
+#include "linalg/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -150,6 +151,7 @@ class RobustDescent {
         mu *= kBendFaster;
       }
       sort_out();
+      look_again();
     }
     system_.set_weights(fit_.weights);
   }
@@ -157,6 +159,7 @@ class RobustDescent {
   /// Lets in what fits and takes out what does not, until nothing changes.
   void look_again() {
     constexpr int kMostRounds = 5;
+    readmit();
     for (int round = 0; round < kMostRounds; ++round) {
       system_.set_weights(fit_.weights);
       descend_by(10);
@@ -175,6 +178,51 @@ class RobustDescent {
                                     {steps, 1e-6, kNegligibleDecrease});
     fit_.state = std::move(next.state);
     fit_.coefficients = std::move(next.coefficients);
+  }
+
+  /// A sighting that is out may have to stay so only for want of itself: without it its robot is
+  /// where the wheels have it, and that is less certain than the sighting is exact. What counts is
+  /// by how much chi^2 would rise with it, e'(I + J A^-1 J')^-1 e.
+  void readmit() {
+    if (!std::isfinite(fit_.gate)) return;
+    constexpr double kFaint = 1e-10;  // a weight that tells nothing and hides no derivative
+    constexpr std::size_t kBatch = 64;
+    std::vector<std::size_t> out;
+    std::vector<double> weights = fit_.weights;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] > 0.0 || !is_sighting(problem_.measurements[k].kind)) continue;
+      out.push_back(k);
+      weights[k] = kFaint;
+    }
+    if (out.empty()) return;
+    system_.set_weights(weights);
+    system_.linearise(fit_.state, fit_.coefficients);
+    try {
+      system_.factorise();
+    } catch (const NotPositiveDefinite&) {  // what is in leaves something undetermined
+      system_.set_weights(fit_.weights);
+      return;
+    }
+    for (std::size_t first = 0; first < out.size(); first += kBatch) {
+      const std::size_t end = std::min(out.size(), first + kBatch);
+      Eigen::MatrixXd rows;
+      for (std::size_t k = first; k < end; ++k) {
+        append_columns(rows, system_.transposed_rows(out[k]) / std::sqrt(kFaint));
+      }
+      const Eigen::MatrixXd solved = system_.solve(rows);
+      Eigen::Index at = 0;
+      for (std::size_t k = first; k < end; ++k) {
+        const Eigen::Index count = problem_.measurements[out[k]].rows;
+        const Eigen::VectorXd error =
+            system_.residuals().segment(system_.first_row(out[k]), count) / std::sqrt(kFaint);
+        Eigen::MatrixXd inner =
+            rows.middleCols(at, count).transpose() * solved.middleCols(at, count);
+        inner.diagonal().array() += 1.0;
+        if (error.dot(DenseLdlt(inner).solve(error)) <= fit_.gate) fit_.weights[out[k]] = 1.0;
+        at += count;
+      }
+    }
+    system_.set_weights(fit_.weights);
   }
 
   /// In or out.

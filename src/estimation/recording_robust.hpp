@@ -17,7 +17,8 @@
 //            `most_left_out` are beyond c, it is the model that is wrong, and c stays wider: the
 //            noise counts as that much larger. Where even the widest leaves out too many, none is
 //            left out.
-//   harden   the cost is bent, step by step, into the truncated one
+//   harden   the cost is bent, step by step, into the truncated one; then what is out is asked
+//            once more
 //
 // Each landmark keeps the sighting that suits it best, and each session one that ties it.
 #pragma once
@@ -61,7 +62,7 @@ struct RobustFit {
                                          const RobustOptions& options);
 
 /// From a fit by nearly the same system, with its gate: sightings go out and come back in until
-/// nothing changes.
+/// nothing changes. One that is out comes back where all of chi^2 would rise by less than c^2.
 [[nodiscard]] RobustFit look_again(RecordingSystem& system, const RecordingProblem& problem,
                                    RobustFit fit);
 

@@ -175,6 +175,7 @@ void ColumnBuilder::add_drives(Channel channel, const Shape& shape, int session,
 void ColumnBuilder::add_views(Channel channel, const Shape& shape, int session,
                               Eigen::Ref<Eigen::VectorXd> column) {
   for (const Instant at : {Instant::sighting, Instant::truth}) {
+    if (at == Instant::sighting && !acts_on_sightings(channel)) continue;
     const Values& f = values(shape, at);
     for (const View& view : views_) {
       if (view.truth != (at == Instant::truth)) continue;
@@ -212,7 +213,8 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   const Channel channel = effect.channel;
   std::vector<Instant> instants{Instant::middle};
   if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
-  if (acts_on(channel) == ActsOn::views) instants = {Instant::sighting, Instant::truth};
+  if (acts_on(channel) == ActsOn::views) instants = {Instant::truth};
+  if (acts_on_sightings(channel)) instants.insert(instants.begin(), Instant::sighting);
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
     if (adds_to_rows(channel, part.shape)) {

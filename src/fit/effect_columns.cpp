@@ -131,6 +131,9 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
     auto truths = context.values(shape, Instant::truth);
     keep_session(sightings, session);
     keep_session(truths, session);
+    if (!acts_on_sightings(channel)) {
+      for (std::vector<double>& one : sightings) std::fill(one.begin(), one.end(), 0.0);
+    }
     for (std::size_t s = 0; s < recordings.size(); ++s) {
       column.pattern.sightings.push_back(
           views(channel, sightings[s], context.variables(s, Instant::sighting)));

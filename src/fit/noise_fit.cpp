@@ -31,6 +31,8 @@ constexpr double kStep = 1e-3;       // of a logarithm, for slopes
 constexpr double kWideStep = 0.05;   // the same, for curvatures
 constexpr double kLeastGain = 1e-3;  // of -2 log R, to go on for
 constexpr double kRoughly = 0.05;    // the same, to compare processes
+constexpr double kMostOfALaw = 1.0;  // rad/s^(1/2), rad/rad^(1/2), m/s^(1/2)
+constexpr double kLeastInformation = 1e-2;  // of a logarithm
 
 /// Sizes of components as logarithms: all sds that are free, then the lengths.
 struct Parameters {
@@ -186,15 +188,16 @@ class NoiseFitter {
         const double least = std::log(beside ? kLeastBesideAProcess : kLeastOfStated);
         value = std::clamp(value, stated - (scattered ? kReach : least), stated + kReach);
       } else {
+        // More than effects may be, noise is not either.
         const double scale = std::log(facts_scale(member.component));
-        value = std::clamp(value, scale - 3.0 * kReach, scale + kReach);
+        value = std::clamp(value, scale - 3.0 * kReach, scale);
       }
     }
     return x;
   }
 
   [[nodiscard]] static double facts_scale(const NoiseComponent& one) {
-    return one.lasts() ? facts_of(one.process.channel).prior_sd : 0.01;
+    return one.lasts() ? facts_of(one.process.channel).prior_sd : kMostOfALaw;
   }
 
   /// Quasi-Newton (BFGS) in the logarithms, from slopes by differences. Changes sizes_ and best_.
@@ -418,7 +421,8 @@ class NoiseFitter {
     std::vector<bool> free(members_.size(), false);
     free[k] = true;
     for (std::size_t other = 0; other < members_.size(); ++other) {
-      if (members_[other].free && members_[other].component.name == source_of(members_[k].component)) {
+      if (members_[other].free &&
+          members_[other].component.name == source_of(members_[k].component)) {
         free[other] = true;
       }
     }
@@ -523,36 +527,57 @@ class NoiseFitter {
     for (NoiseSource& one : result.sources) one.gain = std::min(one.gain, result.gain);
   }
 
-  /// Of the logarithms, by the curvature of -2 log R.
+  /// Of the logarithms. The readings' scatter and the adjustment see the same errors of the wheels,
+  /// each in its own way, and what both say is no more than once true: the scores' covariance is
+  /// taken as if they went together wherever they can (Godambe 1960; Varin, Reid & Firth 2011, on
+  /// composite likelihoods), H^-1 J H^-1 with J = A + S + A^(1/2) S^(1/2) + S^(1/2) A^(1/2).
   [[nodiscard]] Eigen::VectorXd standard_errors(const Parameters& of) {
     const Eigen::VectorXd x = of.values();
+    const auto scatter = [&](const Eigen::VectorXd& at) { return reml_.scatter(of.with(at)); };
+    const auto whole = [&](const Eigen::VectorXd& at) { return deviance(of.with(at)); };
+    // -2 log is twice the information.
+    const Eigen::MatrixXd H = 0.5 * curvatures(whole, x);
+    const Eigen::MatrixXd S = 0.5 * curvatures(scatter, x);
+    const Eigen::MatrixXd both = square_root(H - S) * square_root(S);
+    const Eigen::MatrixXd J = H + both + both.transpose();
+    const SymmetricModes modes = symmetric_modes(H);
+    const Eigen::VectorXd information = modes.eigenvalues.cwiseMax(kLeastInformation);
+    const Eigen::MatrixXd inverse = modes.eigenvectors * information.cwiseInverse().asDiagonal() *
+                                    modes.eigenvectors.transpose();
+    const Eigen::VectorXd variances = (inverse * J * inverse).diagonal();
+    return variances.cwiseMax(inverse.diagonal()).cwiseSqrt();
+  }
+
+  /// Second derivatives, by differences.
+  template <typename Function>
+  [[nodiscard]] static Eigen::MatrixXd curvatures(const Function& function,
+                                                  const Eigen::VectorXd& x) {
+    constexpr double h = kWideStep;
     const Eigen::Index n = x.size();
-    const double middle = deviance(of.with(x));
+    const double middle = function(x);
     Eigen::VectorXd up(n);
     Eigen::MatrixXd H(n, n);
     const auto at = [&](Eigen::Index a, double by_a, Eigen::Index b, double by_b) {
       Eigen::VectorXd moved = x;
       moved[a] += by_a;
       moved[b] += by_b;
-      return deviance(of.with(moved));
+      return function(moved);
     };
-    constexpr double h = kWideStep;
     for (Eigen::Index a = 0; a < n; ++a) {
       up[a] = at(a, h, a, 0.0);
       H(a, a) = (up[a] + at(a, -h, a, 0.0) - 2.0 * middle) / (h * h);
       for (Eigen::Index b = 0; b < a; ++b) {
-        const double both = at(a, h, b, h);
-        H(a, b) = H(b, a) = (both - up[a] - up[b] + middle) / (h * h);
+        H(a, b) = H(b, a) = (at(a, h, b, h) - up[a] - up[b] + middle) / (h * h);
       }
     }
-    // -2 log R is twice the information.
-    const SymmetricModes modes = symmetric_modes(0.5 * H);
-    Eigen::VectorXd variances = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double information = std::max(modes.eigenvalues[k], 1e-2);
-      variances += modes.eigenvectors.col(k).cwiseAbs2() / information;
-    }
-    return variances.cwiseSqrt();
+    return H;
+  }
+
+  /// Of a matrix that may have slightly negative eigenvalues.
+  [[nodiscard]] static Eigen::MatrixXd square_root(const Eigen::MatrixXd& matrix) {
+    const SymmetricModes modes = symmetric_modes(matrix);
+    return modes.eigenvectors * modes.eigenvalues.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+           modes.eigenvectors.transpose();
   }
 
   static constexpr std::size_t kMostFitted = 4;

@@ -83,6 +83,9 @@ class NoiseReml {
   /// compare with none, or with others.
   [[nodiscard]] double minus_two_log_at_best(const Sizes& sizes);
 
+  /// What of them is the readings' scatter within segments.
+  [[nodiscard]] double scatter(const Sizes& sizes);
+
   /// Problem and system of the last call.
   [[nodiscard]] const RecordingProblem& problem() const { return problem_; }
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
@@ -116,16 +119,14 @@ class NoiseReml {
   ProcessLayer layer_;
   std::unique_ptr<RecordingSystem> system_;
   std::vector<bool> left_out_;
-  [[nodiscard]] double scatter(const Sizes& sizes);
-
   ReadingScatter scatter_;
   struct Scattered {
     ReadingNoise at;
     double value = 0.0;
   };
   std::vector<Scattered> scattered_;  ///< of late
-  std::vector<Rows> rows_;      ///< per segment
-  std::vector<Matrix4> fixed_;  ///< per measurement
+  std::vector<Rows> rows_;            ///< per segment
+  std::vector<Matrix4> fixed_;        ///< per measurement
   std::vector<NoiseComponent> components_;
   std::vector<std::vector<Matrix4>> units_;  ///< per white component and measurement
   std::map<std::string, std::vector<Matrix4>> units_known_;  ///< by the components' names

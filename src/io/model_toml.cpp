@@ -7,6 +7,7 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -137,7 +138,18 @@ class ModelReader {
       fail(node.source(), "process is no list of tables, expected [[noise.process]]");
     }
     for (const toml::node& one : *processes) {
-      noise.processes.push_back(read_process(*one.as_table()));
+      const NoiseProcess process = read_process(*one.as_table());
+      const auto twin = std::find_if(
+          noise.processes.begin(), noise.processes.end(), [&process](const NoiseProcess& other) {
+            return other.channel == process.channel && other.process == process.process;
+          });
+      if (twin != noise.processes.end()) {
+        fail(one.source(),
+             fmt::format("a noise process {} {} is there already, in line {}, expected "
+                         "one of each",
+                         name_of(process.channel), name_of(process.process), twin->line));
+      }
+      noise.processes.push_back(process);
     }
   }
 

@@ -53,6 +53,11 @@ double DenseLdlt::log_determinant() const {
   return factor_.vectorD().array().abs().log().sum();
 }
 
+void append_columns(Eigen::MatrixXd& matrix, const Eigen::MatrixXd& more) {
+  matrix.conservativeResize(more.rows(), matrix.cols() + more.cols());
+  matrix.rightCols(more.cols()) = more;
+}
+
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns, std::optional<double> threshold) {
   if (columns.cols() == 0) return columns;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(columns.rows(), columns.cols());

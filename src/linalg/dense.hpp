@@ -58,6 +58,9 @@ class DenseLdlt {
   Eigen::LDLT<Eigen::MatrixXd> factor_;
 };
 
+/// Columns to the right of those that there are (none, perhaps of no rows either).
+void append_columns(Eigen::MatrixXd& matrix, const Eigen::MatrixXd& more);
+
 /// An orthonormal basis of the columns' span. Columns whose pivot is less than `threshold` of the
 /// largest count as combinations of the others; by default that is rounding alone.
 [[nodiscard]] Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& columns,

@@ -63,6 +63,10 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
       page.notes.push_back(in_words(one.estimate, why));
     }
   }
+  if (!evidence.noise.empty()) {
+    page.notes.push_back("Under the noise as estimated, other than the model stated it: " +
+                         typeset(evidence.noise) + ".");
+  }
   page.notes.insert(page.notes.end(), after.warnings.begin(), after.warnings.end());
   const NamedModel given{kBefore, evidence.without};
   const NamedModel fitted{kAfter, evidence.with};

@@ -28,6 +28,7 @@ Scale scale_of(Channel channel) {
     case Channel::rotate:
     case Channel::compass:
     case Channel::bearing:
+    case Channel::truth_heading:
       return {kDegrees, " deg"};
     case Channel::delay:
       return {1e3, " ms"};
@@ -72,6 +73,8 @@ Phrase phrase_of(Channel channel) {
       return {"bearings read", "too much", "too little"};
     case Channel::delay:
       return {"sightings and truth are stamped", "late", "early"};
+    case Channel::truth_heading:
+      return {"the truth's heading is turned", "to the left", "to the right"};
   }
   return {"", "", ""};
 }
@@ -112,6 +115,8 @@ const char* noun_of(Channel channel) {
       return "bearing error";
     case Channel::delay:
       return "delay of sightings";
+    case Channel::truth_heading:
+      return "error of the truth's heading";
   }
   return "";
 }
@@ -151,6 +156,8 @@ std::string channel_in_words(Channel channel) {
       return "turning, missing per event";
     case Channel::delay:
       return "sightings stamped late by";
+    case Channel::truth_heading:
+      return "truth's heading turned left by";
   }
   return "";
 }

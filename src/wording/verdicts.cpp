@@ -134,8 +134,10 @@ std::string verdict_in_words(const Discovery& result) {
 std::string in_words(const Finding& finding) {
   Effect effect = finding.effect;
   if (!finding.joint.empty()) effect.coefficients = finding.joint;
-  return fmt::format("{}: {}; {}", name_of(finding.status), effect.name,
-                     in_words(effect, finding.joint.empty() ? finding.sd : finding.joint_sd));
+  return fmt::format(
+      "{}: {}; {}{}", name_of(finding.status), effect.name,
+      in_words(effect, finding.joint.empty() ? finding.sd : finding.joint_sd),
+      finding.implausible ? "; implausibly large: is a unit wrong, or a sensor at fault?" : "");
 }
 
 std::string stop_in_words(const Discovery& result) {

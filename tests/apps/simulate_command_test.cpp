@@ -176,6 +176,7 @@ TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
                         {"--rough fog", "half, memory, haze, tails, floor"},
                         {"--rough half,", "unknown rough noise ''"},
                         {"--rough ''", "unknown rough noise ''"},
+                        {"--rough haze --no-compass", "haze is noise of a compass"},
                         {"--rough half --noise-free", "--noise-free excludes --rough"},
                         {"--covariate speed", "\"speed\", which is taken"},
                         {"--covariate 2b", "expected a letter"},

@@ -90,7 +90,16 @@ TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
   EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views);
 }
 
+TEST(ChannelPhysics, ATruthsHeadingIsNothingThatSightingsKnow) {
+  EXPECT_FALSE(acts_on_sightings(Channel::truth_heading));
+  EXPECT_EQ(acts_on(Channel::truth_heading), ActsOn::views);
+  const ViewPattern found = view_pattern(Channel::truth_heading, 0.2, 0.6, -0.3);
+  EXPECT_EQ(found.vector(),
+            (Eigen::Matrix<double, 6, 1>() << 0.0, 0.0, 0.2, 0.0, 0.0, 0.0).finished());
+}
+
 TEST_P(EveryChannel, AddsToAViewWhatTheTableSays) {
+  if (GetParam() == Channel::truth_heading) return;  // above
   const double speed = 0.6;
   const double turn_rate = -0.3;
   const double step = 1e-4;
@@ -138,7 +147,7 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 17U);
+  EXPECT_EQ(channels().size(), 18U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);

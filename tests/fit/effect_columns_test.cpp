@@ -202,7 +202,10 @@ class World {
     const Point sensor = pose.place + lever * std::polar(1.0, pose.heading);
     if (one.kind == MeasurementKind::truth) {
       return {sensor.real() - one.value[0], sensor.imag() - one.value[1],
-              std::remainder(pose.heading - one.value[2], 2.0 * M_PI), 0.0};
+              std::remainder(
+                  pose.heading + (channel == Channel::truth_heading ? g : 0.0) - one.value[2],
+                  2.0 * M_PI),
+              0.0};
     }
     const Vector2& landmark = state_.landmarks[idx(one.to)];
     const Point seen =

@@ -92,6 +92,10 @@ const Refused kBadModels[] = {
      ":7: sd is no number, expected one"},
     {"EndlessSdOfProcess", process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = inf\n"),
      ":7: sd is not finite, expected a number"},
+    {"ProcessTwice",
+     process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = 0.01\n[[noise.process]]\n"
+                "channel = \"turn\"\nprocess = \"per leg\"\nsd = 0.02\n"),
+     ":8: a noise process turn per leg is there already, in line 4, expected one of each"},
     {"LengthOfALeg",
      process_of("channel = \"turn\"\nprocess = \"per leg\"\nsd = 0.01\nlength = 2\n"),
      ":8: a process per leg has a length, expected none"},
