@@ -253,6 +253,7 @@ void run_compare(const CompareCommand& options) {
   if (!options.input.json.empty()) {
     ordered_json report = json(result);
     report["noise_budget"] = budget_json(budget);
+    report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {

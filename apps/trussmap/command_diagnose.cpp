@@ -210,6 +210,7 @@ void run_diagnose(const DiagnoseCommand& options) {
   if (!options.input.json.empty()) {
     ordered_json report = json(result);
     report["noise_budget"] = budget_json(budget);
+    report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();

@@ -175,6 +175,7 @@ void run_discover(const DiscoverCommand& options) {
   if (!options.input.json.empty()) {
     ordered_json report = json(result);
     report["noise_budget"] = budget_json(budget);
+    report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   if (options.page.wanted()) {

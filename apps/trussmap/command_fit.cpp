@@ -155,6 +155,7 @@ void run_fit(const FitCommand& options) {
   if (!options.input.json.empty()) {
     ordered_json report = json(result);
     if (noise) report["noise"] = noise_json(*noise);
+    report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");
   }
   progress.next();

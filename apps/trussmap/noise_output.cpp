@@ -60,7 +60,7 @@ void print_budget(const std::vector<NoiseBudget>& budget) {
   table.rows.push_back({"noise of"});
   for (const NoiseBudget& one : budget) {
     table.columns.push_back(Align::right);
-    table.rows.back().push_back(fmt::format("{:g} s", one.horizon));
+    table.rows.back().push_back(one.horizon == 0.0 ? "a leg" : fmt::format("{:g} s", one.horizon));
   }
   for (const NoiseShare& share : budget.back().shares) {
     table.rows.push_back({share.source});

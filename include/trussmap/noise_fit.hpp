@@ -75,18 +75,20 @@ struct NoiseShare {
 };
 
 struct NoiseBudget {
-  double horizon = 0.0;  ///< s
+  double horizon = 0.0;  ///< s; 0: a leg, whatever it takes
   double rms = 0.0;      ///< m, predicted error of the position after the horizon
   int windows = 0;
   std::vector<NoiseShare> shares;  ///< the largest first
 };
 
-/// By the wheels alone, from a known pose, over each horizon (s), every half of it anew: the errors
-/// that the model's noise lets one expect, linearised along the record. Horizons that no recording
-/// is as long as are left out. Throws std::invalid_argument on a horizon that is not positive.
+/// By the wheels alone, from a known pose, over each horizon (s), every half of it anew, or (0)
+/// over each leg, from one landmark that the robot stands on to the next or from rest to rest: the
+/// errors that the model's noise lets one expect, linearised along the record. Horizons that no
+/// recording is as long as are left out, and legs where there are none. Throws
+/// std::invalid_argument on a horizon below 0.
 [[nodiscard]] std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings,
                                                     const Model& model,
-                                                    const std::vector<double>& horizons = {10.0,
-                                                                                           30.0});
+                                                    const std::vector<double>& horizons = {
+                                                        0.0, 10.0, 30.0});
 
 }  // namespace trussmap

@@ -17,6 +17,7 @@
 namespace trussmap {
 namespace {
 
+constexpr double kLeastCurvature = 1.0;     // 1/m, from curves to the right to curves to the left
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
 
 bool has_word(const std::string& text, std::initializer_list<const char*> words) {
@@ -80,9 +81,12 @@ class Gatherer {
     const Spread spread = spread_of(name, context_);
     if (spread.sorted.empty() || !(spread.most > spread.least)) return;
     // Of a robot that never accelerates the acceleration is noise of the wheels, the very noise
-    // that an effect of it would explain.
+    // that an effect of it would explain; so is the curvature of one that drives straight on.
     if (name == "acceleration" &&
         spread.quantile(0.99) - spread.quantile(0.01) < kLeastAcceleration) {
+      return;
+    }
+    if (name == "curvature" && spread.quantile(0.99) - spread.quantile(0.01) < kLeastCurvature) {
       return;
     }
     variables_.push_back(spread);

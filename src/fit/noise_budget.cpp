@@ -25,8 +25,9 @@ struct Window {
   const Drive& drive;
   const Robot& robot;
   std::vector<SegmentRow> rows;
-  double elapsed = 0.0;  ///< s, from the recording's start
-  double way = 0.0;      ///< m, likewise
+  double from = 0.0;                ///< s
+  double way = 0.0;                 ///< m, from the recording's start
+  const std::vector<double>& ends;  ///< of legs, s
 };
 
 /// What one white field of the noise makes, all others silent.
@@ -48,11 +49,21 @@ double process_square(const Window& window, const NoiseProcess& process) {
     const ProcessMoments m =
         process_moments(window.rows, c, process.process, process.length, false);
     double start = 1.0;
-    if (process.process == ProcessKind::walk_in_t) start = window.elapsed;
+    if (process.process == ProcessKind::walk_in_t) start = window.from - window.drive.start();
     if (process.process == ProcessKind::walk_in_distance) start = window.way;
     unit = m.uu + start * m.by_start * m.by_start.transpose();
   } else if (process.process == ProcessKind::white) {
     for (const Vector4& row : c) unit += row * row.transpose();
+  } else if (process.process == ProcessKind::per_leg) {
+    std::map<std::ptrdiff_t, Vector4> sums;
+    double t = window.from;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      const double middle = t + 0.5 * window.rows[k].duration;
+      t += window.rows[k].duration;
+      const auto leg = std::lower_bound(window.ends.begin(), window.ends.end(), middle);
+      sums.try_emplace(leg - window.ends.begin(), Vector4::Zero()).first->second += c[k];
+    }
+    for (const auto& [leg, sum] : sums) unit += sum * sum.transpose();
   } else {
     Vector4 sum = Vector4::Zero();
     for (const Vector4& row : c) sum += row;
@@ -107,23 +118,48 @@ class Budget {
   int windows_ = 0;
 };
 
+struct Stretch {
+  double from = 0.0;  ///< s
+  double to = 0.0;
+};
+
+std::vector<Stretch> stretches(const Drive& drive, double horizon) {
+  std::vector<Stretch> result;
+  const double length = drive.t.back() - drive.start();
+  const auto count = static_cast<std::size_t>(std::max(0.0, 2.0 * (length / horizon - 1.0) + 1.0));
+  for (std::size_t k = 0; k < count; ++k) {
+    const double from = drive.start() + 0.5 * horizon * static_cast<double>(k);
+    result.push_back({from, from + horizon});
+  }
+  return result;
+}
+
+std::vector<Stretch> legs(const std::vector<double>& ends) {
+  std::vector<Stretch> result;
+  for (std::size_t k = 1; k < ends.size(); ++k) result.push_back({ends[k - 1], ends[k]});
+  return result;
+}
+
+/// `horizon` 0: legs.
 void add_windows(const Recording& recording, const Robot& robot, double horizon, Budget& budget) {
   const Drive& drive = recording.drive;
   if (drive.rows() == 0) return;
-  const double length = drive.t.back() - drive.start();
-  const auto count = static_cast<std::size_t>(std::max(0.0, 2.0 * (length / horizon - 1.0) + 1.0));
-  const std::size_t stride = std::max<std::size_t>(1, count / kMostWindows);
+  const std::vector<double> ends = ends_of_legs(recording);
+  const std::vector<Stretch> all = horizon > 0.0 ? stretches(drive, horizon) : legs(ends);
+  const std::size_t stride = std::max<std::size_t>(1, all.size() / kMostWindows);
   double way = 0.0;
   double reached = drive.start();
-  for (std::size_t k = 0; k < count; k += stride) {
-    const double from = drive.start() + 0.5 * horizon * static_cast<double>(k);
-    for (const SegmentRow& row : segment_rows(drive, reached, from, robot)) {
+  for (std::size_t k = 0; k < all.size(); k += stride) {
+    for (const SegmentRow& row : segment_rows(drive, reached, all[k].from, robot)) {
       way += std::abs(row.path);
     }
-    reached = from;
-    const Window window{drive, robot, segment_rows(drive, from, from + horizon, robot),
-                        from - drive.start(), way};
-    if (!window.rows.empty()) budget.add(window);
+    reached = all[k].from;
+    const Window window{drive,       robot, segment_rows(drive, all[k].from, all[k].to, robot),
+                        all[k].from, way,   ends};
+    double driven = 0.0;
+    for (const SegmentRow& row : window.rows) driven += std::abs(row.path);
+    if (window.rows.empty() || (horizon == 0.0 && driven < kDefaultMinDrive)) continue;
+    budget.add(window);
   }
 }
 
@@ -133,7 +169,7 @@ std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings, 
                                       const std::vector<double>& horizons) {
   std::vector<NoiseBudget> result;
   for (const double horizon : horizons) {
-    if (!(horizon > 0.0)) throw std::invalid_argument("a horizon has to be more than 0 s");
+    if (!(horizon >= 0.0)) throw std::invalid_argument("a horizon has to be 0 s (a leg) or more");
     Budget budget(model);
     for (const Recording& one : recordings) add_windows(one, model.robot, horizon, budget);
     if (!budget.empty()) result.push_back(budget.take(horizon));

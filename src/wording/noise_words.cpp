@@ -94,8 +94,10 @@ std::string in_words(const NoiseBudget& budget) {
   if (budget.shares.empty()) return "";
   const NoiseShare& most = budget.shares.front();
   const Remedy remedy = remedy_of(most.source);
-  return fmt::format("after {:g} s {:.0f} % is {}{}; {}", budget.horizon, 100.0 * most.share,
-                     remedy.error, duration_of(most.source), remedy.help);
+  const std::string when =
+      budget.horizon == 0.0 ? "at a leg's end" : fmt::format("after {:g} s", budget.horizon);
+  return fmt::format("{} {:.0f} % is {}{}; {}", when, 100.0 * most.share, remedy.error,
+                     duration_of(most.source), remedy.help);
 }
 
 }  // namespace trussmap

@@ -180,9 +180,26 @@ TEST(NoiseBudgets, ShareByVariance) {
   EXPECT_NEAR(budget.shares[0].share + budget.shares[1].share, 1.0, 1e-12);
 }
 
+// A travel error of a leg's own: sd times the leg's length at its end, and over four legs the root
+// of the sum of squares.
+TEST(NoiseBudgets, OfLegsAndOfWhatIsTheirOwn) {
+  Model model;
+  model.noise.left = model.noise.right = 0.0;
+  model.noise.processes = {{Channel::travel, ProcessKind::per_leg, 0.01, 0.0, 0.0, 0}};
+  Recording drive = straight_drive(40.0, 0.5);
+  for (const double t : {0.0, 10.0, 20.0, 30.0, 40.0}) drive.sightings.push_back({t, "A"});
+  const std::vector<NoiseBudget> budgets = noise_budget({drive}, model, {0.0, 40.0});
+  ASSERT_EQ(budgets.size(), 2U);
+  EXPECT_EQ(budgets[0].horizon, 0.0);
+  EXPECT_EQ(budgets[0].windows, 4);
+  EXPECT_NEAR(budgets[0].rms, 0.01 * 5.0, 1e-9);
+  EXPECT_EQ(budgets[1].windows, 1);
+  EXPECT_NEAR(budgets[1].rms, 2.0 * 0.01 * 5.0, 1e-9);
+}
+
 TEST(NoiseBudgets, LeaveOutHorizonsLongerThanTheDrive) {
   EXPECT_TRUE(noise_budget({straight_drive(5.0, 0.5)}, Model(), {10.0}).empty());
-  EXPECT_THROW(static_cast<void>(noise_budget({straight_drive(5.0, 0.5)}, Model(), {0.0})),
+  EXPECT_THROW(static_cast<void>(noise_budget({straight_drive(5.0, 0.5)}, Model(), {-1.0})),
                std::invalid_argument);
 }
 
