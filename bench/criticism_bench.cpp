@@ -25,6 +25,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <map>
 #include <optional>
 #include <random>
@@ -364,11 +365,7 @@ void cost() {
   }
 }
 
-}  // namespace
-}  // namespace trussmap::bench
-
-int main(int argc, char** argv) {
-  using namespace trussmap::bench;
+int run(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
   CLI::App app("How well diagnose and discover do on simulated recordings");
   Options options;
@@ -396,4 +393,16 @@ int main(int argc, char** argv) {
   if (wants("noise")) noise(options);
   if (wants("cost")) cost();
   return 0;
+}
+
+}  // namespace
+}  // namespace trussmap::bench
+
+int main(int argc, char** argv) {
+  try {
+    return trussmap::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

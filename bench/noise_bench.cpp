@@ -10,7 +10,8 @@
 //   white       recordings whose noise is as stated: does the estimate name a process?
 //   sizes       recordings with one process or noise law, drawn anew from a fit: do its size's and
 //               length's 95 % intervals hold?
-//   posterior   given recordings: discovered, drawn anew from what was found, diagnosed: do p-values
+//   posterior   given recordings: discovered, drawn anew from what was found, diagnosed: do
+//   p-values
 //               and intervals hold there?
 #include "bench_worlds.hpp"
 #include "fit/fit_state.hpp"
@@ -23,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <map>
 
@@ -97,8 +99,7 @@ void clean(const Options& options) {
       if (!options.verbose) continue;
       fmt::print("  {} {}: {} (p {:.4f}, legs {}{}{}{})\n", kind, world.seed, result.missing,
                  result.p_value, world.walk.size() - 1, world.surveyed ? ", survey" : "",
-                 world.robot.compass ? ", compass" : "",
-                 world.robot.range_sensor ? ", range" : "");
+                 world.robot.compass ? ", compass" : "", world.robot.range_sensor ? ", range" : "");
     }
     fmt::print("{}, no effect: one named in {} of {} ({:.1f} %), unexplained misfits {}\n", kind,
                named, options.clean, percent(named, options.clean), misfits);
@@ -154,13 +155,12 @@ void identify(const Options& options) {
         for (const EffectEstimate& one : found.found.effects) {
           if (one.effect.name != truth.name) continue;
           for (std::size_t k = 0; k < truth.coefficients.size(); ++k) {
-            const bool held = std::abs(one.effect.coefficients[k] - truth.coefficients[k]) <=
-                              kWithin * one.sd[k];
+            const bool held =
+                std::abs(one.effect.coefficients[k] - truth.coefficients[k]) <= kWithin * one.sd[k];
             intervals.ask(one.effect.coefficients[k], one.sd[k], truth.coefficients[k]);
             if (!held && options.verbose) {
               fmt::print("  {} {} (world {}): {:.5g} +- {:.5g}, truth {:.5g}\n", kind, truth.name,
-                         world.seed, one.effect.coefficients[k], one.sd[k],
-                         truth.coefficients[k]);
+                         world.seed, one.effect.coefficients[k], one.sd[k], truth.coefficients[k]);
             }
           }
         }
@@ -268,9 +268,8 @@ void sizes(const Options& options) {
       fit = refit(base, rough, fit);
       const std::vector<Recording> drawn = replicated(base, *fit.state, seed);
       const FittedNoise noise = fit_model_and_noise(drawn, world.model).noise;
-      const auto found =
-          std::find_if(noise.sources.begin(), noise.sources.end(),
-                       [&](const NoiseSource& one) { return one.name == law.name; });
+      const auto found = std::find_if(noise.sources.begin(), noise.sources.end(),
+                                      [&](const NoiseSource& one) { return one.name == law.name; });
       others += std::any_of(noise.sources.begin(), noise.sources.end(),
                             [&](const NoiseSource& one) {
                               return one.stated == 0.0 && one.name != law.name;
@@ -293,18 +292,18 @@ void sizes(const Options& options) {
                    found->length_error, law.length);
       }
     }
-    fmt::print("{}: named in {} of {}; size within its error in {}{}; at a limit {}, another "
-               "process named {}\n",
-               law.name, named, options.sizes, sd.text(),
-               law.length > 0.0 ? ", length in " + length.text() : "", limits, others);
+    fmt::print(
+        "{}: named in {} of {}; size within its error in {}{}; at a limit {}, another "
+        "process named {}\n",
+        law.name, named, options.sizes, sd.text(),
+        law.length > 0.0 ? ", length in " + length.text() : "", limits, others);
   }
 }
 
 void posterior(const Options& options) {
   for (const std::string& folder : options.given) {
     const std::vector<Recording> recordings{read_recording(folder)};
-    const Model given =
-        read_model(std::filesystem::path(folder) / "model.toml");
+    const Model given = read_model(std::filesystem::path(folder) / "model.toml");
     DiscoverOptions discovering;
     discovering.diagnosis.fit = as_the_command_has_it();
     discovering.diagnosis.fit.use_truth = false;
@@ -315,8 +314,8 @@ void posterior(const Options& options) {
     std::map<std::string, Coverage> intervals;
     std::vector<double> p_values;
     for (int k = 0; k < options.drawn; ++k) {
-      const std::vector<Recording> drawn = replicated(
-          recordings, *found.found.state, options.first + static_cast<std::uint64_t>(k));
+      const std::vector<Recording> drawn =
+          replicated(recordings, *found.found.state, options.first + static_cast<std::uint64_t>(k));
       const ModelFit fit = fit_model(drawn, asked, discovering.diagnosis.fit);
       p_values.push_back(fit.p_value);
       for (std::size_t e = 0; e < fit.effects.size(); ++e) {
@@ -335,27 +334,23 @@ void posterior(const Options& options) {
     const auto n = static_cast<double>(p_values.size());
     for (std::size_t k = 0; k < p_values.size(); ++k) {
       const double below = static_cast<double>(k) / n;
-      farthest = std::max({farthest, std::abs(p_values[k] - below),
-                           std::abs(p_values[k] - below - 1.0 / n)});
+      farthest = std::max(
+          {farthest, std::abs(p_values[k] - below), std::abs(p_values[k] - below - 1.0 / n)});
     }
-    fmt::print("{}: {} effects found; of {} drawn anew a further one named in {} ({:.1f} %), "
-               "misfits {}; p of chi^2 below 0.05 in {}, farthest from uniform {:.3f} (5 %: "
-               "{:.3f})\n",
-               folder, found.found.effects.size(), options.drawn, named,
-               percent(named, options.drawn), misfits,
-               std::count_if(p_values.begin(), p_values.end(), [](double p) { return p < 0.05; }),
-               farthest, 1.358 / std::sqrt(n));
+    fmt::print(
+        "{}: {} effects found; of {} drawn anew a further one named in {} ({:.1f} %), "
+        "misfits {}; p of chi^2 below 0.05 in {}, farthest from uniform {:.3f} (5 %: "
+        "{:.3f})\n",
+        folder, found.found.effects.size(), options.drawn, named, percent(named, options.drawn),
+        misfits, std::count_if(p_values.begin(), p_values.end(), [](double p) { return p < 0.05; }),
+        farthest, 1.358 / std::sqrt(n));
     for (const auto& [name, one] : intervals) {
       fmt::print("  {}: 95 % intervals hold in {}\n", name, one.text());
     }
   }
 }
 
-}  // namespace
-}  // namespace trussmap::bench
-
-int main(int argc, char** argv) {
-  using namespace trussmap::bench;
+int run(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
   CLI::App app("How well noise is estimated, and effects found beside it");
   Options options;
@@ -372,7 +367,8 @@ int main(int argc, char** argv) {
   app.add_option("--sizes", options.sizes, "Recordings per process")->capture_default_str();
   app.add_option("--drawn", options.drawn, "Drawn anew from each recording given")
       ->capture_default_str();
-  app.add_option("--given", options.given, "Folders of recordings with a model.toml, for posterior");
+  app.add_option("--given", options.given,
+                 "Folders of recordings with a model.toml, for posterior");
   app.add_flag("--verbose", options.verbose, "Say more of each");
   CLI11_PARSE(app, argc, argv);
   const auto wants = [&](const char* part) {
@@ -385,4 +381,16 @@ int main(int argc, char** argv) {
   if (wants("sizes")) sizes(options);
   if (wants("posterior")) posterior(options);
   return 0;
+}
+
+}  // namespace
+}  // namespace trussmap::bench
+
+int main(int argc, char** argv) {
+  try {
+    return trussmap::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

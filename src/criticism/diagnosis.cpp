@@ -175,7 +175,7 @@ class Diagnostician {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       if (rank(a) != rank(b)) return rank(a) < rank(b);
-      return tested[a].evidence > tested[b].evidence;
+      return plausible_evidence(tested[a]) > plausible_evidence(tested[b]);
     });
     return order;
   }
@@ -220,6 +220,9 @@ class Diagnostician {
       finding.look_alikes = look_alikes_[rank(k)];
       finding.joint = search_.missing()[rank(k)].joint.coefficients;
       finding.joint_sd = search_.missing()[rank(k)].joint.sd;
+      Tested beside_the_others = one;
+      beside_the_others.score.coefficients = finding.joint;
+      finding.implausible = is_implausible(beside_the_others);
       const std::vector<double> factors = widening_of(k);
       for (std::size_t c = 0; c < factors.size(); ++c) {
         finding.sd[c] *= factors[c];

@@ -203,10 +203,10 @@ void EffectSearch::find_missing() {
     tested_[k].p_adjusted = still[k].p_adjusted;
   }
   select(left, ground, still);
-  std::stable_sort(missing_.begin(), missing_.end(),
-                   [this](const MissingEffect& a, const MissingEffect& b) {
-                     return tested_[a.tested].evidence > tested_[b.tested].evidence;
-                   });
+  std::stable_sort(
+      missing_.begin(), missing_.end(), [this](const MissingEffect& a, const MissingEffect& b) {
+        return plausible_evidence(tested_[a.tested]) > plausible_evidence(tested_[b.tested]);
+      });
   estimate_jointly();
   eliminate_backward();
 }

@@ -117,14 +117,12 @@ double size_in_priors(const Tested& one) {
   return most;
 }
 
-/// Evidence less what an implausible size costs: a prior that misfit does not widen, and once more
-/// as much, for a proxy of what is missing is seldom of a possible size.
+}  // namespace
+
 double plausible_evidence(const Tested& one) {
   const double size = size_in_priors(one);
-  return is_implausible(one) ? one.evidence - size * size : one.evidence;
+  return one.evidence - std::max(0.0, size * size - kLargestPriorSd * kLargestPriorSd);
 }
-
-}  // namespace
 
 bool is_implausible(const Tested& one) {
   return size_in_priors(one) > kLargestPriorSd;

@@ -43,6 +43,10 @@ void judge(std::vector<Tested>& tested, double chi2, int dof, int tried);
 /// may be given quite wrong.
 [[nodiscard]] bool is_implausible(const Tested& one);
 
+/// Evidence less what an implausible size costs: a prior that misfit does not widen, and once more
+/// as much, for a proxy of what is missing is seldom of a possible size.
+[[nodiscard]] double plausible_evidence(const Tested& one);
+
 /// Of those that are significant at this level the one of most evidence, which an implausible size
 /// weighs against; nullptr where there is none.
 [[nodiscard]] const Tested* best_of(const std::vector<Tested>& tested, double level);

@@ -159,10 +159,11 @@ class RobustDescent {
   /// Lets in what fits and takes out what does not, until nothing changes.
   void look_again() {
     constexpr int kMostRounds = 5;
-    readmit();
     for (int round = 0; round < kMostRounds; ++round) {
       system_.set_weights(fit_.weights);
       descend_by(10);
+      // Where chi^2 is least, and once more when the best of them are in.
+      if (round < 2 && readmit()) descend_by(10);
       const std::vector<double> before = fit_.weights;
       if (std::isfinite(fit_.gate)) sort_out();
       if (fit_.weights == before) break;
@@ -182,9 +183,9 @@ class RobustDescent {
 
   /// A sighting that is out may have to stay so only for want of itself: without it its robot is
   /// where the wheels have it, and that is less certain than the sighting is exact. What counts is
-  /// by how much chi^2 would rise with it, e'(I + J A^-1 J')^-1 e.
-  void readmit() {
-    if (!std::isfinite(fit_.gate)) return;
+  /// by how much chi^2 would rise with it, e'(I + J A^-1 J')^-1 e. Says whether any came back.
+  bool readmit() {
+    if (!std::isfinite(fit_.gate)) return false;
     constexpr double kFaint = 1e-10;  // a weight that tells nothing and hides no derivative
     constexpr std::size_t kBatch = 64;
     std::vector<std::size_t> out;
@@ -194,15 +195,16 @@ class RobustDescent {
       out.push_back(k);
       weights[k] = kFaint;
     }
-    if (out.empty()) return;
+    if (out.empty()) return false;
     system_.set_weights(weights);
     system_.linearise(fit_.state, fit_.coefficients);
     try {
       system_.factorise();
     } catch (const NotPositiveDefinite&) {  // what is in leaves something undetermined
       system_.set_weights(fit_.weights);
-      return;
+      return false;
     }
+    bool any = false;
     for (std::size_t first = 0; first < out.size(); first += kBatch) {
       const std::size_t end = std::min(out.size(), first + kBatch);
       Eigen::MatrixXd rows;
@@ -218,11 +220,15 @@ class RobustDescent {
         Eigen::MatrixXd inner =
             rows.middleCols(at, count).transpose() * solved.middleCols(at, count);
         inner.diagonal().array() += 1.0;
-        if (error.dot(DenseLdlt(inner).solve(error)) <= fit_.gate) fit_.weights[out[k]] = 1.0;
+        if (error.dot(DenseLdlt(inner).solve(error)) <= fit_.gate) {
+          fit_.weights[out[k]] = 1.0;
+          any = true;
+        }
         at += count;
       }
     }
     system_.set_weights(fit_.weights);
+    return any;
   }
 
   /// In or out.

@@ -24,7 +24,8 @@ constexpr double kAlmostNothing = 1e-4;
 constexpr double kNegligible = 0.05;    // of a size
 constexpr double kLeastOfStated = 2.0;  // times smaller a white size may be
 constexpr double kLeastBesideAProcess = 8.0;
-constexpr double kLongest = 60.0;  // s or m: what lasts longer is an effect, and no noise
+constexpr double kLongest = 60.0;      // s or m: what lasts longer is an effect, and no noise
+constexpr double kLongestShare = 0.1;  // of all that was recorded
 constexpr double kLongestOfViews = 10.0;
 constexpr double kOfALength = 3.0;   // -2 log R that it has to bring: the plainer is likelier
 constexpr double kStep = 1e-3;       // of a logarithm, for slopes
@@ -179,7 +180,7 @@ class NoiseFitter {
         const bool time = member.component.process.process == ProcessKind::correlated_in_t;
         const bool view = acts_on(member.component.process.channel) == ActsOn::views;
         const double limit = view ? kLongestOfViews : kLongest;
-        const double most = std::min(limit, 0.25 * (time ? longest_time_ : longest_way_));
+        const double most = std::min(limit, kLongestShare * (time ? longest_time_ : longest_way_));
         value = std::clamp(value, std::log(0.2), std::log(std::max(most, 0.4)));
       } else if (member.component.stated > 0.0) {
         const double stated = std::log(member.component.stated);
@@ -204,7 +205,7 @@ class NoiseFitter {
   void optimise(const std::vector<bool>& free, int most_steps, double least_gain = kLeastGain) {
     Parameters of = parameters(free);
     if (of.places.empty()) return;
-    Eigen::VectorXd x = of.values();
+    Eigen::VectorXd x = bounded(of, of.values());
     const Eigen::Index n = x.size();
     best_ = deviance(of.with(x));
     Eigen::VectorXd slope = slopes(of, x, best_);
@@ -319,6 +320,8 @@ class NoiseFitter {
         return "range";
       case Channel::bearing:
         return "bearing";
+      case Channel::truth_heading:
+        return "truth";
       default:
         return "wheels";
     }

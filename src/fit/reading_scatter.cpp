@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 
 namespace trussmap {
 namespace {
@@ -55,6 +55,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
       next.wheels = arc_covariance(travel, row.duration, fit.model.robot, wheels_alone)(2, 2);
+      next.believed = arc_covariance(travel, row.duration, fit.model.robot, fit.model.noise)(2, 2);
       // The row's own mean heading is its reading less its turn.
       next.y = std::isnan(row.reading) ? kAbsent
                                        : motion.mean_heading + motion.displacement.heading - turned;
@@ -96,20 +97,22 @@ void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habi
       const Habits instrument = 0.5 * (step(n - 1) + step(n + 1));
       S += instrument * step(n).transpose();
       g += instrument * (segments_[s][read[n + 1]].y - segments_[s][read[n]].y);
-      noise += segments_[s][read[n + 1]].wheels;
+      for (std::size_t k = read[n] + 1; k <= read[n + 1]; ++k) noise += segments_[s][k].believed;
       steps += 1.0;
     }
   }
   if (steps == 0.0) return;
-  // Of a robot that never turns S is what chance makes of the wheels' noise.
+  // Of a robot that never turns S is what chance makes of the wheels' noise, and of either sign:
+  // nothing is to be taken out then (Tikhonov).
   constexpr double kBeyondChance = 6.0;
   constexpr double kLeast = 1e-9;  // of the largest
-  const double chance = kBeyondChance * noise / std::sqrt(steps);
+  const double chance = kBeyondChance * noise / std::sqrt(steps) +
+                        kLeast * std::max(S.diagonal().cwiseAbs().maxCoeff(), kLeast);
   Habits ridge;
   ridge << chance, chance, 4.0 * chance, 4.0 * chance, chance;
-  S.diagonal() += ridge;
-  S.diagonal().array() += kLeast * std::max(S.diagonal().cwiseAbs().maxCoeff(), kLeast);
-  const Habits size = S.partialPivLu().solve(g);
+  Square damped = S.transpose() * S;
+  damped.diagonal() += ridge.cwiseAbs2();
+  const Habits size = damped.ldlt().solve(S.transpose() * g);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     for (std::size_t k = 0; k < segments_[s].size(); ++k) {
       segments_[s][k].y -= size.dot(habits[s][k] - habits[s].front());

@@ -28,8 +28,8 @@ namespace trussmap {
 
 /// Noise as far as it shows in readings.
 struct ReadingNoise {
-  double white = 0.0;            ///< sd of a reading, rad
-  double wheels = 1.0;           ///< by what the wheels' variance is larger than the fit's model has it
+  double white = 0.0;   ///< sd of a reading, rad
+  double wheels = 1.0;  ///< by what the wheels' variance is larger than the fit's model has it
   double heading_per_s = 0.0;    ///< rad/s^(1/2)
   double heading_per_rad = 0.0;  ///< rad/rad^(1/2)
   std::vector<NoiseProcess> processes = {};
@@ -53,11 +53,12 @@ class ReadingScatter {
 
  private:
   struct Row {
-    double y = 0.0;       ///< rad; NaN: no reading
+    double y = 0.0;  ///< rad; NaN: no reading
     RowTravel travel;
-    double way = 0.0;     ///< m
-    double turn = 0.0;    ///< rad, not signed
-    double wheels = 0.0;  ///< variance that the wheels' k give the turn, rad^2
+    double way = 0.0;       ///< m
+    double turn = 0.0;      ///< rad, not signed
+    double wheels = 0.0;    ///< variance that the wheels' k give the turn, rad^2
+    double believed = 0.0;  ///< that all of the fit's noise gives it, rad^2
   };
   /// With so many of the processes.
   template <int Count>
@@ -67,8 +68,8 @@ class ReadingScatter {
   using Habits = Eigen::Matrix<double, kHabits, 1>;
   [[nodiscard]] static Habits habits_of(double heading, double turned);
   /// Takes out what the readings' steps have in common with these. A step's turn holds the same
-  /// noise of the wheels as its reading's y, which least squares would take for a habit; the mean of
-  /// the steps before and after it, which turn alike, does not (instrumental variables).
+  /// noise of the wheels as its reading's y, which least squares would take for a habit; the mean
+  /// of the steps before and after it, which turn alike, does not (instrumental variables).
   void free_of_habits(const std::vector<std::vector<Habits>>& habits);
 
   double wheelbase_ = 0.0;

@@ -14,14 +14,16 @@
 #include <numeric>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 #include <utility>
 
 namespace trussmap {
 namespace {
 
-constexpr int kRounds = 4;  // shapes see the rows that they change
+constexpr int kRounds = 4;            // shapes see the rows that they change
 constexpr double kLeastRange = 1e-6;  // m
-constexpr double kMoved = 0.05;  // m: less is none between two stops
+constexpr double kMoved = 0.05;       // m: less is none between two stops
 
 class Replicator {
  public:
@@ -43,6 +45,7 @@ class Replicator {
     measure_places();
     see_landmarks();
     for (std::size_t s = 0; s < timed_.size(); ++s) {
+      ends_.push_back(ends_of_legs(fit_.recordings[s]));
       disturb_drive(s);
       for (const NoiseProcess& one : noise_.processes) add(one, timed_[s]);
     }
@@ -69,15 +72,15 @@ class Replicator {
                 [](const Stop& a, const Stop& b) { return a.pose < b.pose; });
       for (std::size_t k = 0; k < list.size(); ++k) {
         const bool moved = k == 0 || driven[list[k].pose] - driven[list[k - 1].pose] > kMoved;
-        list[k].missed = moved ? Vector2(drawn(noise_.sighting), drawn(noise_.sighting))
-                               : list[k - 1].missed;
+        list[k].missed =
+            moved ? Vector2(drawn(noise_.sighting), drawn(noise_.sighting)) : list[k - 1].missed;
       }
     }
     for (std::size_t k = 0; k < state_.poses.size(); ++k) {
       const std::vector<Stop>& list = stops[fit_.problem.poses[k].session];
       if (list.empty()) continue;
-      const auto next = std::find_if(list.begin(), list.end(),
-                                     [k](const Stop& one) { return one.pose >= k; });
+      const auto next =
+          std::find_if(list.begin(), list.end(), [k](const Stop& one) { return one.pose >= k; });
       const Stop& to = next == list.end() ? list.back() : *next;
       const Stop& from = next == list.begin() || next == list.end() ? to : *(next - 1);
       const double way = driven[to.pose] - driven[from.pose];
@@ -115,6 +118,9 @@ class Replicator {
         Drive& drive = timed_[s].drive;
         for (std::size_t row = 0; row < drive.rows(); ++row) {
           Vector2& missing = paths_[s].missing[row];
+          // Who rests goes on resting; the other rows take its share in the next round.
+          const bool rests = drive.left[row] == 0.0 && drive.right[row] == 0.0;
+          if (rests) missing.setZero();
           drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
           drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
           missing.setZero();
@@ -125,14 +131,19 @@ class Replicator {
 
   void measure_places() {
     const auto& landmarks = fit_.problem.landmarks;
+    // One survey, copied to every session, stays one.
+    std::map<std::tuple<std::string, double, double>, Vector2> measured;
     for (std::size_t s = 0; s < timed_.size(); ++s) {
       for (SurveyPoint& one : timed_[s].survey) {
         const auto at = std::find(landmarks.begin(), landmarks.end(), one.landmark);
         if (at == landmarks.end()) continue;
         const Vector2& place = state_.landmarks[idx(static_cast<int>(at - landmarks.begin()))];
         const double sd = std::isnan(one.sd) ? noise_.survey : one.sd;
-        one.x = place.x() + drawn(sd);
-        one.y = place.y() + drawn(sd);
+        const auto [known, fresh] =
+            measured.try_emplace({one.landmark, one.x, one.y}, Vector2::Zero());
+        if (fresh) known->second = place + Vector2(drawn(sd), drawn(sd));
+        one.x = known->second.x();
+        one.y = known->second.y();
       }
       for (std::size_t row = 0; row < timed_[s].truth.size(); ++row) {
         TruthRow& one = timed_[s].truth[row];
@@ -208,10 +219,10 @@ class Replicator {
   std::vector<Recording> in_own_times() {
     for (std::size_t s = 0; s < recordings_.size(); ++s) {
       Recording& own = recordings_[s];
-      own.drive = std::move(timed_[s].drive);
-      own.survey = std::move(timed_[s].survey);
       take_events(s, own.sightings, timed_[s].sightings);
       take_events(s, own.truth, timed_[s].truth);
+      own.drive = std::move(timed_[s].drive);
+      own.survey = std::move(timed_[s].survey);
     }
     return std::move(recordings_);
   }
@@ -221,17 +232,16 @@ class Replicator {
     const Recording& recording = recordings_[s];
     std::vector<double> instants;
     for (const Event& one : own) instants.push_back(one.t);
-    instants = retimed(instants, recording, s, recordings_.size(), fit_.model.effects,
-                       fit_.model.robot);
+    instants =
+        retimed(instants, recording, s, recordings_.size(), fit_.model.effects, fit_.model.robot);
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (instants[k] >= recording.drive.start() && instants[k] <= recording.drive.t.back()) {
         order.push_back(k);
       }
     }
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return instants[a] < instants[b];
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return instants[a] < instants[b]; });
     for (std::size_t k = 0; k < std::min(order.size(), timed.size()); ++k) {
       const double t = own[order[k]].t;
       own[order[k]] = timed[k];
@@ -288,12 +298,13 @@ class Replicator {
         value = at->second.value;
       }
       one = without(process.channel, value, one);
+      one.range = std::max(one.range, kLeastRange);
     }
   }
 
   [[nodiscard]] std::vector<double> gains(const NoiseProcess& process, const Recording& recording) {
     const Drive& drive = recording.drive;
-    const std::vector<double> ends = ends_of_legs(recording);
+    const std::vector<double>& ends = ends_.back();
     const bool way = goes_with_distance(process.process);
     std::vector<double> g(drive.rows(), 0.0);
     const bool walks = is_chain(process.process) && !is_correlated(process.process);
@@ -309,8 +320,8 @@ class Replicator {
           value = drawn(process.sd);
           break;
         case ProcessKind::per_leg: {
-          const auto at = idx(static_cast<int>(
-              std::lower_bound(ends.begin(), ends.end(), middle) - ends.begin()));
+          const auto at = idx(
+              static_cast<int>(std::lower_bound(ends.begin(), ends.end(), middle) - ends.begin()));
           if (at != leg) value = drawn(process.sd);
           leg = at;
           break;
@@ -346,6 +357,7 @@ class Replicator {
   RecordingState state_;          ///< without lasting noise
   std::vector<SessionPath> paths_;
   EffectParameters border_;
+  std::vector<std::vector<double>> ends_;  ///< of legs, per session: before anything was drawn
 };
 
 }  // namespace
