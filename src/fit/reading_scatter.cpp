@@ -80,39 +80,39 @@ ReadingScatter::Habits ReadingScatter::habits_of(double heading, double turned) 
 }
 
 void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habits) {
+  constexpr double kFarBeyondNoise = 100.0;  // of its variance: else habits are made of noise
+  constexpr double kLeast = 1e-9;            // of the largest
   using Square = Eigen::Matrix<double, kHabits, kHabits>;
   Square S = Square::Zero();
   Habits g = Habits::Zero();
-  double steps = 0.0;
-  double noise = 0.0;
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     std::vector<std::size_t> read;
+    double noise = 0.0;
     for (std::size_t k = 0; k < segments_[s].size(); ++k) {
+      noise += segments_[s][k].believed;
       if (!std::isnan(segments_[s][k].y)) read.push_back(k);
     }
-    const auto step = [&](std::size_t n) -> Habits {
-      return habits[s][read[n + 1]] - habits[s][read[n]];
-    };
-    for (std::size_t n = 1; n + 2 < read.size(); ++n) {
-      const Habits instrument = 0.5 * (step(n - 1) + step(n + 1));
-      S += instrument * step(n).transpose();
-      g += instrument * (segments_[s][read[n + 1]].y - segments_[s][read[n]].y);
-      for (std::size_t k = read[n] + 1; k <= read[n + 1]; ++k) noise += segments_[s][k].believed;
-      steps += 1.0;
+    const auto count = static_cast<double>(read.size());
+    Habits middle = Habits::Zero();
+    double mean = 0.0;
+    for (const std::size_t k : read) {
+      middle += habits[s][k] / count;
+      mean += segments_[s][k].y / count;
     }
+    Square own = Square::Zero();
+    Habits seen = Habits::Zero();
+    for (const std::size_t k : read) {
+      const Habits x = habits[s][k] - middle;
+      own += x * x.transpose();
+      seen += x * (segments_[s][k].y - mean);
+    }
+    constexpr int kTurned = kHabits - 1;
+    if (own(kTurned, kTurned) < kFarBeyondNoise * count * noise) continue;
+    S += own;
+    g += seen;
   }
-  if (steps == 0.0) return;
-  // Of a robot that never turns S is what chance makes of the wheels' noise, and of either sign:
-  // nothing is to be taken out then (Tikhonov).
-  constexpr double kBeyondChance = 6.0;
-  constexpr double kLeast = 1e-9;  // of the largest
-  const double chance = kBeyondChance * noise / std::sqrt(steps) +
-                        kLeast * std::max(S.diagonal().cwiseAbs().maxCoeff(), kLeast);
-  Habits ridge;
-  ridge << chance, chance, 4.0 * chance, 4.0 * chance, chance;
-  Square damped = S.transpose() * S;
-  damped.diagonal() += ridge.cwiseAbs2();
-  const Habits size = damped.ldlt().solve(S.transpose() * g);
+  S.diagonal().array() += kLeast * std::max(S.diagonal().maxCoeff(), kLeast);
+  const Habits size = S.ldlt().solve(g);
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     for (std::size_t k = 0; k < segments_[s].size(); ++k) {
       segments_[s][k].y -= size.dot(habits[s][k] - habits[s].front());

@@ -67,9 +67,9 @@ class ReadingScatter {
   static constexpr int kHabits = 5;
   using Habits = Eigen::Matrix<double, kHabits, 1>;
   [[nodiscard]] static Habits habits_of(double heading, double turned);
-  /// Takes out what the readings' steps have in common with these. A step's turn holds the same
-  /// noise of the wheels as its reading's y, which least squares would take for a habit; the mean
-  /// of the steps before and after it, which turn alike, does not (instrumental variables).
+  /// Takes out what the readings have in common with these, by least squares within segments that
+  /// turn by far more than the wheels' noise: elsewhere the turn is mostly that noise, which is in
+  /// y as well, and would be taken for a habit.
   void free_of_habits(const std::vector<std::vector<Habits>>& habits);
 
   double wheelbase_ = 0.0;

@@ -34,9 +34,7 @@ class Replicator {
         random_(seed),
         recordings_(recordings),
         timed_(fit.recordings),
-        state_(NoiseFree(fit.recordings, fit.model, fit.problem, fit.columns.border, offsets_,
-                         fit.adjustment.state)
-                   .state) {}
+        state_(fit.adjustment.state) {}
 
   std::vector<Recording> run() {
     state_.noise.resize(0);
@@ -60,9 +58,11 @@ class Replicator {
   void miss_landmarks() {
     struct Stop {
       std::size_t pose = 0;
-      Vector2 missed = Vector2::Zero();
+      Vector2 missed = Vector2::Zero();  ///< from where the fit has the robot
     };
     const std::vector<double> driven = driven_to_poses();
+    const NoiseFree exact(fit_.recordings, fit_.model, fit_.problem, fit_.columns.border, offsets_,
+                          state_);
     std::map<int, std::vector<Stop>> stops;  // per session
     for (const Measurement& one : fit_.problem.measurements) {
       if (one.kind == MeasurementKind::standing) stops[one.session].push_back({pose_of(one.from)});
@@ -72,8 +72,13 @@ class Replicator {
                 [](const Stop& a, const Stop& b) { return a.pose < b.pose; });
       for (std::size_t k = 0; k < list.size(); ++k) {
         const bool moved = k == 0 || driven[list[k].pose] - driven[list[k - 1].pose] > kMoved;
-        list[k].missed =
-            moved ? Vector2(drawn(noise_.sighting), drawn(noise_.sighting)) : list[k - 1].missed;
+        if (!moved) {
+          list[k].missed = list[k - 1].missed;
+          continue;
+        }
+        const std::size_t pose = list[k].pose;
+        const Vector2 from_fit = exact.state.poses[pose].position() - state_.poses[pose].position();
+        list[k].missed = from_fit + Vector2(drawn(noise_.sighting), drawn(noise_.sighting));
       }
     }
     for (std::size_t k = 0; k < state_.poses.size(); ++k) {

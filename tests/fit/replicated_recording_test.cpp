@@ -37,10 +37,11 @@ Fitted fitted(std::uint64_t seed, const Noise& noise = {}) {
   SimulatedEffects acting;
   acting.effects = {known("wheelbase", 0.02), known("slip with speed", -0.01),
                     known("range bias", 0.1)};
-  Recording recording =
-      simulate_drive(mesh, make_tours(mesh, WalkKind::euler, 2, random).walk, {}, robot, seed,
-                     acting)
-          .recording;
+  DrivingStyle style;
+  style.rest_share = 0.3;
+  Recording recording = simulate_drive(mesh, make_tours(mesh, WalkKind::euler, 2, random).walk,
+                                       style, robot, seed, acting)
+                            .recording;
   Model model;
   model.noise = noise;
   model.effects = acting.effects;
@@ -66,8 +67,8 @@ TEST(ReplicatedRecording, WithoutNoiseTheFitIsExact) {
   const FitState fit = again(drawn, world.state);
   EXPECT_LT(fit.adjustment.chi2, 1e-4);
   for (std::size_t k = 0; k < fit.model.effects.size(); ++k) {
-    EXPECT_NEAR(fit.model.effects[k].coefficients[0],
-                world.state.model.effects[k].coefficients[0], 1e-6)
+    EXPECT_NEAR(fit.model.effects[k].coefficients[0], world.state.model.effects[k].coefficients[0],
+                1e-6)
         << fit.model.effects[k].name;
   }
   ASSERT_EQ(drawn[0].sightings.size(), world.recordings[0].sightings.size());
@@ -82,7 +83,7 @@ TEST(ReplicatedRecording, ChiSquareIsAsTheModelHasIt) {
   noise.processes = {{Channel::compass, ProcessKind::correlated_in_t, 0.03, 2.0, 0.0, 0},
                      {Channel::travel, ProcessKind::per_leg, 0.005, 0.0, 0.0, 0},
                      {Channel::bearing, ProcessKind::per_pass, 0.03, 0.0, 0.0, 0},
-                     {Channel::difference, ProcessKind::correlated_in_distance, 0.02, 1.0, 0.0, 0}};
+                     {Channel::difference, ProcessKind::correlated_in_distance, 0.006, 1.0, 0.0, 0}};
   const Fitted world = fitted(2, noise);
   double sum = 0.0;
   double dof = 0.0;
@@ -105,8 +106,7 @@ TEST(ReplicatedRecording, TheSeedDecides) {
 
 TEST(ReplicatedRecording, SaysWhatItCannotDraw) {
   Fitted world = fitted(4);
-  world.state.model.noise.processes = {
-      {Channel::creep, ProcessKind::per_leg, 0.01, 0.0, 0.0, 0}};
+  world.state.model.noise.processes = {{Channel::creep, ProcessKind::per_leg, 0.01, 0.0, 0.0, 0}};
   EXPECT_THROW(static_cast<void>(replicated(world.recordings, world.state, 1)),
                std::invalid_argument);
 }
