@@ -17,7 +17,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastCurvature = 1.0;     // 1/m, from curves to the right to curves to the left
 constexpr double kLeastAcceleration = 0.2;  // m/s^2, from braking to speeding up
 
 bool has_word(const std::string& text, std::initializer_list<const char*> words) {
@@ -49,7 +48,7 @@ class Gatherer {
       has_truth_ |= one.kind == MeasurementKind::truth;
     }
     for (const std::string name :
-         {"speed", "turn_rate", "curvature", "acceleration", "x", "y", "t", "distance"}) {
+         {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
       take_variable(name);
     }
     if (context.recordings().size() > 1) take_variable("session");
@@ -81,12 +80,10 @@ class Gatherer {
     const Spread spread = spread_of(name, context_);
     if (spread.sorted.empty() || !(spread.most > spread.least)) return;
     // Of a robot that never accelerates the acceleration is noise of the wheels, the very noise
-    // that an effect of it would explain; so is the curvature of one that drives straight on.
+    // that an effect of it would explain. So is much of the curvature, always: only what is known
+    // of arcs (arc loss) is asked of it.
     if (name == "acceleration" &&
         spread.quantile(0.99) - spread.quantile(0.01) < kLeastAcceleration) {
-      return;
-    }
-    if (name == "curvature" && spread.quantile(0.99) - spread.quantile(0.01) < kLeastCurvature) {
       return;
     }
     variables_.push_back(spread);

@@ -236,6 +236,7 @@ class Replicator {
   void take_events(std::size_t s, std::vector<Event>& own, const std::vector<Event>& timed) const {
     const Recording& recording = recordings_[s];
     std::vector<double> instants;
+    instants.reserve(own.size());
     for (const Event& one : own) instants.push_back(one.t);
     instants =
         retimed(instants, recording, s, recordings_.size(), fit_.model.effects, fit_.model.robot);
