@@ -80,10 +80,11 @@ TEST(ReplicatedRecording, ChiSquareIsAsTheModelHasIt) {
   Noise noise;
   noise.heading_per_s = 0.003;
   noise.travel_per_s = 0.003;
-  noise.processes = {{Channel::compass, ProcessKind::correlated_in_t, 0.03, 2.0, 0.0, 0},
-                     {Channel::travel, ProcessKind::per_leg, 0.005, 0.0, 0.0, 0},
-                     {Channel::bearing, ProcessKind::per_pass, 0.03, 0.0, 0.0, 0},
-                     {Channel::difference, ProcessKind::correlated_in_distance, 0.006, 1.0, 0.0, 0}};
+  noise.processes = {
+      {Channel::compass, ProcessKind::correlated_in_t, 0.03, 2.0, 0.0, 0},
+      {Channel::travel, ProcessKind::per_leg, 0.005, 0.0, 0.0, 0},
+      {Channel::bearing, ProcessKind::per_pass, 0.03, 0.0, 0.0, 0},
+      {Channel::difference, ProcessKind::correlated_in_distance, 0.006, 1.0, 0.0, 0}};
   const Fitted world = fitted(2, noise);
   double sum = 0.0;
   double dof = 0.0;
