@@ -14,6 +14,7 @@
 //                  first of the four? And an effect named for it?
 //   cost           time of a diagnosis and of 200 of its candidates against one fit of the same
 //                  recording, 180 to 10 000 legs
+#include "bench_program.hpp"
 #include "bench_worlds.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/known_events.hpp"
@@ -25,19 +26,16 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <map>
 #include <optional>
 #include <random>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace trussmap::bench {
 namespace {
 
 struct Options {
-  std::vector<std::string> parts;
   std::uint64_t first = 1;
   int recordings = 20;  ///< per effect and size
   int clean = 1000;
@@ -365,12 +363,7 @@ void cost() {
   }
 }
 
-int run(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
-  CLI::App app("How well diagnose and discover do on simulated recordings");
-  Options options;
-  app.add_option("parts", options.parts, "What to measure (default: all)")
-      ->check(CLI::IsMember({"false-alarms", "identify", "two", "odd", "events", "noise", "cost"}));
+void add_options(CLI::App& app, Options& options) {
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--recordings", options.recordings, "Recordings per effect and size")
       ->capture_default_str();
@@ -380,29 +373,20 @@ int run(int argc, char** argv) {
   app.add_flag("--loops", options.loops, "Without a survey throughout");
   app.add_flag("!--no-ladder", options.ladder, "Do not run discover beside diagnose");
   app.add_flag("--verbose", options.verbose, "Name what went wrong");
-  CLI11_PARSE(app, argc, argv);
-  const auto wants = [&](const char* part) {
-    return options.parts.empty() ||
-           std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
-  };
-  if (wants("false-alarms")) false_alarms(options);
-  if (wants("identify")) identify(options);
-  if (wants("two")) two(options);
-  if (wants("odd")) odd(options);
-  if (wants("events")) events(options);
-  if (wants("noise")) noise(options);
-  if (wants("cost")) cost();
-  return 0;
 }
 
 }  // namespace
 }  // namespace trussmap::bench
 
 int main(int argc, char** argv) {
-  try {
-    return trussmap::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  using namespace trussmap::bench;
+  const std::vector<Part<Options>> parts{{"false-alarms", false_alarms},
+                                         {"identify", identify},
+                                         {"two", two},
+                                         {"odd", odd},
+                                         {"events", events},
+                                         {"noise", noise},
+                                         {"cost", [](const Options&) { cost(); }}};
+  return run_bench<Options>(argc, argv, "How well diagnose and discover do on simulated recordings",
+                            parts, add_options);
 }

@@ -13,10 +13,12 @@
 //   posterior   given recordings: discovered, drawn anew from what was found, diagnosed: do
 //   p-values
 //               and intervals hold there?
+#include "bench_program.hpp"
 #include "bench_worlds.hpp"
 #include "fit/fit_state.hpp"
 #include "fit/replicated_recording.hpp"
 #include "trussmap/discover.hpp"
+#include "trussmap/gate.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/noise_fit.hpp"
 #include "trussmap/recording_files.hpp"
@@ -24,11 +26,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace trussmap::bench {
@@ -37,7 +37,6 @@ namespace {
 constexpr double kWithin = 1.959964;  // sds: 95 %
 
 struct Options {
-  std::vector<std::string> parts;
   std::vector<std::string> kinds = {"half", "memory", "haze", "tails", "floor", "all"};
   std::uint64_t first = 1;
   int recordings = 2;  ///< per kind and effect
@@ -57,8 +56,8 @@ World rough_world(std::uint64_t seed, const std::string& kind) {
 
 FitOptions as_the_command_has_it() {
   FitOptions options;
-  options.gate = 16.0;
-  options.most_left_out = 0.12;
+  options.gate = kModelGate * kModelGate;
+  options.most_left_out = kMostLeftOut;
   return options;
 }
 
@@ -350,12 +349,7 @@ void posterior(const Options& options) {
   }
 }
 
-int run(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
-  CLI::App app("How well noise is estimated, and effects found beside it");
-  Options options;
-  app.add_option("parts", options.parts, "What to measure (default: all)")
-      ->check(CLI::IsMember({"clean", "identify", "white", "sizes", "posterior"}));
+void add_options(CLI::App& app, Options& options) {
   app.add_option("--kinds", options.kinds, "Kinds of rough noise")->capture_default_str();
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--recordings", options.recordings, "Recordings per kind and effect")
@@ -370,27 +364,18 @@ int run(int argc, char** argv) {
   app.add_option("--given", options.given,
                  "Folders of recordings with a model.toml, for posterior");
   app.add_flag("--verbose", options.verbose, "Say more of each");
-  CLI11_PARSE(app, argc, argv);
-  const auto wants = [&](const char* part) {
-    return options.parts.empty() ||
-           std::find(options.parts.begin(), options.parts.end(), part) != options.parts.end();
-  };
-  if (wants("clean")) clean(options);
-  if (wants("identify")) identify(options);
-  if (wants("white")) white(options);
-  if (wants("sizes")) sizes(options);
-  if (wants("posterior")) posterior(options);
-  return 0;
 }
 
 }  // namespace
 }  // namespace trussmap::bench
 
 int main(int argc, char** argv) {
-  try {
-    return trussmap::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  using namespace trussmap::bench;
+  const std::vector<Part<Options>> parts{{"clean", clean},
+                                         {"identify", identify},
+                                         {"white", white},
+                                         {"sizes", sizes},
+                                         {"posterior", posterior}};
+  return run_bench<Options>(argc, argv, "How well noise is estimated, and effects found beside it",
+                            parts, add_options);
 }

@@ -55,6 +55,10 @@ bool goes_with_distance(ProcessKind process) {
   return process == ProcessKind::correlated_in_distance || process == ProcessKind::walk_in_distance;
 }
 
+bool is_walk(ProcessKind process) {
+  return is_chain(process) && !is_correlated(process);
+}
+
 std::vector<double> ends_of_legs(const Recording& recording) {
   std::vector<double> ends;
   for (const Sighting& sighting : recording.sightings) {
@@ -71,6 +75,23 @@ std::vector<double> ends_of_legs(const Recording& recording) {
     if (last && rested >= kLeastRest) ends.push_back(drive.t[row]);
   }
   return ends;
+}
+
+int leg_at(const std::vector<double>& ends, double t) {
+  return static_cast<int>(std::lower_bound(ends.begin(), ends.end(), t) - ends.begin());
+}
+
+std::map<int, Vector4> sums_by_leg(const std::vector<SegmentRow>& rows,
+                                   const std::vector<Vector4>& c, double from,
+                                   const std::vector<double>& ends) {
+  std::map<int, Vector4> sums;
+  double t = from;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double middle = t + 0.5 * rows[row].duration;
+    t += rows[row].duration;
+    sums.try_emplace(leg_at(ends, middle), Vector4::Zero()).first->second += c[row];
+  }
+  return sums;
 }
 
 std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentRow>& rows,
@@ -261,11 +282,10 @@ class ProcessLayout {
     return at->second;
   }
 
-  [[nodiscard]] int leg_at(int session, double t) {
+  [[nodiscard]] const std::vector<double>& ends_in(int session) {
     auto at = legs_.find(session);
     if (at == legs_.end()) at = legs_.emplace(session, ends_of_legs(recording(session))).first;
-    return static_cast<int>(std::lower_bound(at->second.begin(), at->second.end(), t) -
-                            at->second.begin());
+    return at->second;
   }
 
   [[nodiscard]] int state_of_view(const Measurement& one) {
@@ -273,7 +293,7 @@ class ProcessLayout {
     const double t = pose(one.from).t;
     switch (process_) {
       case ProcessKind::per_leg:
-        return group(one.session, leg_at(one.session, t), -1);
+        return group(one.session, leg_at(ends_in(one.session), t), -1);
       case ProcessKind::per_session:
         return group(one.session, 0, -1);
       case ProcessKind::per_pass: {
@@ -320,15 +340,8 @@ class ProcessLayout {
   /// A rest within a segment parts two legs.
   void lay_legs(std::size_t k, const Measurement& one, const std::vector<SegmentRow>& rows,
                 const std::vector<Vector4>& c) {
-    std::map<int, Vector4> sums;
-    double t = pose(one.from).t;
-    for (std::size_t row = 0; row < rows.size(); ++row) {
-      const double middle = t + 0.5 * rows[row].duration;
-      t += rows[row].duration;
-      const int state = group(one.session, leg_at(one.session, middle), -1);
-      sums.try_emplace(state, Vector4::Zero()).first->second += c[row];
-    }
-    for (const auto& [state, sum] : sums) {
+    for (const auto& [leg, sum] : sums_by_leg(rows, c, pose(one.from).t, ends_in(one.session))) {
+      const int state = group(one.session, leg, -1);
       if (!sum.isZero(0.0)) add_term(k, state, sum);
     }
   }

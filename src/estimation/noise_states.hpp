@@ -29,6 +29,7 @@
 #include "estimation/recording_problem.hpp"
 #include "trussmap/model.hpp"
 
+#include <map>
 #include <vector>
 
 namespace trussmap {
@@ -37,8 +38,17 @@ inline constexpr double kLongestGap = 5.0;  ///< s: a landmark unseen for longer
 
 /// Correlated in it, or walking: else, where a process is either, in time.
 [[nodiscard]] bool goes_with_distance(ProcessKind process);
+/// Neither correlated nor constant: from 0 at a recording's start.
+[[nodiscard]] bool is_walk(ProcessKind process);
 /// Ends of a session's legs, s, ascending.
 [[nodiscard]] std::vector<double> ends_of_legs(const Recording& recording);
+/// The leg that time t lies in: how many have ended before.
+[[nodiscard]] int leg_at(const std::vector<double>& ends, double t);
+/// What rows add up to in each leg, the first of which begins at `from`, s: a row is of the leg
+/// that its middle lies in, for a rest within a segment parts two.
+[[nodiscard]] std::map<int, Vector4> sums_by_leg(const std::vector<SegmentRow>& rows,
+                                                 const std::vector<Vector4>& c, double from,
+                                                 const std::vector<double>& ends);
 
 /// One process for sd = 1, laid over a problem.
 struct LaidProcess {

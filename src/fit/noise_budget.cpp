@@ -55,15 +55,9 @@ double process_square(const Window& window, const NoiseProcess& process) {
   } else if (process.process == ProcessKind::white) {
     for (const Vector4& row : c) unit += row * row.transpose();
   } else if (process.process == ProcessKind::per_leg) {
-    std::map<std::ptrdiff_t, Vector4> sums;
-    double t = window.from;
-    for (std::size_t k = 0; k < c.size(); ++k) {
-      const double middle = t + 0.5 * window.rows[k].duration;
-      t += window.rows[k].duration;
-      const auto leg = std::lower_bound(window.ends.begin(), window.ends.end(), middle);
-      sums.try_emplace(leg - window.ends.begin(), Vector4::Zero()).first->second += c[k];
+    for (const auto& [leg, sum] : sums_by_leg(window.rows, c, window.from, window.ends)) {
+      unit += sum * sum.transpose();
     }
-    for (const auto& [leg, sum] : sums) unit += sum * sum.transpose();
   } else {
     Vector4 sum = Vector4::Zero();
     for (const Vector4& row : c) sum += row;

@@ -382,7 +382,6 @@ class NoiseFitter {
     struct Tried {
       std::vector<Member> members;
       NoiseReml::Sizes sizes;
-      double value = 0.0;
       double claim = 0.0;
     };
     std::optional<Tried> best;
@@ -397,7 +396,7 @@ class NoiseFitter {
       start_size(members_.size() - 1);
       optimise(with_its_sensor(members_.size() - 1), 10, kRoughly);
       const double value = best_ + (one.component.process.length > 0.0 ? kOfALength : 0.0);
-      if (!best || value < best->claim) best = Tried{members_, sizes_, best_, value};
+      if (!best || value < best->claim) best = Tried{members_, sizes_, value};
     }
     if (best) {
       members_ = best->members;

@@ -55,7 +55,6 @@ ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
       next.wheels = arc_covariance(travel, row.duration, fit.model.robot, wheels_alone)(2, 2);
-      next.believed = arc_covariance(travel, row.duration, fit.model.robot, fit.model.noise)(2, 2);
       // The row's own mean heading is its reading less its turn.
       next.y = std::isnan(row.reading) ? kAbsent
                                        : motion.mean_heading + motion.displacement.heading - turned;
@@ -69,7 +68,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot
     segments_.push_back(std::move(result));
     habits.push_back(std::move(own));
   }
-  free_of_habits(habits);
+  free_of_habits(habits, fit.model.noise);
 }
 
 ReadingScatter::Habits ReadingScatter::habits_of(double heading, double turned) {
@@ -79,17 +78,19 @@ ReadingScatter::Habits ReadingScatter::habits_of(double heading, double turned) 
   return result;
 }
 
-void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habits) {
+void ReadingScatter::free_of_habits(const std::vector<std::vector<Habits>>& habits,
+                                    const Noise& believed) {
   constexpr double kFarBeyondNoise = 100.0;  // of its variance: else habits are made of noise
   constexpr double kLeast = 1e-9;            // of the largest
   using Square = Eigen::Matrix<double, kHabits, kHabits>;
+  const TurnLaws laws = {1.0, believed.heading_per_s, believed.heading_per_rad};
   Square S = Square::Zero();
   Habits g = Habits::Zero();
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     std::vector<std::size_t> read;
     double noise = 0.0;
     for (std::size_t k = 0; k < segments_[s].size(); ++k) {
-      noise += segments_[s][k].believed;
+      noise += segments_[s][k].turn_variance(laws);
       if (!std::isnan(segments_[s][k].y)) read.push_back(k);
     }
     const auto count = static_cast<double>(read.size());
@@ -141,8 +142,7 @@ template <int Count>
 double ReadingScatter::filtered(const ReadingNoise& noise) const {
   const std::vector<NoiseProcess>& processes = noise.processes;
   const double white = noise.white * noise.white + kLeastVariance;
-  const double per_s = noise.heading_per_s * noise.heading_per_s;
-  const double per_rad = noise.heading_per_rad * noise.heading_per_rad;
+  const TurnLaws laws = {noise.wheels, noise.heading_per_s, noise.heading_per_rad};
   using Square = Eigen::Matrix<double, Count + 1, Count + 1>;
   using Column = Eigen::Matrix<double, Count + 1, 1>;
   constexpr double kLargest = 1e100;
@@ -156,14 +156,13 @@ double ReadingScatter::filtered(const ReadingNoise& noise) const {
     Column keeps = Column::Ones();
     for (int p = 0; p < Count; ++p) {
       const NoiseProcess& one = processes[idx(p)];
-      const bool walks = is_chain(one.process) && !is_correlated(one.process);
-      if (!walks) P(p + 1, p + 1) = one.sd * one.sd;
+      if (!is_walk(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
       if (acts_on(one.channel) == ActsOn::drives) seen[p + 1] = 0.0;
     }
     bool first = true;
     double last = -1.0;  // rows mostly last equally long
     for (const Row& row : rows) {
-      P(0, 0) += noise.wheels * row.wheels + per_s * row.travel.duration + per_rad * row.turn;
+      P(0, 0) += row.turn_variance(laws);
       for (int p = 0; p < Count; ++p) {
         const NoiseProcess& one = processes[idx(p)];
         const int at = p + 1;

@@ -52,13 +52,23 @@ class ReadingScatter {
   [[nodiscard]] double minus_two_log(const ReadingNoise& noise) const;
 
  private:
+  /// White noise of the turn.
+  struct TurnLaws {
+    double wheels = 1.0;   ///< as ReadingNoise has them
+    double per_s = 0.0;    ///< rad/s^(1/2)
+    double per_rad = 0.0;  ///< rad/rad^(1/2)
+  };
   struct Row {
     double y = 0.0;  ///< rad; NaN: no reading
     RowTravel travel;
-    double way = 0.0;       ///< m
-    double turn = 0.0;      ///< rad, not signed
-    double wheels = 0.0;    ///< variance that the wheels' k give the turn, rad^2
-    double believed = 0.0;  ///< that all of the fit's noise gives it, rad^2
+    double way = 0.0;     ///< m
+    double turn = 0.0;    ///< rad, not signed
+    double wheels = 0.0;  ///< variance that the wheels' k give the turn, rad^2
+
+    [[nodiscard]] double turn_variance(const TurnLaws& laws) const {  ///< rad^2
+      return laws.wheels * wheels + laws.per_s * laws.per_s * travel.duration +
+             laws.per_rad * laws.per_rad * turn;
+    }
   };
   /// With so many of the processes.
   template <int Count>
@@ -70,7 +80,7 @@ class ReadingScatter {
   /// Takes out what the readings have in common with these, by least squares within segments that
   /// turn by far more than the wheels' noise: elsewhere the turn is mostly that noise, which is in
   /// y as well, and would be taken for a habit.
-  void free_of_habits(const std::vector<std::vector<Habits>>& habits);
+  void free_of_habits(const std::vector<std::vector<Habits>>& habits, const Noise& believed);
 
   double wheelbase_ = 0.0;
   std::vector<std::vector<Row>> segments_;

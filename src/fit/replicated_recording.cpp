@@ -43,9 +43,8 @@ class Replicator {
     measure_places();
     see_landmarks();
     for (std::size_t s = 0; s < timed_.size(); ++s) {
-      ends_.push_back(ends_of_legs(fit_.recordings[s]));
       disturb_drive(s);
-      for (const NoiseProcess& one : noise_.processes) add(one, timed_[s]);
+      for (const NoiseProcess& one : noise_.processes) add(one, s);
     }
     return in_own_times();
   }
@@ -124,10 +123,10 @@ class Replicator {
         for (std::size_t row = 0; row < drive.rows(); ++row) {
           Vector2& missing = paths_[s].missing[row];
           // Who rests goes on resting; the other rows take its share in the next round.
-          const bool rests = drive.left[row] == 0.0 && drive.right[row] == 0.0;
-          if (rests) missing.setZero();
-          drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
-          drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
+          if (drive.left[row] != 0.0 || drive.right[row] != 0.0) {
+            drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
+            drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
+          }
           missing.setZero();
         }
       }
@@ -153,26 +152,17 @@ class Replicator {
       for (std::size_t row = 0; row < timed_[s].truth.size(); ++row) {
         TruthRow& one = timed_[s].truth[row];
         const Pose pose = pose_at(timed_[s].drive, paths_[s], one.t);
-        ViewPattern view;
-        for_each_pattern([&](const EffectPattern& effect, double offset) {
-          if (effect.truths.size() <= s || effect.truths[s].empty()) return;
-          view.ahead += offset * effect.truths[s][row].ahead;
-          view.left += offset * effect.truths[s][row].left;
-          view.heading += offset * effect.truths[s][row].heading;
-        });
+        Measurement measured_pose;
+        measured_pose.kind = MeasurementKind::truth;
+        measured_pose.session = static_cast<int>(s);
+        measured_pose.source = row;
+        const ViewPattern view = view_of(border_, offsets_, measured_pose);
         const Vector2 place =
             pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
         one.x = place.x() + drawn(noise_.truth);
         one.y = place.y() + drawn(noise_.truth);
         one.heading = wrap_angle(pose.heading + view.heading + drawn(noise_.truth_heading));
       }
-    }
-  }
-
-  template <typename Visit>
-  void for_each_pattern(const Visit& visit) const {
-    for (std::size_t k = 0; k < border_.size(); ++k) {
-      visit(border_[k], offsets_[static_cast<Eigen::Index>(k)]);
     }
   }
 
@@ -198,6 +188,7 @@ class Replicator {
 
   void disturb_drive(std::size_t s) {
     Drive& drive = timed_[s].drive;
+    const auto patterns = drive_patterns(border_, s);
     const double half = 0.5 * fit_.model.robot.wheelbase;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       double& left = drive.left[row];
@@ -212,10 +203,10 @@ class Replicator {
       right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + half * heading;
       if (!drive.has_compass() || std::isnan(drive.heading[row])) continue;
       double shown = paths_[s].ends[row].heading;
-      for_each_pattern([&](const EffectPattern& effect, double offset) {
-        if (effect.drives.size() <= s || effect.drives[s].empty()) return;
-        shown += offset * effect.drives[s][row].compass;
-      });
+      for (std::size_t k = 0; k < patterns.size(); ++k) {
+        if (patterns[k] == nullptr) continue;
+        shown += offsets_[static_cast<Eigen::Index>(k)] * (*patterns[k])[row].compass;
+      }
       drive.heading[row] = wrap_angle(shown + drawn(noise_.compass));
     }
   }
@@ -258,13 +249,13 @@ class Replicator {
   // ----------------------------------------
   // Processes: g of the channel, drawn for every row's end.
 
-  void add(const NoiseProcess& process, Recording& recording) {
+  void add(const NoiseProcess& process, std::size_t s) {
     if (!is_recordable(process.channel)) {
       throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
                                   "\" cannot be drawn: no recording can hold it");
     }
-    Drive& drive = recording.drive;
-    const std::vector<double> g = gains(process, recording);
+    Drive& drive = timed_[s].drive;
+    const std::vector<double> g = gains(process, s);
     switch (acts_on(process.channel)) {
       case ActsOn::readings:
         for (std::size_t row = 0; row < drive.heading.size(); ++row) {
@@ -281,7 +272,7 @@ class Replicator {
         }
         return;
       case ActsOn::views:
-        see_through(process, g, recording);
+        see_through(process, g, timed_[s]);
         return;
     }
   }
@@ -308,14 +299,14 @@ class Replicator {
     }
   }
 
-  [[nodiscard]] std::vector<double> gains(const NoiseProcess& process, const Recording& recording) {
-    const Drive& drive = recording.drive;
-    const std::vector<double>& ends = ends_.back();
+  [[nodiscard]] std::vector<double> gains(const NoiseProcess& process, std::size_t s) {
+    const Drive& drive = timed_[s].drive;
+    // Of the recording as it was: rests may be none any more.
+    const std::vector<double> ends = ends_of_legs(fit_.recordings[s]);
     const bool way = goes_with_distance(process.process);
     std::vector<double> g(drive.rows(), 0.0);
-    const bool walks = is_chain(process.process) && !is_correlated(process.process);
-    double value = walks ? 0.0 : drawn(process.sd);
-    std::size_t leg = 0;
+    double value = is_walk(process.process) ? 0.0 : drawn(process.sd);
+    int leg = 0;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       const double lag =
           way ? 0.5 * std::abs(drive.left[row] + drive.right[row]) : drive.duration(row);
@@ -326,8 +317,7 @@ class Replicator {
           value = drawn(process.sd);
           break;
         case ProcessKind::per_leg: {
-          const auto at = idx(
-              static_cast<int>(std::lower_bound(ends.begin(), ends.end(), middle) - ends.begin()));
+          const int at = leg_at(ends, middle);
           if (at != leg) value = drawn(process.sd);
           leg = at;
           break;
@@ -363,7 +353,6 @@ class Replicator {
   RecordingState state_;          ///< without lasting noise
   std::vector<SessionPath> paths_;
   EffectParameters border_;
-  std::vector<std::vector<double>> ends_;  ///< of legs, per session: before anything was drawn
 };
 
 }  // namespace

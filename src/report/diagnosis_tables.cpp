@@ -55,10 +55,8 @@ FindingVerdict verdict_on(const Finding& one, const Diagnosis& diagnosis) {
       looks_like_one_of(one.effect, diagnosis.findings.front().look_alikes)) {
     return {"could be it instead"};
   }
-  if (one.implausible && one.p_adjusted < kSignificance) {
-    return {"would have to be implausibly large"};
-  }
   if (one.p_adjusted < kSignificance) {
+    if (one.implausible) return {"would have to be implausibly large"};
     return {diagnosis.missing.empty() ? "explained by noise or a single event"
                                       : "explained by what is missing"};
   }
