@@ -24,9 +24,8 @@ constexpr double kWorthKeeping = 15.0;
 constexpr double kNoWorse = 1.05;      // of the arrival error
 constexpr double kBeyondChance = 1.5;  // standard errors
 constexpr double kBetter = 0.98;       // of the arrival error, to be preferred
-constexpr double kHorizon = 30.0;      // s
 constexpr int kFewestWindows = 20;
-constexpr double kLess = 0.98;    // of the error after a horizon, to be better
+constexpr double kLess = 0.98;    // of the error after 30 s, to be better
 constexpr double kSame = 0.9999;  // cosine of what is the same effect
 
 class Discoverer {
@@ -87,14 +86,22 @@ class Discoverer {
       step.chi2 = result_.found.chi2;
       step.dof = result_.found.dof;
     }
-    step.reckoned_10 = reckoned(10.0);
-    step.reckoned_30 = reckoned(kHorizon);
+    step.reckoned_10 = shown(present_horizons().after_10);
+    step.reckoned_30 = shown(present_horizons().after_30);
   }
 
-  [[nodiscard]] std::optional<double> reckoned(double horizon) const {
-    const HorizonError error = horizon_error(*result_.found.state, horizon);
+  [[nodiscard]] static std::optional<double> shown(const HorizonError& error) {
     if (error.windows < kFewestWindows) return std::nullopt;
     return error.rms;
+  }
+
+  /// Of the present fit; reckoned once.
+  const HorizonErrors& present_horizons() {
+    if (judged_ != result_.found.state) {
+      judged_ = result_.found.state;
+      horizons_ = horizon_errors(*judged_);
+    }
+    return horizons_;
   }
 
   /// A line of the ladder for the present fit; its diagnosis, which is next, has the held-out legs.
@@ -209,8 +216,8 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials);
-    if ((predicts_worse(trials[best]) && !reckons_better(trials[best].fit)) ||
-        reckons_worse(trials[best].fit)) {
+    const double reckoned = reckoned_share(trials[best].fit).value_or(1.0);
+    if ((predicts_worse(trials[best]) && reckoned >= kLess) || reckoned > kNoWorse) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
@@ -227,19 +234,13 @@ class Discoverer {
     return true;
   }
 
-  /// Dead reckoning over a horizon, as the fit's own path judges it.
-  [[nodiscard]] bool reckons_better(const ModelFit& fit) const {
-    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
-    const HorizonError after = horizon_error(*fit.state, kHorizon);
-    return std::min(before.windows, after.windows) >= kFewestWindows &&
-           after.rms < kLess * before.rms;
-  }
-
-  [[nodiscard]] bool reckons_worse(const ModelFit& fit) const {
-    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
-    const HorizonError after = horizon_error(*fit.state, kHorizon);
-    return std::min(before.windows, after.windows) >= kFewestWindows &&
-           after.rms > kNoWorse * before.rms;
+  /// Dead reckoning over the longer horizon with another fit, as each fit's own path judges it, as
+  /// a share of what it is now; nothing where there are too few windows.
+  [[nodiscard]] std::optional<double> reckoned_share(const ModelFit& fit) {
+    const HorizonError before = present_horizons().after_30;
+    const HorizonError after = horizon_errors(*fit.state).after_30;
+    if (std::min(before.windows, after.windows) < kFewestWindows) return std::nullopt;
+    return after.rms / before.rms;
   }
 
   /// What the tests of all effects together are too many for may yet be plain where a known error
@@ -248,10 +249,9 @@ class Discoverer {
   /// recordings that the model explains.
   bool add_for_reckoning() {
     if (found_.size() == given_) return false;
-    const HorizonError before = horizon_error(*result_.found.state, kHorizon);
-    if (before.windows < kFewestWindows) return false;
+    if (present_horizons().after_30.windows < kFewestWindows) return false;
     std::optional<Trial> best;
-    double least = kLess * before.rms;
+    double least = kLess;
     for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
       if (!is_common_motion(candidates_[k]) ||
           result_.last.findings[k].score < 0.25 * kWorthKeeping) {
@@ -261,9 +261,9 @@ class Discoverer {
       if (trials.empty()) continue;
       const ModelFit& fit = trials.front().fit;
       if (wald(fit, fit.model.effects.size() - 1) < kWorthKeeping) continue;
-      const HorizonError after = horizon_error(*fit.state, kHorizon);
-      if (after.windows < kFewestWindows || after.rms >= least) continue;
-      least = after.rms;
+      const std::optional<double> share = reckoned_share(fit);
+      if (!share || *share >= least) continue;
+      least = *share;
       best = std::move(trials.front());
     }
     if (!best) return false;
@@ -391,8 +391,10 @@ class Discoverer {
   const DiscoverOptions& options_;
   std::size_t given_ = 0;
   Noise stated_;
-  std::vector<Candidate> found_;       ///< one per effect of the model; empty for those given
-  std::vector<Candidate> candidates_;  ///< one per finding of the last diagnosis
+  std::vector<Candidate> found_;            ///< one per effect of the model; empty for those given
+  std::vector<Candidate> candidates_;       ///< one per finding of the last diagnosis
+  std::shared_ptr<const FitState> judged_;  ///< of which the errors over the horizons are
+  HorizonErrors horizons_;
   Discovery result_;
 };
 

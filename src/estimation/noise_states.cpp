@@ -3,6 +3,7 @@
 #include "estimation/noise_states.hpp"
 
 #include "effects/channel_physics.hpp"
+#include "estimation/student_tails.hpp"
 #include "recording/legs.hpp"
 #include "recording/row_variables.hpp"
 
@@ -428,6 +429,11 @@ void add_processes(RecordingProblem& problem, const std::vector<Recording>& reco
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     Measurement& one = problem.measurements[k];
     one.whitener = whitener_with(one.whitener, problem.within[k], one.rows);
+    for (std::size_t p = 0; p < laid.size(); ++p) {
+      const NoiseProcess& process = model.noise.processes[p];
+      if (!has_used_tails(process) || laid[p].within[k].isZero(0.0)) continue;
+      one.tails = one.tails > 0.0 ? std::min(one.tails, process.tails) : process.tails;
+    }
   }
 }
 

@@ -49,10 +49,11 @@ struct Measurement {
   int to = -1;                      ///< node; -1: none
   int rows = 0;                     ///< 1 to 4
   Vector4 value = Vector4::Zero();  ///< measured; a segment's last is its mean heading
-  Vector4 linearization_offset =
-      Vector4::Zero();                 ///< added to a segment's value (segment_noise.hpp)
+  /// Added to the value: by segment_noise.hpp, and by student_tails.hpp to a sighting's.
+  Vector4 value_offset = Vector4::Zero();
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
-  int session = -1;                    ///< -1: survey
+  double tails = 0.0;      ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
+  int session = -1;        ///< -1: survey
   std::size_t source = 0;  ///< sighting, survey point or truth row of the session; else the segment
 };
 

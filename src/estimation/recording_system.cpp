@@ -3,6 +3,7 @@
 #include "estimation/recording_system.hpp"
 
 #include "estimation/noise_states.hpp"
+#include "estimation/student_tails.hpp"
 #include "linalg/dense.hpp"
 
 #include <cmath>
@@ -72,7 +73,7 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectPa
       border_(border),
       unknown_(unknown_coefficients(border)),
       gauge_(choose_gauge(problem)),
-      root_weights_(problem.measurements.size(), 1.0),
+      root_weights_(problem.measurements.size()),
       normal_(lay_out(problem, gauge_)),
       J_(problem.measurements.size()) {
   int pair = 0;
@@ -87,6 +88,7 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectPa
     pair += terms * (problem.measurements[k].to >= 0 ? 2 : 1) + terms * (terms - 1) / 2;
   }
   step_pair_ = pair;
+  set_weights(std::vector<double>(problem.measurements.size(), 1.0));
   measured_rows_ = rows_;
   rows_ += static_cast<int>(problem.noise_states.size());
   residuals_.resize(rows_);
@@ -95,7 +97,10 @@ RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectPa
 }
 
 void RecordingSystem::set_weights(const std::vector<double>& weights) {
-  for (std::size_t k = 0; k < weights.size(); ++k) root_weights_[k] = std::sqrt(weights[k]);
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const Measurement& one = problem_.measurements[k];
+    root_weights_[k] = std::sqrt(weights[k] * tail_information(one.tails, one.rows));
+  }
 }
 
 int RecordingSystem::unknowns() const {
@@ -121,7 +126,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     const Measurement& one = problem_.measurements[k];
     const bool segment = one.kind == MeasurementKind::segment;
     Vector4 value =
-        (segment && with_drives ? moved_by_effects(k, all) : one.value) + one.linearization_offset;
+        (segment && with_drives ? moved_by_effects(k, all) : one.value) + one.value_offset;
     ViewPattern view = view_of(border_, all, one);
     if (states > 0 && segment) value += lasting_in_segment(problem_, k, noise);
     if (states > 0 && !segment) view = lasting_in_view(problem_, k, view, noise);
@@ -139,7 +144,8 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
       }
     }
     const Vector4 error = W * rows.error;
-    squared_errors_[k] = (one.whitener * rows.error).squaredNorm();
+    const Vector4 plain = one.tails > 0.0 ? rows.error + one.value_offset : rows.error;
+    squared_errors_[k] = tail_deviance(one.tails, one.rows, (one.whitener * plain).squaredNorm());
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
     add_to_normal(k, J, error);
     if (!J.states.empty()) add_states_to_normal(k, J, error);

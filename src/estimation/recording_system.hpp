@@ -96,7 +96,8 @@ class RecordingSystem {
   [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const Eigen::MatrixXd& border() const { return M_; }
-  /// Squared whitened error of each measurement, as if all weights were 1.
+  /// Squared whitened error of each measurement, as if all weights were 1; of one with heavy tails
+  /// what is as unlikely (tail_deviance).
   [[nodiscard]] const std::vector<double>& squared_errors() const { return squared_errors_; }
   /// J'v and J x, J as linearised.
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;

@@ -183,11 +183,11 @@ double relinearise(RecordingProblem& problem, const std::vector<Recording>& reco
     if (one.kind != MeasurementKind::segment) continue;
     const SegmentNoise at = believed_noise(problem, k, recordings, model, border, offsets, state);
     const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
-    Vector4 linearization_offset = at.value - at.recorded;
-    linearization_offset[3] = one.rows == 4 ? wrap_angle(linearization_offset[3]) : 0.0;
-    const Vector4 change = one.whitener * (linearization_offset - one.linearization_offset);
+    Vector4 value_offset = at.value - at.recorded;
+    value_offset[3] = one.rows == 4 ? wrap_angle(value_offset[3]) : 0.0;
+    const Vector4 change = one.whitener * (value_offset - one.value_offset);
     most = std::max(most, change.cwiseAbs().maxCoeff());
-    one.linearization_offset = linearization_offset;
+    one.value_offset = value_offset;
     one.whitener = whitener_of(at.covariance + within, one.rows);
   }
   return most;

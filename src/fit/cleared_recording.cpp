@@ -127,9 +127,13 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
 }
 
 std::vector<ClearedRecording> cleared(const FitState& fit) {
+  return cleared(fit, offsets_of(fit));
+}
+
+std::vector<ClearedRecording> cleared(const FitState& fit, const Eigen::VectorXd& offsets) {
   std::vector<ClearedRecording> result;
   for (const Recording& recording : fit.recordings) result.push_back(as_recorded(recording));
-  clear(fit.recordings, fit.columns.border, offsets_of(fit), fit.model.robot.wheelbase, result);
+  clear(fit.recordings, fit.columns.border, offsets, fit.model.robot.wheelbase, result);
   return result;
 }
 

@@ -40,4 +40,8 @@ struct ClearedRecording {
 /// A fit's recordings, freed from its effects as it has them; truth at the fit's times.
 [[nodiscard]] std::vector<ClearedRecording> cleared(const FitState& fit);
 
+/// The same with other coefficients, as offsets_of gives them.
+[[nodiscard]] std::vector<ClearedRecording> cleared(const FitState& fit,
+                                                    const Eigen::VectorXd& offsets);
+
 }  // namespace trussmap

@@ -3,6 +3,7 @@
 #include "fit/column_builder.hpp"
 
 #include "estimation/measurement_rows.hpp"
+#include "estimation/student_tails.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +41,7 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     : context_(context), segment_rows_(std::make_shared<std::vector<Row>>()) {
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    const Matrix4 W = std::sqrt(weights[k]) * one.whitener;
+    const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
     if (one.kind == MeasurementKind::segment) {
       std::vector<const std::vector<DrivePattern>*> patterns;
       for (const EffectPattern& effect : border) {

@@ -6,6 +6,7 @@
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/segment_noise.hpp"
+#include "estimation/student_tails.hpp"
 #include "fit/cleared_recording.hpp"
 #include "fit/noise_free.hpp"
 #include "text/number_text.hpp"
@@ -418,14 +419,17 @@ class Fitter {
     }
   }
 
-  /// The largest change of a segment's value by it, in standard deviations.
+  /// The largest change of a measurement's value by it, in standard deviations.
   double relinearised() {
     // The residuals of a misfit are no estimate of noise.
     const bool noise = options_.relinearise &&
                        fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
-    return noise ? relinearise(fit_.problem, fit_.recordings, fit_.model, fit_.columns.border,
-                               offsets_of(fit_), state_)
-                 : 0.0;
+    const EffectParameters& border = fit_.columns.border;
+    const Eigen::VectorXd offsets = offsets_of(fit_);
+    const double tails = take_tails(fit_.problem, border, offsets, state_);
+    return noise ? std::max(tails, relinearise(fit_.problem, fit_.recordings, fit_.model, border,
+                                               offsets, state_))
+                 : tails;
   }
 
   void lay_paths() {
@@ -490,10 +494,11 @@ class Fitter {
       fit_.effects[one.effect].sd[one.place] =
           std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
     }
-    const std::vector<NoiseProcess>& processes = fit_.model.noise.processes;
-    if (std::any_of(processes.begin(), processes.end(),
-                    [](const NoiseProcess& one) { return one.tails > 0.0; })) {
-      fit_.adjustment.warnings.push_back("tails of the noise are not used: it is taken as normal");
+    for (const NoiseProcess& one : fit_.model.noise.processes) {
+      if (!(one.tails > 0.0) || has_used_tails(one)) continue;
+      fit_.adjustment.warnings.push_back(
+          joined("the tails of the noise ", name_of(one.channel), ", ", name_of(one.process),
+                 " are not used: only white noise of sightings has them"));
     }
     if (!fit_.settled) {
       fit_.adjustment.warnings.push_back(

@@ -4,6 +4,7 @@
 
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_noise.hpp"
+#include "estimation/student_tails.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
@@ -257,7 +258,12 @@ NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
                              .H,
                          readings_of(problem_.segments[one.source])};
   }
-  for (const Measurement& one : problem_.measurements) fixed_.push_back(fixed_covariance(one));
+  for (Measurement& one : problem_.measurements) {
+    fixed_.push_back(fixed_covariance(one));
+    // Variances are those of the errors themselves, whatever their tails.
+    if (one.tails > 0.0) one.value_offset.setZero();
+    one.tails = 0.0;
+  }
 }
 
 void NoiseReml::set_nuisance(const Eigen::MatrixXd& nuisance) {
@@ -270,7 +276,8 @@ void NoiseReml::set_nuisance(const Eigen::MatrixXd& nuisance) {
   for (const Measurement& one : fit_.problem.measurements) {
     const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
     plain_nuisance_.middleRows(at, one.rows) =
-        (colour * plain_nuisance_.middleRows(at, one.rows)).eval();
+        (colour * plain_nuisance_.middleRows(at, one.rows)).eval() /
+        std::sqrt(tail_information(one.tails, one.rows));
     at += one.rows;
   }
 }

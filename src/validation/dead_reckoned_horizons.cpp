@@ -3,6 +3,7 @@
 #include "validation/dead_reckoned_horizons.hpp"
 
 #include "fit/cleared_recording.hpp"
+#include "validation/blocked_coefficients.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,27 +34,54 @@ Vector2 driven(const Drive& drive, const SessionPath& path, double from, double 
   return rotation(-a.heading) * (b.position() - a.position());
 }
 
-}  // namespace
+/// Squared errors over one horizon, window by window.
+class Windows {
+ public:
+  explicit Windows(double horizon) : horizon_(horizon) {}
 
-HorizonError horizon_error(const FitState& fit, double horizon) {
-  HorizonError result;
-  const std::vector<ClearedRecording> clear = cleared(fit);
-  double sum = 0.0;
-  for (std::size_t s = 0; s < clear.size(); ++s) {
-    const Drive& drive = fit.recordings[s].drive;
-    const std::vector<double> nodes = node_times(fit, s);
-    if (nodes.empty()) continue;
-    const SessionPath reckoned = reckoned_path(clear[s], fit.model);
-    for (double t = nodes.front(); t + horizon <= nodes.back(); t += 0.5 * horizon) {
-      if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon)) continue;
-      const Vector2 off =
-          driven(drive, reckoned, t, t + horizon) - driven(drive, fit.paths[s], t, t + horizon);
-      sum += off.squaredNorm();
-      ++result.windows;
+  /// Those of a session whose middle is in a block, reckoned with the coefficients without it.
+  void add(const FitState& fit, std::size_t session, const std::vector<double>& nodes,
+           const TimeBlocks& blocks, int block, const SessionPath& reckoned) {
+    const Drive& drive = fit.recordings[session].drive;
+    for (double t = nodes.front(); t + horizon_ <= nodes.back(); t += 0.5 * horizon_) {
+      if (blocks.at(static_cast<int>(session), t + 0.5 * horizon_) != block) continue;
+      if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon_)) continue;
+      const Vector2 off = driven(drive, reckoned, t, t + horizon_) -
+                          driven(drive, fit.paths[session], t, t + horizon_);
+      sum_ += off.squaredNorm();
+      ++windows_;
     }
   }
-  if (result.windows > 0) result.rms = std::sqrt(sum / result.windows);
-  return result;
+
+  [[nodiscard]] HorizonError error() const {
+    return {windows_ > 0 ? std::sqrt(sum_ / windows_) : 0.0, windows_};
+  }
+
+ private:
+  double horizon_;
+  double sum_ = 0.0;
+  int windows_ = 0;
+};
+
+}  // namespace
+
+HorizonErrors horizon_errors(const FitState& fit) {
+  constexpr int kBlocks = 5;
+  const TimeBlocks blocks(fit.problem, kBlocks);
+  const std::vector<Eigen::VectorXd> offsets = offsets_without_blocks(fit, blocks);
+  Windows after_10(10.0);
+  Windows after_30(30.0);
+  for (int block = 0; block < kBlocks; ++block) {
+    const std::vector<ClearedRecording> clear = cleared(fit, offsets[idx(block)]);
+    for (std::size_t s = 0; s < clear.size(); ++s) {
+      const std::vector<double> nodes = node_times(fit, s);
+      if (nodes.empty()) continue;
+      const SessionPath reckoned = reckoned_path(clear[s], fit.model);
+      after_10.add(fit, s, nodes, blocks, block, reckoned);
+      after_30.add(fit, s, nodes, blocks, block, reckoned);
+    }
+  }
+  return {after_10.error(), after_30.error()};
 }
 
 }  // namespace trussmap

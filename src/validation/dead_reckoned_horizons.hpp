@@ -7,6 +7,10 @@
 //   smoothed   o----------------> o      both from the same pose; every half horizon anew, where
 //   reckoned   o-----------> x           the robot has sighted something within a second of
 //                                        either end
+//
+// By blocked cross-validation (blocked_coefficients.hpp): a window is reckoned with the
+// coefficients that the fit has without what was sighted in the window's block, so that an effect
+// is not judged by the sightings that it was fitted to.
 #pragma once
 
 #include "fit/fit_state.hpp"
@@ -18,7 +22,12 @@ struct HorizonError {
   int windows = 0;
 };
 
-/// `horizon` in s. The fit has paths.
-[[nodiscard]] HorizonError horizon_error(const FitState& fit, double horizon);
+struct HorizonErrors {
+  HorizonError after_10;  ///< s
+  HorizonError after_30;
+};
+
+/// The fit has paths.
+[[nodiscard]] HorizonErrors horizon_errors(const FitState& fit);
 
 }  // namespace trussmap
