@@ -5,7 +5,7 @@
 // what their model says, and sightings with a wrong name. All drawn from a seed.
 #pragma once
 
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"

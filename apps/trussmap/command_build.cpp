@@ -7,6 +7,7 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "recording_warnings.hpp"
 #include "terminal.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/error.hpp"
@@ -260,6 +261,7 @@ void run_build(const BuildOptions& options) {
     recordings.push_back(read_recording(folder));
   }
   const Model model = read_model(options.model, recordings);
+  warn_of_mistakes(recordings, model, options.model);
   progress.next();
   const BuiltMap built = [&] {
     try {

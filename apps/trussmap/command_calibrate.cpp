@@ -6,6 +6,7 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "recording_warnings.hpp"
 #include "terminal.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"
@@ -237,6 +238,7 @@ void run_calibrate(const CalibrateOptions& options) {
   std::vector<Recording> test_drives;
   for (const std::string& folder : options.test) test_drives.push_back(read_recording(folder));
   const Model model = read_model(options.model, recordings);
+  warn_of_mistakes(recordings, model, options.model);
   WheelCalibration found;
   CalibrationValidation held;
   std::optional<Tested> test;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +19,9 @@ class Option;
 }  // namespace CLI
 
 namespace trussmap::app {
+
+/// Thrown by a command that has done its work, and has to say no by exit status 1.
+class AnswerIsNo : public std::exception {};
 
 /// Options that fit each other badly, or a value out of range: one line, status 2.
 class UsageError : public std::runtime_error {

@@ -16,6 +16,7 @@ void setup_adjust(const Command& app);
 void setup_apply(const Command& app);
 void setup_build(const Command& app);
 void setup_calibrate(const Command& app);
+void setup_check(const Command& app);
 void setup_compare(const Command& app);
 void setup_convert(const Command& app);
 void setup_diagnose(const Command& app);

@@ -75,6 +75,7 @@ int main(int argc, char** argv) try {
   trussmap::app::setup_apply(commands);
   trussmap::app::setup_build(commands);
   trussmap::app::setup_calibrate(commands);
+  trussmap::app::setup_check(commands);
   trussmap::app::setup_compare(commands);
   trussmap::app::setup_convert(commands);
   trussmap::app::setup_diagnose(commands);
@@ -91,6 +92,8 @@ int main(int argc, char** argv) try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
+  } catch (const trussmap::app::AnswerIsNo&) {
+    return kFailed;
   } catch (const CLI::ParseError& error) {
     return complain(error, kBadInput);
   } catch (const trussmap::InputError& error) {

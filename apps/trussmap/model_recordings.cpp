@@ -3,6 +3,7 @@
 #include "model_recordings.hpp"
 
 #include "option_checks.hpp"
+#include "recording_warnings.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -108,6 +109,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
     result.recordings.push_back(read_recording(folder));
   }
   result.model = read_model(options.model, result.recordings);
+  warn_of_mistakes(result.recordings, result.model, options.model);
   take_frames(result, options);
   return result;
 }

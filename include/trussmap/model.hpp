@@ -15,7 +15,8 @@
 namespace trussmap {
 
 struct Robot {
-  double wheelbase = 0.34;  ///< m, nominal
+  double wheelbase = 0.34;       ///< m, nominal
+  bool wheelbase_stated = true;  ///< else a model file left it out, and it is the default
 };
 
 /// How an error of a channel's g lasts.

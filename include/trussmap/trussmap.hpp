@@ -10,12 +10,12 @@
 // it. Find the first alone by find_package(trussmap COMPONENTS map).
 #pragma once
 
-#include "trussmap/alignment.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/channel.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/corrected_odometry.hpp"
 #include "trussmap/dead_reckoning.hpp"

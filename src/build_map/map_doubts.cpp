@@ -4,7 +4,7 @@
 
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/gate.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "estimation/pose_reckoner.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 
 #include <cmath>
 #include <stdexcept>

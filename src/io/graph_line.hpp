@@ -47,6 +47,11 @@ class GraphLine {
     const std::string_view found = word();
     std::int64_t value = 0;
     if (!parse(found, value)) complain(found, meaning, "a whole number");
+    // Two of them can be added.
+    constexpr std::int64_t kLargest = std::int64_t{1} << 60;
+    if (value > kLargest || value < -kLargest) {
+      complain(found, meaning, "a whole number below 2^60 in size");
+    }
     return value;
   }
 

@@ -57,8 +57,10 @@ class Attributes {
   }
 
   [[nodiscard]] Matrix2 covariance() const {
+    const double xx = number("c_xx");
     const double xy = number("c_xy");
-    Matrix2 C = (Matrix2() << number("c_xx"), xy, xy, number("c_yy")).finished();
+    const double yy = number("c_yy");
+    const Matrix2 C = (Matrix2() << xx, xy, xy, yy).finished();
     const double rounding = 1e-12 * C(0, 0) * C(1, 1);
     if (C(0, 0) < 0.0 || C(1, 1) < 0.0 || C.determinant() < -rounding) {
       fail("c_xx, c_xy, c_yy are no covariance, expected a positive semidefinite matrix");

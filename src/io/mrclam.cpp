@@ -127,9 +127,11 @@ void read_survey(const fs::path& prefix, Recording& recording) {
   const fs::path file = plain_or_xz(prefix.parent_path() / "Landmark_Groundtruth.dat");
   if (file.empty()) return;
   for (const Row& row : read_rows(file, 5)) {
+    const int subject = number_of(row[0]);
+    if (subject < 0) continue;
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
     recording.survey.push_back(
-        {std::to_string(static_cast<int>(row[0])), row[1], row[2], sd > 0.0 ? sd : kAbsent});
+        {std::to_string(subject), row[1], row[2], sd > 0.0 ? sd : kAbsent});
   }
 }
 

@@ -6,7 +6,7 @@
 // grows with its traversals.
 #pragma once
 
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/survey_comparison.hpp"

@@ -4,7 +4,7 @@
 
 #include "geometry/index.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
-#include "trussmap/alignment.hpp"
+#include "trussmap/planar.hpp"
 
 #include <algorithm>
 #include <array>

@@ -212,8 +212,9 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
   scratch.write("m.toml", "");
   const Ran ran = run_trussmap("build " + at + "/one " + at + "/two --model " + at + "/m.toml");
   EXPECT_EQ(ran.status, 1) << ran.output;
-  EXPECT_EQ(ran.output,
-            "trussmap: " + at + "/two stands apart: no landmark ties it to " + at + "/one\n");
+  EXPECT_TRUE(ran.output.ends_with("trussmap: " + at +
+                                   "/two stands apart: no landmark ties it to " + at + "/one\n"))
+      << ran.output;
 }
 
 TEST(Command, AWordThatIsNoCommandIsNamed) {
@@ -221,7 +222,7 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(ran.status, 2);
   EXPECT_EQ(ran.output,
             "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
-            "calibrate, "
+            "calibrate, check, "
             "compare, convert, diagnose, discover, fit, noise, reveal, simulate, tour, umbmark\n");
 }
 

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "recording_warnings.hpp"
+
+#include "terminal.hpp"
+#include "trussmap/check.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace trussmap::app {
+
+void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& model,
+                      const std::string& model_file) {
+  const std::vector<CheckFinding> findings = check_recordings(recordings, &model, model_file);
+  if (findings.empty()) return;
+  // What progress has written goes first.
+  if (can_rewrite_lines(stderr)) fmt::print(stderr, "\r\033[K");
+  for (const CheckFinding& one : findings) {
+    fmt::print(stderr, "{}", warning_text(in_words(one), is_coloured(stderr)));
+  }
+}
+
+}  // namespace trussmap::app

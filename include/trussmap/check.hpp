@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Mistakes of meaning in recordings: what can be read, and is not what it should be. Units, signs
+// and axes, names, clocks, surveys of something else. Without a fit: what one column says is
+// compared with what another one says of the same motion, so that a check costs next to nothing.
+//
+//   compass    turns of its readings       against those of the wheels
+//   sightings  where a landmark is seen    against where the wheels have led the robot since
+//   survey     from landmark to landmark   against the way driven, and against views of both
+//   truth      motion and heading          against the wheels
+//
+// A quantity is reported where it contradicts another by far more than any robot's errors, and one
+// mistake explains all that is contradicted. Where several would, the finding names them all.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct CheckFinding {
+  std::string file;      ///< of a recording's folder, or the model's
+  std::string column;    ///< one, or several with commas; empty: the file as a whole
+  std::string kind;      ///< one of check_kinds()
+  std::string evidence;  ///< what it looks like, with figures
+  std::string remedy;
+};
+
+/// What check_recordings can find.
+[[nodiscard]] const std::vector<std::string>& check_kinds();
+
+/// Findings by recording, the columns of drives first. Without a model the wheelbase is found from
+/// the compass where there is one. Recordings are read_recording's, or as well formed
+/// (recording.hpp; otherwise std::invalid_argument). `model_file` is named in findings of the
+/// model.
+[[nodiscard]] std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordings,
+                                                         const Model* model = nullptr,
+                                                         const std::string& model_file = "");
+
+/// "DIR/drive.csv, left,right: ...; remedy: ...": one line.
+[[nodiscard]] std::string in_words(const CheckFinding& finding);
+
+}  // namespace trussmap

@@ -1,0 +1,417 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/check.hpp"
+
+#include "check/findings.hpp"
+#include "recording/well_formed.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace trussmap {
+namespace {
+
+constexpr double kNarrowest = 0.01;    // m: wheelbases that robots have
+constexpr double kWidest = 5.0;        // m
+constexpr double kWheelbaseOff = 1.6;  // factor that no effect of a wheelbase reaches
+constexpr double kBackwards = -0.5;    // share of the way, of a robot that drives backwards
+constexpr int kHandful = 5;            // degrees of freedom that test nothing
+
+const std::vector<std::string> kKinds = {"travel unit",
+                                         "time unit",
+                                         "range unit",
+                                         "survey unit",
+                                         "truth unit",
+                                         "angle unit",
+                                         "spike",
+                                         "gap",
+                                         "still wheel",
+                                         "no motion",
+                                         "wheels exchanged",
+                                         "wheels negated",
+                                         "wheel negated",
+                                         "wheels unsigned",
+                                         "compass clockwise",
+                                         "compass turned",
+                                         "bearings clockwise",
+                                         "survey mirrored",
+                                         "truth mirrored",
+                                         "truth turned",
+                                         "turns opposite",
+                                         "blank in a name",
+                                         "one name at two places",
+                                         "same session twice",
+                                         "other landmarks",
+                                         "survey at one point",
+                                         "survey on a line",
+                                         "no wheelbase",
+                                         "impossible wheelbase",
+                                         "nothing to test"};
+
+/// What may count its turns the other way round.
+enum Quantity { wheels, compass, bearings, survey, truth_heading, truth_course, quantities };
+
+/// Signs by which pairs of quantities agree; which quantity, alone, explains those that do not?
+class Signs {
+ public:
+  void add(Quantity a, Quantity b, int sign) {
+    if (sign != 0) known_.push_back({a, b, sign});
+  }
+
+  [[nodiscard]] std::vector<Quantity> culprits() const {
+    std::vector<Quantity> result;
+    const bool wrong =
+        std::any_of(known_.begin(), known_.end(), [](const Known& one) { return one.sign < 0; });
+    if (!wrong) return result;
+    for (int q = 0; q < quantities; ++q) {
+      const auto explains = [q](const Known& one) {
+        return (one.a == q || one.b == q) == (one.sign < 0);
+      };
+      if (std::all_of(known_.begin(), known_.end(), explains)) {
+        result.push_back(static_cast<Quantity>(q));
+      }
+    }
+    return result;
+  }
+
+ private:
+  struct Known {
+    Quantity a;
+    Quantity b;
+    int sign;
+  };
+  std::vector<Known> known_;
+};
+
+struct Blame {
+  const char* file;
+  const char* column;
+  const char* kind;
+  const char* words;
+  const char* remedy;
+};
+
+/// A robot that seems to drive backwards nearly all the time has its wheels negated, not exchanged.
+Blame blame_of(Quantity quantity, double forward) {
+  switch (quantity) {
+    case wheels:
+      if (forward < kBackwards) {
+        return {"drive.csv", "left,right", "wheels negated", "both wheels negated",
+                "change the sign of left and right"};
+      }
+      return {"drive.csv", "left,right", "wheels exchanged", "wheels exchanged",
+              "exchange the columns left and right"};
+    case compass:
+      return {"drive.csv", "heading", "compass clockwise", "a compass that counts clockwise",
+              "change the sign of heading; where it counts from north, too: pi/2 - heading"};
+    case bearings:
+      return {"sightings.csv", "bearing", "bearings clockwise", "bearings that count clockwise",
+              "change the sign of bearing"};
+    case survey:
+      return {"survey.csv", "x,y", "survey mirrored", "a survey with x and y exchanged",
+              "exchange x and y, or change the sign of one of them"};
+    case truth_heading:
+    case truth_course:
+    case quantities:
+      break;
+  }
+  return {"truth.csv", "x,y,heading", "truth mirrored", "a truth with axes exchanged",
+          "make x, y and heading right-handed: counter-clockwise from x to y"};
+}
+
+/// Share of the way that leads forward.
+double forward_share(const Drive& drive) {
+  double forward = 0.0;
+  double all = 0.0;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double path = 0.5 * (drive.left[row] + drive.right[row]);
+    forward += path;
+    all += std::abs(path);
+  }
+  return all > 0.0 ? forward / all : 0.0;
+}
+
+void blame(Checked& checked, const std::vector<Quantity>& culprits, const std::string& seen) {
+  if (culprits.empty()) return;
+  const double forward = forward_share(checked.recording.drive);
+  const Blame first = blame_of(culprits.front(), forward);
+  if (culprits.size() == 1) {
+    checked.add(first.file, first.column, first.kind, seen, first.remedy);
+    return;
+  }
+  std::string words;
+  std::string columns;
+  for (const Quantity one : culprits) {
+    const Blame each = blame_of(one, forward);
+    words += joined(words.empty() ? "" : ", or ", each.words, " (", each.file, ")");
+    if (std::string(each.file) == first.file) {
+      columns += joined(columns.empty() ? "" : ",", each.column);
+    }
+  }
+  checked.add(first.file, columns, "turns opposite", seen + ": " + words,
+              "drive a left turn and look which of them gets it wrong");
+}
+
+/// Degrees of freedom of what was recorded, counted as the adjustment does but for what a compass
+/// adds on the way.
+int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& landmarks) {
+  std::set<double> instants;
+  int rows = 0;
+  for (const Sighting& one : recording.sightings) {
+    instants.insert(one.t);
+    landmarks.insert(one.landmark);
+    rows += one.standing() || std::isfinite(one.bearing) ? 2 : 1;
+  }
+  for (const TruthRow& one : recording.truth) {
+    if (!instants.insert(one.t).second) continue;
+    rows += 3;
+  }
+  const int poses = static_cast<int>(instants.size());
+  const int segments = std::max(0, poses - 1);
+  return rows + segments * (recording.drive.has_compass() ? 4 : 3) - 3 * poses;
+}
+
+void check_freedom(const std::vector<Recording>& recordings, CheckFindings& findings) {
+  std::set<std::string_view> landmarks;
+  std::set<std::string_view> surveyed;
+  int dof = 0;
+  bool framed = false;
+  for (const Recording& one : recordings) {
+    dof += degrees_of_freedom(one, landmarks);
+    framed = framed || !one.truth.empty();
+    for (const SurveyPoint& point : one.survey) surveyed.insert(point.landmark);
+  }
+  std::erase_if(surveyed, [&](std::string_view name) { return !landmarks.contains(name); });
+  dof -= 2 * static_cast<int>(landmarks.size());
+  dof += 2 * static_cast<int>(surveyed.size());
+  if (!framed && surveyed.empty()) dof += 2 + (recordings.front().drive.has_compass() ? 0 : 1);
+  if (dof >= kHandful) return;
+  Checked all{recordings.front(), findings};
+  all.add("sightings.csv", "", "nothing to test",
+          joined("what was measured exceeds what is unknown by ", dof,
+                 " values: a model can hardly fail there"),
+          "drive routes again, or survey landmarks");
+}
+
+void check_wheelbase(Checked& checked, const Model& model, const std::string& model_file,
+                     const TurnAgreement& turns, CheckFindings& findings) {
+  const double stated = model.robot.wheelbase;
+  const auto add = [&](const char* kind, const std::string& evidence, const std::string& remedy) {
+    findings.push_back({model_file, "wheelbase", kind, evidence, remedy});
+  };
+  if (stated < kNarrowest || stated > kWidest) {
+    add("impossible wheelbase", joined("the wheelbase is ", figure(stated, "m")),
+        "state it in metres");
+    return;
+  }
+  if (turns.sign == 0 || checked.wrong.contains("left")) return;
+  const double driven = 1.0 / std::abs(turns.slope);
+  if (std::abs(std::log(driven / stated)) < std::log(kWheelbaseOff)) return;
+  add("impossible wheelbase",
+      joined("the wheelbase is ", figure(stated, "m"),
+             ", but the wheels turn with the compass as if "
+             "it were ",
+             figure(driven, "m")),
+      "measure it again; if it is right, look at the units of left, right and heading");
+}
+
+/// The same travels, to the last digit; of few rows the same sightings, too.
+bool same_session(const Recording& a, const Recording& b) {
+  constexpr std::size_t kCannotBeChance = 20;
+  const auto same_sighting = [](const Sighting& one, const Sighting& other) {
+    return one.landmark == other.landmark && one.t == other.t;
+  };
+  return a.drive.left == b.drive.left && a.drive.right == b.drive.right &&
+         (a.drive.rows() >= kCannotBeChance ||
+          std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(),
+                     b.sightings.end(), same_sighting));
+}
+
+void check_twice(const std::vector<Recording>& recordings, CheckFindings& findings) {
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    for (std::size_t other = 0; other < k; ++other) {
+      if (!same_session(recordings[k], recordings[other])) continue;
+      Checked both{recordings[k], findings};
+      both.add("drive.csv", "", "same session twice",
+               joined("all ", recordings[k].drive.rows(), " rows travel as those of ",
+                      recordings[other].name),
+               "give each session once: counted twice it makes errors look smaller and alike");
+      break;
+    }
+  }
+}
+
+bool never_negative(const Drive& drive) {
+  const auto negative = [](double travel) { return travel < 0.0; };
+  return std::none_of(drive.left.begin(), drive.left.end(), negative) &&
+         std::none_of(drive.right.begin(), drive.right.end(), negative);
+}
+
+/// Where the wheels agree with nothing as they are: with one of them negated?
+void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
+  for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
+    const Track track(checked.recording.drive, checked.wheelbase, mistake);
+    const bool survey = by_survey && survey_agreement(checked, track).by_way > 0;
+    const bool truth = by_truth && truth_agreement(checked, track).by_heading > 0;
+    if (!survey && !truth) continue;
+    const std::string name = mistake == WheelMistake::left_negated ? "left" : "right";
+    checked.add("drive.csv", name, "wheel negated",
+                joined("with the ", name, " wheel's sign changed the wheels turn with the ",
+                       survey ? "survey's corners" : "truth", ", as recorded they do not"),
+                "change the sign of " + name);
+    return;
+  }
+}
+
+/// What each pair of quantities says of the other's turns, and which of them has to be wrong.
+void check_turns(Checked& checked, const TurnAgreement& turns, const TurnAgreement& views,
+                 const SurveyAgreement& surveyed, const TruthAgreement& truth) {
+  Signs signs;
+  std::string seen;
+  const auto add = [&](Quantity a, Quantity b, int sign, const char* words) {
+    signs.add(a, b, sign);
+    if (sign < 0) seen += std::string(seen.empty() ? "" : ", ") + words;
+  };
+  add(wheels, compass, turns.sign, "the compass turns against the wheels");
+  add(wheels, bearings, views.sign, "landmarks shift against the wheels' turns");
+  add(wheels, survey, surveyed.by_way, "the survey's corners turn against the wheels");
+  add(bearings, survey, surveyed.by_views, "the survey's corners turn against what is seen");
+  add(wheels, truth_heading, truth.by_heading, "the truth's heading turns against the wheels");
+  add(wheels, truth_course, truth.by_course, "the truth's course turns against the wheels");
+  blame(checked, signs.culprits(), seen);
+}
+
+/// Of one recording. Returns what its compass says of the wheels.
+TurnAgreement check_recording(Checked& checked) {
+  const Recording& recording = checked.recording;
+  check_names(checked);
+  check_drive_values(checked);
+  check_bearing_unit(checked);
+  const TurnAgreement turns = check_compass(checked);
+  if (!checked.wheelbase_known && turns.sign != 0) {
+    checked.wheelbase = 1.0 / std::abs(turns.slope);
+    checked.wheelbase_known = true;
+  }
+  const auto wheels_wrong = [&checked] {
+    return checked.wrong.contains("left") || checked.wrong.contains("right") ||
+           checked.wrong.contains("t");
+  };
+  if (!checked.wheelbase_known) return turns;
+  const Track track(recording.drive, checked.wheelbase);
+  const SurveyAgreement surveyed = survey_agreement(checked, track);
+  if (wheels_wrong()) {  // nothing is to be compared with them
+    check_survey(checked, track, {}, false);
+    return turns;
+  }
+  const TurnAgreement views = check_views(checked, track);
+  if (wheels_wrong()) return turns;
+  const TruthAgreement truth = truth_agreement(checked, track);
+  if (surveyed.contradicts || truth.contradicts) {
+    check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
+  }
+  const bool contradicted =
+      turns.contradicts || views.contradicts || surveyed.contradicts || truth.contradicts;
+  if (!wheels_wrong() && contradicted && never_negative(recording.drive)) {
+    checked.add("drive.csv", "left,right", "wheels unsigned",
+                joined("no travel is negative, and the wheels do not turn with ",
+                       turns.contradicts      ? "the compass"
+                       : views.contradicts    ? "what is seen"
+                       : surveyed.contradicts ? "the survey's corners"
+                                              : "the truth"),
+                "record travels with their sign: a turn on the spot has one wheel going backwards");
+  }
+  if (wheels_wrong()) return turns;
+  check_survey(checked, track, surveyed, turns.sign > 0);
+  check_truth(checked, track, truth);
+  const std::size_t before = checked.findings.size();
+  check_turns(checked, turns, views, surveyed, truth);
+  if (checked.findings.size() > before) return turns;
+  const bool by_truth = truth.by_heading > 0 && truth.by_course > 0 &&
+                        !checked.wrong.contains("truth heading") &&
+                        !checked.wrong.contains("truth x");
+  const bool by_compass = turns.sign > 0 && !checked.wrong.contains("heading");
+  if (by_truth || !by_compass) {
+    check_two_places(checked, track, by_truth);
+  } else {
+    check_two_places(
+        checked, Track(recording.drive, checked.wheelbase, WheelMistake::none, Heading::of_compass),
+        false);
+  }
+  return turns;
+}
+
+}  // namespace
+
+void Checked::add(const char* file, const std::string& column, const char* kind,
+                  const std::string& evidence, const std::string& remedy) {
+  findings.push_back({recording.name + "/" + file, column, kind, evidence, remedy});
+  std::string one;
+  for (const char c : column + ",") {
+    if (c != ',') {
+      one += c;
+      continue;
+    }
+    // "x" of the truth is not that of the survey.
+    wrong.insert(std::string(file) == "truth.csv" ? "truth " + one : one);
+    one.clear();
+  }
+}
+
+std::string figure(double value, const char* unit) {
+  const std::string text = short_text(value, 3);
+  return *unit == '\0' ? text : text + " " + unit;
+}
+
+std::string unit_of_ratio(double ratio) {
+  struct Unit {
+    const char* name;
+    double ratio;
+  };
+  static constexpr std::array<Unit, 4> kUnits{
+      {{"mm", 1000.0}, {"cm", 100.0}, {"inches", 39.37}, {"feet", 3.281}}};
+  for (const Unit& one : kUnits) {
+    if (std::abs(std::log(ratio / one.ratio)) < 0.35) return one.name;
+  }
+  return {};
+}
+
+const std::vector<std::string>& check_kinds() {
+  return kKinds;
+}
+
+std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordings,
+                                           const Model* model, const std::string& model_file) {
+  CheckFindings findings;
+  if (recordings.empty()) return findings;
+  for (const Recording& one : recordings) require_well_formed(one);
+  if (model != nullptr && !model->robot.wheelbase_stated) {
+    findings.push_back(
+        {model_file, "wheelbase", "no wheelbase",
+         joined("[robot] has no wheelbase: ", figure(model->robot.wheelbase, "m"), " is taken"),
+         "state the distance of the wheels"});
+  }
+  bool said = false;
+  for (const Recording& one : recordings) {
+    Checked checked{one, findings};
+    checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;
+    checked.wheelbase = model != nullptr ? model->robot.wheelbase : Robot().wheelbase;
+    const TurnAgreement turns = check_recording(checked);
+    if (model == nullptr || !model->robot.wheelbase_stated || said) continue;
+    const std::size_t before = findings.size();
+    check_wheelbase(checked, *model, model_file, turns, findings);
+    said = findings.size() > before;
+  }
+  check_twice(recordings, findings);
+  check_freedom(recordings, findings);
+  return findings;
+}
+
+std::string in_words(const CheckFinding& finding) {
+  return joined(finding.file, finding.column.empty() ? "" : ", " + finding.column, ": ",
+                finding.kind, ": ", finding.evidence, "; remedy: ", finding.remedy);
+}
+
+}  // namespace trussmap

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Turns of the compass against the difference of the wheels' travels, in stretches in which that
+// has grown by a tenth of a metre. In between no wheelbase is needed: it is the slope.
+#include "check/findings.hpp"
+#include "text/number_text.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace trussmap {
+namespace {
+
+constexpr double kStretch = 0.1;   // m of difference
+constexpr double kLongest = 10.0;  // s
+constexpr int kFewest = 12;        // stretches
+constexpr double kClear = 0.8;     // correlation
+constexpr double kUnclear = 0.6;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double wrapped(double angle, double turn) {
+  return std::remainder(angle, turn);
+}
+
+/// Readings in units of which `turn` are a whole turn.
+TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn) {
+  double dd = 0.0;
+  double dc = 0.0;
+  double cc = 0.0;
+  TurnAgreement result;
+  double difference = 0.0;
+  double change = 0.0;
+  double last = kAbsent;
+  double begun = drive.start();
+  double waiting = 0.0;  // difference since the last reading
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    waiting += wheels_of(drive, row, mistake).difference();
+    const double reading = drive.heading[row];
+    if (std::isnan(reading)) continue;
+    if (!std::isnan(last)) {
+      difference += waiting;
+      change += wrapped(reading - last, turn) * 2.0 * std::numbers::pi / turn;
+    }
+    last = reading;
+    waiting = 0.0;
+    const bool full = std::abs(difference) >= kStretch;
+    if (!full && drive.t[row] - begun < kLongest) continue;
+    if (full) {
+      dd += difference * difference;
+      dc += difference * change;
+      cc += change * change;
+      ++result.turns;
+    }
+    difference = change = 0.0;
+    begun = drive.t[row];
+  }
+  if (dd > 0.0 && cc > 0.0) {
+    result.slope = dc / dd;
+    result.correlation = dc / std::sqrt(dd * cc);
+  }
+  return result;
+}
+
+/// Seconds in which the compass turns and the wheels do not.
+int turns_without_wheels(const Drive& drive, double wheelbase) {
+  constexpr double kWindow = 1.0;  // s
+  constexpr double kTurns = 0.4;   // rad
+  constexpr double kShare = 0.15;  // of what the wheels would have to differ by
+  int count = 0;
+  double difference = 0.0;
+  double first = kAbsent;
+  double begun = 0.0;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    difference += wheels_of(drive, row, WheelMistake::none).difference();
+    const double reading = drive.heading[row];
+    if (std::isnan(reading)) continue;
+    if (!std::isnan(first) && drive.t[row] - begun < kWindow) continue;
+    const double turn = std::isnan(first) ? 0.0 : wrapped(reading - first, 2.0 * std::numbers::pi);
+    if (std::abs(turn) > kTurns && std::abs(difference) < kShare * wheelbase * std::abs(turn)) {
+      ++count;
+    }
+    first = reading;
+    begun = drive.t[row];
+    difference = 0.0;
+  }
+  return count;
+}
+
+const char* name_of(WheelMistake mistake) {
+  return mistake == WheelMistake::left_negated ? "left" : "right";
+}
+
+}  // namespace
+
+TurnAgreement check_compass(Checked& checked) {
+  const Drive& drive = checked.recording.drive;
+  if (!drive.has_compass() || checked.wrong.contains("left")) return {};
+  TurnAgreement best = turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi);
+  if (best.turns >= kFewest && std::abs(best.correlation) < kClear) {
+    const TurnAgreement degrees = turns_of(drive, WheelMistake::none, 360.0);
+    if (std::abs(degrees.correlation) > kClear) {
+      best = degrees;
+      checked.add(
+          "drive.csv", "heading", "angle unit",
+          joined(
+              "as degrees the readings turn with the wheels (correlation ",
+              fixed_text(std::abs(degrees.correlation), 2), "), as radians they do not (",
+              fixed_text(
+                  std::abs(turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi).correlation),
+                  2),
+              ")"),
+          "convert the readings to radians");
+    }
+  }
+  for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
+    if (std::abs(best.correlation) > kUnclear) break;
+    const TurnAgreement other = turns_of(drive, mistake, 2.0 * std::numbers::pi);
+    if (other.turns < kFewest || other.correlation < kClear) continue;
+    checked.add("drive.csv", name_of(mistake), "wheel negated",
+                joined("with the ", name_of(mistake),
+                       " wheel's sign changed the wheels turn with the compass (correlation ",
+                       fixed_text(other.correlation, 2), "), as recorded they do not (",
+                       fixed_text(best.correlation, 2), ")"),
+                joined("change the sign of ", name_of(mistake)));
+    return {};
+  }
+  if (best.turns < kFewest || std::abs(best.correlation) < kClear) {
+    constexpr int kFewestContradicting = 6;
+    best.contradicts = turns_without_wheels(drive, checked.wheelbase) >= kFewestContradicting;
+    best.sign = 0;
+    return best;
+  }
+  best.sign = best.correlation > 0.0 ? 1 : -1;
+  return best;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "check/findings.hpp"
+#include "statistics/median.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFastest = 10.0;     // m/s that a robot with two wheels drives
+constexpr double kSlowest = 0.004;    // m/s
+constexpr double kLongestRow = 2.0;   // s
+constexpr double kLongGap = 5.0;      // s
+constexpr double kGapRows = 20.0;     // of the usual length of a row
+constexpr double kSpike = 10.0;       // times the speed that 99 of 100 rows stay below
+constexpr double kSpikeTravel = 0.5;  // m
+constexpr double kStillTravel = 5.0;  // m that the other wheel has gone
+constexpr double kStillShare = 1e-6;  // of the other wheel's way
+
+double larger(const Drive& drive, std::size_t row) {
+  return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+}
+
+struct Rows {
+  double duration = 0.0;       ///< s, median
+  std::vector<double> speeds;  ///< m/s of the faster wheel, of rows that move, ascending
+  bool whole = true;           ///< all travels are whole numbers
+
+  [[nodiscard]] double speed(double share) const {
+    return speeds[static_cast<std::size_t>(share * static_cast<double>(speeds.size() - 1))];
+  }
+};
+
+Rows rows_of(const Drive& drive) {
+  Rows rows;
+  std::vector<double> durations;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    durations.push_back(drive.duration(row));
+    const double travel = larger(drive, row);
+    if (travel > 0.0) rows.speeds.push_back(travel / durations.back());
+    rows.whole = rows.whole && drive.left[row] == std::round(drive.left[row]) &&
+                 drive.right[row] == std::round(drive.right[row]);
+  }
+  rows.duration = median(std::move(durations));
+  std::sort(rows.speeds.begin(), rows.speeds.end());
+  return rows;
+}
+
+void check_units(Checked& checked, const Rows& rows) {
+  const double speed = rows.speed(0.5);
+  if (speed > kFastest) {
+    const char* unit = rows.whole ? "ticks" : speed > 100.0 ? "mm" : "cm";
+    checked.add("drive.csv", "left,right", "travel unit",
+                joined("the robot drives at ", figure(speed, "m/s"), " (median)",
+                       rows.whole ? ", and all travels are whole numbers" : "",
+                       ": travels look like ", unit),
+                rows.whole ? "multiply them by the metres per tick" : "convert them to metres");
+  } else if (speed < kSlowest && rows.duration > kLongestRow) {
+    checked.add("drive.csv", "t", "time unit",
+                joined("a row lasts ", figure(rows.duration, "s"), " and the robot drives at ",
+                       figure(speed, "m/s"), " (medians): times look like ",
+                       rows.duration > 2e3 ? "microseconds" : "milliseconds"),
+                "convert all times to seconds, of sightings and truth too");
+  }
+}
+
+void check_spikes(Checked& checked, const Rows& rows) {
+  if (checked.wrong.contains("left") || rows.speeds.size() < 20) return;
+  const Drive& drive = checked.recording.drive;
+  const double usual = rows.speed(0.99);
+  std::vector<std::size_t> spikes;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double travel = larger(drive, row);
+    if (travel > kSpikeTravel && travel / drive.duration(row) > kSpike * usual) {
+      spikes.push_back(row);
+    }
+  }
+  if (spikes.empty()) return;
+  const std::size_t first = spikes.front();
+  checked.add("drive.csv", "left,right", "spike",
+              joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
+                     figure(larger(drive, first), "m"), ", where 99 of 100 stay below ",
+                     figure(usual * drive.duration(first), "m"),
+                     spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
+              "correct or remove the row: an encoder's jump, or an overflow of its counter");
+}
+
+void check_gaps(Checked& checked, const Rows& rows) {
+  if (checked.wrong.contains("t")) return;
+  const Drive& drive = checked.recording.drive;
+  const double longest = std::max(kLongGap, kGapRows * rows.duration);
+  std::vector<std::size_t> gaps;
+  for (std::size_t row = 1; row < drive.rows(); ++row) {
+    const double duration = drive.duration(row);
+    if (duration <= longest) continue;
+    // Travels that a long row has summed up are no gap.
+    const double usual = rows.speeds.empty() ? 0.0 : rows.speed(0.5);
+    if (larger(drive, row) > 0.3 * usual * duration) continue;
+    gaps.push_back(row);
+  }
+  if (gaps.empty()) return;
+  const std::size_t first = gaps.front();
+  checked.add("drive.csv", "t", "gap",
+              joined("no row for ", figure(drive.duration(first), "s"),
+                     " before t = ", figure(drive.t[first], "s"), ", where a row lasts ",
+                     figure(rows.duration, "s"),
+                     gaps.size() > 1 ? joined("; ", gaps.size(), " gaps like it") : ""),
+              "find out whether the clock jumped or rows were lost; split the recording there if "
+              "the robot may have moved");
+}
+
+/// All the time, or for so long that no turn about that wheel is meant.
+void check_still_wheel(Checked& checked) {
+  const Drive& drive = checked.recording.drive;
+  const auto ask = [&](const char* name, const std::vector<double>& wheel,
+                       const std::vector<double>& other) {
+    double own = 0.0;
+    double others = 0.0;
+    double still = 0.0;
+    double most = 0.0;
+    double until = 0.0;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      own += std::abs(wheel[row]);
+      others += std::abs(other[row]);
+      still = wheel[row] == 0.0 ? still + std::abs(other[row]) : 0.0;
+      if (still > most) {
+        most = still;
+        until = drive.t[row];
+      }
+    }
+    if (others > 1.0 && own < kStillShare * others) {
+      checked.add("drive.csv", name, "still wheel",
+                  joined("the ", name, " wheel never moves, where the other one goes ",
+                         figure(others, "m")),
+                  "look at the encoder's cable and at the column's source");
+    } else if (most > std::max(kStillTravel, 12.0 * checked.wheelbase)) {
+      checked.add("drive.csv", name, "still wheel",
+                  joined("the ", name, " wheel stands still until t = ", figure(until, "s"),
+                         " while the other one goes ", figure(most, "m")),
+                  "look at the encoder: it seems to have lost its counts there");
+    }
+  };
+  ask("left", drive.left, drive.right);
+  ask("right", drive.right, drive.left);
+}
+
+}  // namespace
+
+void check_drive_values(Checked& checked) {
+  const Rows rows = rows_of(checked.recording.drive);
+  if (rows.speeds.empty()) {
+    checked.add("drive.csv", "left,right", "no motion", "no row has any travel",
+                "record a drive, or look at the columns' source");
+    return;
+  }
+  check_units(checked, rows);
+  check_spikes(checked, rows);
+  check_gaps(checked, rows);
+  check_still_wheel(checked);
+}
+
+}  // namespace trussmap

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What each part of a check looks at, and what it adds to the list.
+#pragma once
+
+#include "check/track.hpp"
+#include "trussmap/check.hpp"
+
+#include <complex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+using CheckFindings = std::vector<CheckFinding>;
+
+/// A recording with its own finding list; parts that come later do not trust what earlier ones
+/// found wrong.
+struct Checked {
+  const Recording& recording;
+  CheckFindings& findings;
+  std::set<std::string> wrong = {};  ///< columns that something was found of
+  double wheelbase = 0.0;            ///< m, the model's or what stands for it
+  bool wheelbase_known = false;      ///< the model's, or found from the compass
+  double angle_unit = 1.0;           ///< rad per unit of bearings
+
+  void add(const char* file, const std::string& column, const char* kind,
+           const std::string& evidence, const std::string& remedy);
+};
+
+/// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
+void check_drive_values(Checked& checked);
+
+/// Blanks in names of landmarks.
+void check_names(Checked& checked);
+/// One name at two places. Places are the truth's where that is trusted, else the track's.
+void check_two_places(Checked& checked, const Track& track, bool by_truth);
+
+/// Ranges' and bearings' units by themselves, before anything is asked of them.
+void check_bearing_unit(Checked& checked);
+
+/// How one quantity's turns go with another's.
+struct TurnAgreement {
+  int sign = 0;        ///< 1 alike, -1 opposite, 0: cannot be told, or neither
+  double slope = 0.0;  ///< turn per difference of the wheels, rad/m
+  double correlation = 0.0;
+  int turns = 0;             ///< samples
+  bool contradicts = false;  ///< neither alike nor opposite
+};
+
+/// Of the compass with the wheels, reported where it is in degrees or fits another mistake better.
+[[nodiscard]] TurnAgreement check_compass(Checked& checked);
+
+/// Of views with the wheels: of the landmark's shift as seen with the robot's motion. Reported
+/// where another unit or mistake of the wheels fits better.
+[[nodiscard]] TurnAgreement check_views(Checked& checked, const Track& track);
+
+/// A landmark's place as seen from a pose of a track.
+[[nodiscard]] Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit);
+
+/// Of the survey with the way from landmark to landmark (wheels), or with views of both (bearings).
+struct SurveyAgreement {
+  int by_way = 0;  ///< sign, as TurnAgreement
+  int by_views = 0;
+  double way_ratio = 0.0;  ///< survey's lengths by those of the way; 0: none
+  double views_ratio = 0.0;
+  bool contradicts = false;  ///< neither alike nor mirrored, by the way
+};
+[[nodiscard]] SurveyAgreement survey_agreement(const Checked& checked, const Track& track);
+/// What of it is wrong by itself: names, spread, units; `compass`: whether its turns agree.
+void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
+                  bool compass);
+
+struct TruthAgreement {
+  int by_heading = 0;  ///< sign of the truth's turns against the wheels'
+  int by_course = 0;   ///< of its positions'
+  bool in_degrees = false;
+  bool contradicts = false;  ///< neither alike nor opposite
+};
+[[nodiscard]] TruthAgreement truth_agreement(const Checked& checked, const Track& track);
+void check_truth(Checked& checked, const Track& track, const TruthAgreement& agreement);
+
+/// A mean direction and how far directions are alike.
+class MeanAngle {
+ public:
+  void add(double angle) {
+    sum_ += std::polar(1.0, angle);
+    ++count_;
+  }
+  [[nodiscard]] double angle() const { return std::arg(sum_); }
+  [[nodiscard]] int count() const { return count_; }
+  /// Enough of them, and alike.
+  [[nodiscard]] bool is_clear() const {
+    constexpr int kFewest = 10;
+    constexpr double kAlike = 0.9;
+    return count_ >= kFewest && std::abs(sum_) > kAlike * count_;
+  }
+
+ private:
+  std::complex<double> sum_;
+  int count_ = 0;
+};
+
+/// Offset (rad) of a compass that counts from elsewhere than the map's x axis, north perhaps.
+inline constexpr double kCompassTurned = 0.35;
+
+/// "12.3 m/s", without figures that mean nothing.
+[[nodiscard]] std::string figure(double value, const char* unit = "");
+
+/// The unit that a ratio to metres looks like: "mm", "cm", "inch", "feet", or nothing.
+[[nodiscard]] std::string unit_of_ratio(double ratio);
+
+}  // namespace trussmap

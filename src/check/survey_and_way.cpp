@@ -1,0 +1,254 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// From landmark to landmark by the survey, against the way between two stops (in the wheels' own
+// axes) and against views of both at one time (in the robot's). Lengths tell a unit; what matters
+// of the directions is how they change from one to the next, alike or mirrored.
+#include "check/findings.hpp"
+#include "statistics/median.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <Eigen/Eigenvalues>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLeastLength = 0.3;     // m
+constexpr double kLeastMeasured = 0.01;  // m, for a ratio
+constexpr double kFarOff = 2.5;          // factor that is no wheel's, nor a range's
+constexpr double kFarthest = 40.0;       // m between two stops
+constexpr std::size_t kFewest = 6;
+constexpr std::size_t kMost = 2000;
+constexpr double kAlike = 0.4;  // rad, median
+
+struct Leg {
+  Vector2 measured = Vector2::Zero();  ///< m, track's axes
+  Vector2 surveyed = Vector2::Zero();
+  double t = 0.0;
+};
+
+using Places = std::map<std::string_view, Vector2>;
+
+std::vector<Leg> legs_by_way(const Recording& recording, const Places& places, const Track& track) {
+  std::vector<Leg> legs;
+  const Sighting* before = nullptr;
+  for (const Sighting& one : recording.sightings) {
+    if (!one.standing() || !places.contains(one.landmark)) continue;
+    if (before != nullptr && before->landmark != one.landmark &&
+        track.way_at(one.t) - track.way_at(before->t) < kFarthest) {
+      legs.push_back({track.at(one.t).position() - track.at(before->t).position(),
+                      places.at(one.landmark) - places.at(before->landmark), one.t});
+    }
+    before = &one;
+  }
+  return legs;
+}
+
+std::vector<Leg> legs_by_views(const Recording& recording, const Places& places, const Track& track,
+                               double bearing_unit) {
+  std::vector<Leg> legs;
+  const Sighting* before = nullptr;
+  for (const Sighting& one : recording.sightings) {
+    if (one.standing() || std::isnan(one.bearing) || !places.contains(one.landmark)) continue;
+    if (before != nullptr && before->t == one.t && before->landmark != one.landmark &&
+        legs.size() < kMost) {
+      const Pose pose = track.at(one.t);
+      legs.push_back({place_seen(one, pose, bearing_unit) - place_seen(*before, pose, bearing_unit),
+                      places.at(one.landmark) - places.at(before->landmark), one.t});
+    }
+    before = &one;
+  }
+  return legs;
+}
+
+double ratio_of(const std::vector<Leg>& legs) {
+  std::vector<double> ratios;
+  for (const Leg& leg : legs) {
+    const double measured = leg.measured.norm();
+    if (measured > kLeastMeasured) ratios.push_back(leg.surveyed.norm() / measured);
+  }
+  return ratios.size() < kFewest ? 0.0 : median(std::move(ratios));
+}
+
+struct Sign {
+  int value = 0;
+  bool contradicts = false;
+};
+
+/// 1, -1, or 0 where neither holds, which contradicts, or too few tell.
+Sign sign_of(const std::vector<Leg>& legs, double ratio) {
+  std::vector<double> alike;
+  std::vector<double> mirrored;
+  for (std::size_t k = 1; k < legs.size(); ++k) {
+    const Leg& a = legs[k - 1];
+    const Leg& b = legs[k];
+    const double least = kLeastLength * std::max(ratio, 1e-9);
+    if (a.surveyed.norm() < least || b.surveyed.norm() < least) continue;
+    if (a.measured.norm() < kLeastLength || b.measured.norm() < kLeastLength) continue;
+    const double measured = direction(b.measured) - direction(a.measured);
+    const double surveyed = direction(b.surveyed) - direction(a.surveyed);
+    if (std::abs(std::sin(surveyed)) < 0.3) continue;  // straight on: mirrored alike
+    alike.push_back(std::abs(wrap_angle(measured - surveyed)));
+    mirrored.push_back(std::abs(wrap_angle(measured + surveyed)));
+  }
+  if (alike.size() < kFewest) return {};
+  const double as_is = median(std::move(alike));
+  const double as_mirrored = median(std::move(mirrored));
+  if (as_is < kAlike && as_is < 0.5 * as_mirrored) return {1, false};
+  if (as_mirrored < kAlike && as_mirrored < 0.5 * as_is) return {-1, false};
+  return {0, std::min(as_is, as_mirrored) > kAlike};
+}
+
+Places places_of(const Recording& recording, const std::set<std::string_view>& sighted) {
+  Places places;
+  for (const SurveyPoint& one : recording.survey) {
+    if (sighted.contains(one.landmark)) places[one.landmark] = {one.x, one.y};
+  }
+  return places;
+}
+
+std::set<std::string_view> sighted_in(const Recording& recording) {
+  std::set<std::string_view> names;
+  for (const Sighting& one : recording.sightings) names.insert(one.landmark);
+  return names;
+}
+
+/// The compass's reading less the track's heading where a leg ends.
+void check_compass_frame(Checked& checked, const Track& track, const std::vector<Leg>& legs) {
+  const Drive& drive = checked.recording.drive;
+  MeanAngle offset;
+  for (const Leg& leg : legs) {
+    const auto row = static_cast<std::size_t>(
+        std::lower_bound(drive.t.begin(), drive.t.end(), leg.t) - drive.t.begin());
+    if (row == drive.rows() || std::isnan(drive.heading[row])) continue;
+    if (leg.measured.norm() < kLeastLength || leg.surveyed.norm() < kLeastLength) continue;
+    const double turned = drive.heading[row] - track.at(drive.t[row]).heading;
+    offset.add(direction(leg.measured) + turned - direction(leg.surveyed));
+  }
+  if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
+  checked.add("drive.csv", "heading", "compass turned",
+              joined("the compass reads ", figure(offset.angle() * 180.0 / std::numbers::pi),
+                     " degrees more than directions in the survey have"),
+              "let readings count from the survey's x axis, not from north");
+}
+
+/// Points on a line, or on one another, give a map no frame.
+void check_spread(Checked& checked, const std::set<std::string_view>& sighted) {
+  std::vector<Vector2> points;
+  for (const SurveyPoint& one : checked.recording.survey) {
+    if (sighted.contains(one.landmark)) points.emplace_back(one.x, one.y);
+  }
+  if (points.size() < 3) return;
+  constexpr double kThin = 1e-3;
+  Vector2 mean = Vector2::Zero();
+  for (const Vector2& point : points) mean += point / static_cast<double>(points.size());
+  Matrix2 spread = Matrix2::Zero();
+  for (const Vector2& point : points) spread += (point - mean) * (point - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(spread / static_cast<double>(points.size()));
+  const double wide = std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
+  const double thin = std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
+  if (wide <= 1e-9 * (1.0 + mean.norm())) {
+    checked.add("survey.csv", "x,y", "survey at one point",
+                joined("all ", points.size(), " landmarks lie at (", figure(mean.x()), ", ",
+                       figure(mean.y()), ")"),
+                "survey them one by one, or leave the file out");
+  } else if (thin < kThin * wide) {
+    checked.add("survey.csv", "x,y", "survey on a line",
+                joined("all ", points.size(), " landmarks lie within ", figure(thin, "m"),
+                       " of a line of ", figure(wide, "m"), " (root mean squares)"),
+                "survey a landmark away from the line: as they are, a mirrored map fits as well");
+  }
+}
+
+}  // namespace
+
+namespace {
+
+bool looks_like_a_unit(double ratio) {
+  return !(unit_of_ratio(ratio).empty() && unit_of_ratio(1.0 / ratio).empty());
+}
+
+}  // namespace
+
+SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
+  const Recording& recording = checked.recording;
+  SurveyAgreement result;
+  if (recording.survey.empty() || recording.sightings.empty()) return result;
+  const Places places = places_of(recording, sighted_in(recording));
+  const std::vector<Leg> way = legs_by_way(recording, places, track);
+  result.way_ratio = ratio_of(way);
+  if (result.way_ratio > 0.0) {
+    const Sign sign = sign_of(way, result.way_ratio);
+    result.by_way = sign.value;
+    const bool far = std::abs(std::log(result.way_ratio)) > std::log(kFarOff);
+    result.contradicts =
+        sign.contradicts || (sign.value == 0 && far && !looks_like_a_unit(result.way_ratio));
+  }
+  const std::vector<Leg> views = legs_by_views(recording, places, track, checked.angle_unit);
+  result.views_ratio = ratio_of(views);
+  if (result.views_ratio > 0.0) result.by_views = sign_of(views, result.views_ratio).value;
+  return result;
+}
+
+namespace {
+
+void check_units(Checked& checked, const SurveyAgreement& agreement) {
+  const double by_way = agreement.way_ratio;
+  const double by_views = checked.wrong.contains("range") ? 0.0 : agreement.views_ratio;
+  const auto off = [](double ratio) {
+    return ratio > 0.0 && !(unit_of_ratio(ratio).empty() && unit_of_ratio(1.0 / ratio).empty());
+  };
+  if (!off(by_way) && !off(by_views)) return;
+  // Where only one of the two is off, it is that one which is wrong.
+  const bool survey = (off(by_way) || by_way == 0.0) && (off(by_views) || by_views == 0.0);
+  const double ratio = off(by_way) ? by_way : by_views;
+  const std::string unit = unit_of_ratio(survey ? ratio : 1.0 / ratio);
+  const std::string evidence =
+      joined("from landmark to landmark the survey is ", figure(ratio), " times as long as ",
+             off(by_way) ? "the way driven" : "what is seen", " (median)",
+             unit.empty() ? "" : ": as if in " + unit);
+  if (survey) {
+    checked.add("survey.csv", "x,y", "survey unit", evidence, "convert the survey to metres");
+  } else if (off(by_way)) {
+    checked.add("drive.csv", "left,right", "travel unit", evidence, "convert travels to metres");
+  } else {
+    checked.add("sightings.csv", "range", "range unit", evidence, "convert ranges to metres");
+  }
+}
+
+}  // namespace
+
+void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
+                  bool compass) {
+  const Recording& recording = checked.recording;
+  if (recording.survey.empty() || recording.sightings.empty()) return;
+  const std::set<std::string_view> sighted = sighted_in(recording);
+  const Places places = places_of(recording, sighted);
+  if (places.size() < 2 && sighted.size() > 1 && recording.survey.size() > 1) {
+    checked.add("survey.csv", "landmark", "other landmarks",
+                joined("of ", recording.survey.size(), " landmarks surveyed and ", sighted.size(),
+                       " sighted ", places.size(), places.size() == 1 ? " is" : " are",
+                       " the same, by name: ", recording.survey.front().landmark, ", ... against ",
+                       *sighted.begin(), ", ..."),
+                "give both files the same names");
+    return;
+  }
+  check_spread(checked, sighted);
+  if (checked.wrong.contains("x") || checked.wrong.contains("t")) return;
+  check_units(checked, agreement);
+  if (!compass || checked.wrong.contains("x") || checked.wrong.contains("left")) return;
+  if (agreement.by_way > 0) {
+    check_compass_frame(checked, track, legs_by_way(recording, places, track));
+  } else if (agreement.by_views > 0) {
+    check_compass_frame(checked, track,
+                        legs_by_views(recording, places, track, checked.angle_unit));
+  }
+}
+
+}  // namespace trussmap

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "check/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+
+Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake) {
+  const double left = drive.left[row];
+  const double right = drive.right[row];
+  switch (mistake) {
+    case WheelMistake::none:
+      return {left, right};
+    case WheelMistake::exchanged:
+      return {right, left};
+    case WheelMistake::negated:
+      return {-left, -right};
+    case WheelMistake::left_negated:
+      return {-left, right};
+    case WheelMistake::right_negated:
+      return {left, -right};
+  }
+  return {left, right};
+}
+
+Track::Track(const Drive& drive, double wheelbase, WheelMistake mistake, Heading heading) {
+  constexpr double kHeed = 0.05;  // of what the compass says, per reading
+  t_.reserve(drive.rows() + 1);
+  poses_.reserve(drive.rows() + 1);
+  way_.reserve(drive.rows() + 1);
+  t_.push_back(drive.start());
+  poses_.push_back({});
+  way_.push_back(0.0);
+  Pose at;
+  bool seen = false;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const Wheels wheels = wheels_of(drive, row, mistake);
+    const double turn = wheels.difference() / wheelbase;
+    const double half = at.heading + 0.5 * turn;
+    at.x += wheels.path() * std::cos(half);
+    at.y += wheels.path() * std::sin(half);
+    at.heading += turn;
+    if (heading == Heading::of_compass && !std::isnan(drive.heading[row])) {
+      const double off = wrap_angle(drive.heading[row] - at.heading);
+      at.heading += seen ? kHeed * off : off;
+      seen = true;
+    }
+    t_.push_back(drive.t[row]);
+    poses_.push_back(at);
+    way_.push_back(way_.back() + std::abs(wheels.path()));
+  }
+}
+
+std::pair<std::size_t, double> Track::place_of(double t) const {
+  const auto after = std::lower_bound(t_.begin() + 1, t_.end() - 1, t);
+  const auto k = static_cast<std::size_t>(after - t_.begin());
+  const double share = (t - t_[k - 1]) / (t_[k] - t_[k - 1]);
+  return {k, std::clamp(share, 0.0, 1.0)};
+}
+
+Pose Track::at(double t) const {
+  const auto [k, share] = place_of(t);
+  const Pose& a = poses_[k - 1];
+  const Pose& b = poses_[k];
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
+          a.heading + share * (b.heading - a.heading)};
+}
+
+double Track::way_at(double t) const {
+  const auto [k, share] = place_of(t);
+  return way_[k - 1] + share * (way_[k] - way_[k - 1]);
+}
+
+}  // namespace trussmap

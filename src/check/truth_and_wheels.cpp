@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Truth against the wheels, stretch by stretch: lengths tell a unit, turns of heading and of course
+// tell signs and axes, and heading against course on straight stretches a tracker that is turned.
+#include "check/findings.hpp"
+#include "statistics/median.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace trussmap {
+namespace {
+
+constexpr double kStretch = 0.5;      // m, or
+constexpr double kStretchTurn = 0.5;  // rad, or
+constexpr double kLongest = 10.0;     // s
+constexpr std::size_t kFewest = 12;
+constexpr double kClear = 0.7;      // correlation
+constexpr double kStraight = 0.15;  // rad
+constexpr double kTurned = 0.14;    // rad
+constexpr double kTogether = 0.9;   // length of the mean direction
+
+struct Stretch {
+  Pose wheels;           ///< way, in the track's axes
+  Vector2 truth;         ///< way
+  double turn = 0;       ///< of the truth, in its unit, not wrapped
+  double heading = 0.0;  ///< of the truth, halfway
+  double forward = 0.0;  ///< m driven, signed
+};
+
+std::vector<Stretch> stretches_of(const Recording& recording, const Track& track) {
+  std::vector<Stretch> result;
+  const Drive& drive = recording.drive;
+  const TruthRow* before = nullptr;
+  for (const TruthRow& row : recording.truth) {
+    if (row.t < drive.start() || row.t > drive.t.back()) continue;
+    if (before == nullptr || row.t - before->t > kLongest) {
+      before = &row;
+      continue;
+    }
+    const double way = track.way_at(row.t) - track.way_at(before->t);
+    const Pose a = track.at(before->t);
+    const Pose b = track.at(row.t);
+    if (way < kStretch && std::abs(b.heading - a.heading) < kStretchTurn) continue;
+    Stretch one;
+    one.wheels = {b.x - a.x, b.y - a.y, b.heading - a.heading};
+    one.truth = {row.x - before->x, row.y - before->y};
+    one.turn = row.heading - before->heading;
+    one.heading = before->heading + 0.5 * wrap_angle(one.turn);
+    const double along = 0.5 * (a.heading + b.heading);
+    one.forward = one.wheels.x * std::cos(along) + one.wheels.y * std::sin(along);
+    result.push_back(one);
+    before = &row;
+  }
+  return result;
+}
+
+double correlation(const std::vector<Stretch>& stretches, double turn) {
+  double ww = 0.0;
+  double wt = 0.0;
+  double tt = 0.0;
+  for (const Stretch& one : stretches) {
+    const double truth = std::remainder(one.turn, turn) * 2.0 * std::numbers::pi / turn;
+    ww += one.wheels.heading * one.wheels.heading;
+    wt += one.wheels.heading * truth;
+    tt += truth * truth;
+  }
+  return ww > 0.0 && tt > 0.0 ? wt / std::sqrt(ww * tt) : 0.0;
+}
+
+int sign_of_course(const std::vector<Stretch>& stretches) {
+  double alike = 0.0;
+  double mirrored = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 1; k < stretches.size(); ++k) {
+    const Stretch& a = stretches[k - 1];
+    const Stretch& b = stretches[k];
+    if (a.truth.norm() < 0.2 || b.truth.norm() < 0.2) continue;
+    const double wheels = direction(b.wheels.position()) - direction(a.wheels.position());
+    const double truth = direction(b.truth) - direction(a.truth);
+    if (std::abs(std::sin(wheels)) < 0.2) continue;
+    ++count;
+    alike += std::cos(wheels - truth);
+    mirrored += std::cos(wheels + truth);
+  }
+  if (count < kFewest) return 0;
+  const auto n = static_cast<double>(count);
+  if (alike > kClear * n && alike > mirrored) return 1;
+  if (mirrored > kClear * n && mirrored > alike) return -1;
+  return 0;
+}
+
+void check_unit(Checked& checked, const std::vector<Stretch>& stretches) {
+  std::vector<double> ratios;
+  for (const Stretch& one : stretches) {
+    const double way = one.wheels.position().norm();
+    if (way > 0.3) ratios.push_back(one.truth.norm() / way);
+  }
+  if (ratios.size() < kFewest) return;
+  const double ratio = median(std::move(ratios));
+  if (!(ratio > 0.0)) return;
+  const std::string unit = unit_of_ratio(ratio);
+  if (unit.empty() && unit_of_ratio(1.0 / ratio).empty()) return;
+  checked.add("truth.csv", "x,y", "truth unit",
+              joined("the truth goes ", figure(ratio), " times as far as the wheels (median)",
+                     unit.empty() ? "" : ": as if in " + unit),
+              "convert the truth to metres, or the wheels' travels");
+}
+
+void check_turned(Checked& checked, const std::vector<Stretch>& stretches) {
+  MeanAngle offset;
+  for (const Stretch& one : stretches) {
+    if (std::abs(one.wheels.heading) > kStraight || one.truth.norm() < 0.3) continue;
+    const Vector2 course = one.forward < 0.0 ? Vector2(-one.truth) : one.truth;
+    offset.add(one.heading - direction(course));
+  }
+  if (!offset.is_clear() || std::abs(offset.angle()) < kTurned) return;
+  checked.add("truth.csv", "heading", "truth turned",
+              joined("on straight stretches the heading lies ",
+                     figure(offset.angle() * 180.0 / std::numbers::pi, "degrees"),
+                     " off the course (", offset.count(), " stretches)"),
+              "turn the tracker's body frame to the robot's forward axis, or fit the effect "
+              "\"truth heading\"");
+}
+
+void check_compass_frame(Checked& checked) {
+  const Recording& recording = checked.recording;
+  if (!recording.drive.has_compass() || checked.wrong.contains("heading")) return;
+  MeanAngle offset;
+  std::size_t row = 0;
+  const Drive& drive = recording.drive;
+  for (const TruthRow& truth : recording.truth) {
+    while (row < drive.rows() && drive.t[row] < truth.t) ++row;
+    if (row == drive.rows()) break;
+    if (std::isnan(drive.heading[row]) || drive.t[row] - truth.t > 0.5) continue;
+    offset.add(drive.heading[row] - truth.heading);
+  }
+  if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
+  checked.add("drive.csv", "heading", "compass turned",
+              joined("the compass reads ", figure(offset.angle() * 180.0 / std::numbers::pi),
+                     " degrees more than the truth's heading"),
+              "readings count from the map's x axis, not from north");
+}
+
+}  // namespace
+
+TruthAgreement truth_agreement(const Checked& checked, const Track& track) {
+  TruthAgreement result;
+  const std::vector<Stretch> stretches = stretches_of(checked.recording, track);
+  if (stretches.size() < kFewest) return result;
+  const double radians = correlation(stretches, 2.0 * std::numbers::pi);
+  result.in_degrees =
+      std::abs(radians) < kClear && std::abs(correlation(stretches, 360.0)) > kClear;
+  if (result.in_degrees) return result;
+  if (std::abs(radians) > kClear) result.by_heading = radians > 0.0 ? 1 : -1;
+  result.by_course = sign_of_course(stretches);
+  double turned = 0.0;
+  for (const Stretch& one : stretches) turned += std::pow(wrap_angle(one.turn), 2);
+  constexpr double kTurns = 0.2;  // rad, rms
+  result.contradicts =
+      result.by_heading == 0 && turned > kTurns * kTurns * static_cast<double>(stretches.size());
+  return result;
+}
+
+void check_truth(Checked& checked, const Track& track, const TruthAgreement& agreement) {
+  const std::vector<Stretch> stretches = stretches_of(checked.recording, track);
+  if (stretches.size() < kFewest) return;
+  check_unit(checked, stretches);
+  if (agreement.in_degrees) {
+    checked.add(
+        "truth.csv", "heading", "angle unit",
+        joined("as degrees the headings turn with the wheels (correlation ",
+               fixed_text(std::abs(correlation(stretches, 360.0)), 2),
+               "), as radians they do not (",
+               fixed_text(std::abs(correlation(stretches, 2.0 * std::numbers::pi)), 2), ")"),
+        "convert the headings to radians");
+  }
+  if (agreement.by_heading <= 0 || agreement.by_course <= 0) return;
+  check_turned(checked, stretches);
+  if (!checked.wrong.contains("truth heading")) check_compass_frame(checked);
+}
+
+}  // namespace trussmap

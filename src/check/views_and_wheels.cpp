@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A landmark seen twice, and the wheels' way in between: from the first view and the way follows
+// where it has to be seen the second time.
+//
+//   first view p, way (d, a)   predicted R(-a) (p - d)    against the second view, by the size of
+//                                                         the shift: 0 agrees, 1 tells nothing
+//
+// Units and mistakes are tried where they disagree. A mirrored robot sees a mirrored world:
+// exchanged wheels and clockwise bearings cannot be told apart here.
+#include "check/findings.hpp"
+#include "statistics/median.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace trussmap {
+namespace {
+
+constexpr double kLongest = 30.0;   // s
+constexpr double kFarthest = 12.0;  // m
+constexpr double kLeastWay = 0.3;   // m, or
+constexpr double kLeastTurn = 0.5;  // rad
+constexpr std::size_t kMostPairs = 300;
+constexpr std::size_t kFewestPairs = 8;
+constexpr double kAgrees = 0.45;  // median error by the size of the shift
+constexpr double kFits = 0.3;
+constexpr double kBetter = 0.5;  // of the error as recorded
+
+struct Pair {
+  const Sighting* first = nullptr;
+  const Sighting* second = nullptr;
+};
+
+bool is_view(const Sighting& one) {
+  return !one.standing() && std::isfinite(one.bearing);
+}
+
+std::vector<Pair> pairs_of(const Recording& recording, const Track& track) {
+  std::map<std::string_view, const Sighting*> last;
+  std::vector<Pair> pairs;
+  for (const Sighting& one : recording.sightings) {
+    if (!is_view(one)) continue;
+    const Sighting*& before = last[one.landmark];
+    if (before != nullptr && one.t - before->t <= kLongest) {
+      const double way = track.way_at(one.t) - track.way_at(before->t);
+      const double turn = track.at(one.t).heading - track.at(before->t).heading;
+      if (way < kLeastWay && std::abs(turn) < kLeastTurn) continue;
+      if (way <= kFarthest) pairs.push_back({before, &one});
+    }
+    before = &one;
+  }
+  if (pairs.size() <= kMostPairs) return pairs;
+  std::vector<Pair> thinned;
+  for (std::size_t k = 0; k < kMostPairs; ++k) {
+    thinned.push_back(pairs[k * pairs.size() / kMostPairs]);
+  }
+  return thinned;
+}
+
+struct Reading {
+  double range_unit = 1.0;    ///< m
+  double bearing_unit = 1.0;  ///< rad; negative: clockwise
+};
+
+Vector2 seen(const Sighting& one, const Reading& unit) {
+  return unit.range_unit * one.range * rotation(unit.bearing_unit * one.bearing).col(0);
+}
+
+double disagreement(const std::vector<Pair>& pairs, const Track& track, const Reading& unit) {
+  std::vector<double> errors;
+  for (const Pair& pair : pairs) {
+    const Pose way = relative(track.at(pair.first->t), track.at(pair.second->t));
+    const Vector2 first = seen(*pair.first, unit);
+    const Vector2 second = seen(*pair.second, unit);
+    const Vector2 predicted = rotation(-way.heading) * (first - way.position());
+    const double turned =
+        2.0 * std::abs(std::sin(0.5 * way.heading)) * 0.5 * (first.norm() + second.norm());
+    const double shift = std::max({(predicted - first).norm(), way.position().norm(), turned});
+    errors.push_back((predicted - second).norm() / std::max(shift, 1e-6));
+  }
+  return median(std::move(errors));
+}
+
+}  // namespace
+
+Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit) {
+  if (sighting.standing()) return from.position();
+  return from.position() +
+         sighting.range * rotation(from.heading + bearing_unit * sighting.bearing).col(0);
+}
+
+void check_bearing_unit(Checked& checked) {
+  std::vector<double> sizes;
+  for (const Sighting& one : checked.recording.sightings) {
+    if (is_view(one)) sizes.push_back(std::abs(one.bearing));
+  }
+  if (sizes.empty()) return;
+  const auto beyond = std::count_if(
+      sizes.begin(), sizes.end(), [](double size) { return size > 2.0 * std::numbers::pi + 0.1; });
+  if (5 * beyond < std::ssize(sizes)) return;
+  checked.angle_unit = std::numbers::pi / 180.0;
+  checked.add(
+      "sightings.csv", "bearing", "angle unit",
+      joined(beyond, " of ", sizes.size(), " bearings are beyond a whole turn in radians (",
+             figure(*std::max_element(sizes.begin(), sizes.end())), "): they look like degrees"),
+      "convert them to radians");
+}
+
+TurnAgreement check_views(Checked& checked, const Track& track) {
+  TurnAgreement result;
+  if (checked.wrong.contains("left") || checked.wrong.contains("t")) return result;
+  const std::vector<Pair> pairs = pairs_of(checked.recording, track);
+  result.turns = static_cast<int>(pairs.size());
+  if (pairs.size() < kFewestPairs) return result;
+  const Reading stated{1.0, checked.angle_unit};
+  const double recorded = disagreement(pairs, track, stated);
+  if (recorded < kAgrees) {
+    result.sign = 1;
+    return result;
+  }
+  const Drive& drive = checked.recording.drive;
+  struct Best {
+    double error;
+    WheelMistake wheels = WheelMistake::none;
+    Reading unit;
+  } best{recorded, WheelMistake::none, stated};
+  for (const WheelMistake wheels :
+       {WheelMistake::none, WheelMistake::exchanged, WheelMistake::negated,
+        WheelMistake::left_negated, WheelMistake::right_negated}) {
+    const Track other(drive, checked.wheelbase, wheels);
+    for (const double range : {1.0, 0.01, 0.001, 0.3048, 0.0254}) {
+      const Reading unit{range, checked.angle_unit};
+      const double error = disagreement(pairs, other, unit);
+      if (error < best.error) best = {error, wheels, unit};
+    }
+  }
+  if (best.error > kFits || best.error > kBetter * recorded) {
+    result.contradicts = true;
+    return result;
+  }
+  const std::string evidence =
+      joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
+             fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",
+             fixed_text(100.0 * best.error, 0), " % ");
+  if (best.unit.range_unit != 1.0) {
+    const std::string unit = unit_of_ratio(1.0 / best.unit.range_unit);
+    checked.add("sightings.csv", "range", "range unit", evidence + "with ranges in " + unit,
+                "convert the ranges to metres");
+  }
+  switch (best.wheels) {
+    case WheelMistake::none:
+      result.sign = 1;
+      break;
+    case WheelMistake::exchanged:
+      result.sign = -1;
+      break;
+    case WheelMistake::negated:
+      checked.add("drive.csv", "left,right", "wheels negated",
+                  evidence + "with both wheels' signs changed",
+                  "change the sign of left and right");
+      break;
+    case WheelMistake::left_negated:
+    case WheelMistake::right_negated: {
+      const std::string name = best.wheels == WheelMistake::left_negated ? "left" : "right";
+      checked.add("drive.csv", name, "wheel negated",
+                  evidence + "with the " + name + " wheel's sign changed",
+                  "change the sign of " + name);
+      break;
+    }
+  }
+  return result;
+}
+
+}  // namespace trussmap
