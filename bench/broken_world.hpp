@@ -5,8 +5,8 @@
 // what their model says, and sightings with a wrong name. All drawn from a seed.
 #pragma once
 
-#include "trussmap/planar.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"
 

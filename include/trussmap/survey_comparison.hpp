@@ -13,8 +13,8 @@
 // rms. At most a third can: beyond that the map is simply bad, and all count.
 #pragma once
 
-#include "trussmap/planar.hpp"
 #include "trussmap/landmark_map.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
 #include <map>

@@ -4,8 +4,8 @@
 
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
-#include "trussmap/planar.hpp"
 #include "trussmap/gate.hpp"
+#include "trussmap/planar.hpp"
 
 #include <algorithm>
 #include <cmath>

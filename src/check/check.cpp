@@ -226,8 +226,8 @@ bool same_session(const Recording& a, const Recording& b) {
   };
   return a.drive.left == b.drive.left && a.drive.right == b.drive.right &&
          (a.drive.rows() >= kCannotBeChance ||
-          std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(),
-                     b.sightings.end(), same_sighting));
+          std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(), b.sightings.end(),
+                     same_sighting));
 }
 
 void check_twice(const std::vector<Recording>& recordings, CheckFindings& findings) {

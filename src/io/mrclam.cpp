@@ -130,8 +130,7 @@ void read_survey(const fs::path& prefix, Recording& recording) {
     const int subject = number_of(row[0]);
     if (subject < 0) continue;
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
-    recording.survey.push_back(
-        {std::to_string(subject), row[1], row[2], sd > 0.0 ? sd : kAbsent});
+    recording.survey.push_back({std::to_string(subject), row[1], row[2], sd > 0.0 ? sd : kAbsent});
   }
 }
 

@@ -6,9 +6,9 @@
 // grows with its traversals.
 #pragma once
 
-#include "trussmap/planar.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/landmark_map.hpp"
+#include "trussmap/planar.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <string>
