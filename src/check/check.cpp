@@ -47,6 +47,8 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "other landmarks",
                                          "survey at one point",
                                          "survey on a line",
+                                         "survey point off",
+                                         "labels exchanged",
                                          "no wheelbase",
                                          "impossible wheelbase",
                                          "nothing to test"};
@@ -329,6 +331,9 @@ TurnAgreement check_recording(Checked& checked) {
   const std::size_t before = checked.findings.size();
   check_turns(checked, turns, views, surveyed, truth);
   if (checked.findings.size() > before) return turns;
+  if (!checked.wrong.contains("x") && !checked.wrong.contains("range")) {
+    check_survey_points(checked, track);
+  }
   const bool by_truth = truth.by_heading > 0 && truth.by_course > 0 &&
                         !checked.wrong.contains("truth heading") &&
                         !checked.wrong.contains("truth x");

@@ -73,6 +73,9 @@ struct SurveyAgreement {
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
                   bool compass);
 
+/// Points that lie elsewhere, exchanged labels.
+void check_survey_points(Checked& checked, const Track& track);
+
 struct TruthAgreement {
   int by_heading = 0;  ///< sign of the truth's turns against the wheels'
   int by_course = 0;   ///< of its positions'

@@ -5,6 +5,7 @@
 // axes) and against views of both at one time (in the robot's). Lengths tell a unit; what matters
 // of the directions is how they change from one to the next, alike or mirrored.
 #include "check/findings.hpp"
+#include "check/survey_legs.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
@@ -22,54 +23,12 @@ namespace {
 constexpr double kLeastLength = 0.3;     // m
 constexpr double kLeastMeasured = 0.01;  // m, for a ratio
 constexpr double kFarOff = 2.5;          // factor that is no wheel's, nor a range's
-constexpr double kFarthest = 40.0;       // m between two stops
 constexpr std::size_t kFewest = 6;
-constexpr std::size_t kMost = 2000;
 constexpr double kAlike = 0.4;  // rad, median
 
-struct Leg {
-  Vector2 measured = Vector2::Zero();  ///< m, track's axes
-  Vector2 surveyed = Vector2::Zero();
-  double t = 0.0;
-};
-
-using Places = std::map<std::string_view, Vector2>;
-
-std::vector<Leg> legs_by_way(const Recording& recording, const Places& places, const Track& track) {
-  std::vector<Leg> legs;
-  const Sighting* before = nullptr;
-  for (const Sighting& one : recording.sightings) {
-    if (!one.standing() || !places.contains(one.landmark)) continue;
-    if (before != nullptr && before->landmark != one.landmark &&
-        track.way_at(one.t) - track.way_at(before->t) < kFarthest) {
-      legs.push_back({track.at(one.t).position() - track.at(before->t).position(),
-                      places.at(one.landmark) - places.at(before->landmark), one.t});
-    }
-    before = &one;
-  }
-  return legs;
-}
-
-std::vector<Leg> legs_by_views(const Recording& recording, const Places& places, const Track& track,
-                               double bearing_unit) {
-  std::vector<Leg> legs;
-  const Sighting* before = nullptr;
-  for (const Sighting& one : recording.sightings) {
-    if (one.standing() || std::isnan(one.bearing) || !places.contains(one.landmark)) continue;
-    if (before != nullptr && before->t == one.t && before->landmark != one.landmark &&
-        legs.size() < kMost) {
-      const Pose pose = track.at(one.t);
-      legs.push_back({place_seen(one, pose, bearing_unit) - place_seen(*before, pose, bearing_unit),
-                      places.at(one.landmark) - places.at(before->landmark), one.t});
-    }
-    before = &one;
-  }
-  return legs;
-}
-
-double ratio_of(const std::vector<Leg>& legs) {
+double ratio_of(const std::vector<SurveyLeg>& legs) {
   std::vector<double> ratios;
-  for (const Leg& leg : legs) {
+  for (const SurveyLeg& leg : legs) {
     const double measured = leg.measured.norm();
     if (measured > kLeastMeasured) ratios.push_back(leg.surveyed.norm() / measured);
   }
@@ -82,12 +41,12 @@ struct Sign {
 };
 
 /// 1, -1, or 0 where neither holds, which contradicts, or too few tell.
-Sign sign_of(const std::vector<Leg>& legs, double ratio) {
+Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
   std::vector<double> alike;
   std::vector<double> mirrored;
   for (std::size_t k = 1; k < legs.size(); ++k) {
-    const Leg& a = legs[k - 1];
-    const Leg& b = legs[k];
+    const SurveyLeg& a = legs[k - 1];
+    const SurveyLeg& b = legs[k];
     const double least = kLeastLength * std::max(ratio, 1e-9);
     if (a.surveyed.norm() < least || b.surveyed.norm() < least) continue;
     if (a.measured.norm() < kLeastLength || b.measured.norm() < kLeastLength) continue;
@@ -105,25 +64,11 @@ Sign sign_of(const std::vector<Leg>& legs, double ratio) {
   return {0, std::min(as_is, as_mirrored) > kAlike};
 }
 
-Places places_of(const Recording& recording, const std::set<std::string_view>& sighted) {
-  Places places;
-  for (const SurveyPoint& one : recording.survey) {
-    if (sighted.contains(one.landmark)) places[one.landmark] = {one.x, one.y};
-  }
-  return places;
-}
-
-std::set<std::string_view> sighted_in(const Recording& recording) {
-  std::set<std::string_view> names;
-  for (const Sighting& one : recording.sightings) names.insert(one.landmark);
-  return names;
-}
-
 /// The compass's reading less the track's heading where a leg ends.
-void check_compass_frame(Checked& checked, const Track& track, const std::vector<Leg>& legs) {
+void check_compass_frame(Checked& checked, const Track& track, const std::vector<SurveyLeg>& legs) {
   const Drive& drive = checked.recording.drive;
   MeanAngle offset;
-  for (const Leg& leg : legs) {
+  for (const SurveyLeg& leg : legs) {
     const auto row = static_cast<std::size_t>(
         std::lower_bound(drive.t.begin(), drive.t.end(), leg.t) - drive.t.begin());
     if (row == drive.rows() || std::isnan(drive.heading[row])) continue;
@@ -180,8 +125,8 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
   const Recording& recording = checked.recording;
   SurveyAgreement result;
   if (recording.survey.empty() || recording.sightings.empty()) return result;
-  const Places places = places_of(recording, sighted_in(recording));
-  const std::vector<Leg> way = legs_by_way(recording, places, track);
+  const SurveyPlaces places = surveyed_places(recording);
+  const std::vector<SurveyLeg> way = legs_by_way(recording, places, track);
   result.way_ratio = ratio_of(way);
   if (result.way_ratio > 0.0) {
     const Sign sign = sign_of(way, result.way_ratio);
@@ -190,7 +135,7 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
     result.contradicts =
         sign.contradicts || (sign.value == 0 && far && !looks_like_a_unit(result.way_ratio));
   }
-  const std::vector<Leg> views = legs_by_views(recording, places, track, checked.angle_unit);
+  const std::vector<SurveyLeg> views = legs_by_views(recording, places, track, checked.angle_unit);
   result.views_ratio = ratio_of(views);
   if (result.views_ratio > 0.0) result.by_views = sign_of(views, result.views_ratio).value;
   return result;
@@ -228,8 +173,8 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
                   bool compass) {
   const Recording& recording = checked.recording;
   if (recording.survey.empty() || recording.sightings.empty()) return;
-  const std::set<std::string_view> sighted = sighted_in(recording);
-  const Places places = places_of(recording, sighted);
+  const std::set<std::string_view> sighted = sighted_landmarks(recording);
+  const SurveyPlaces places = surveyed_places(recording);
   if (places.size() < 2 && sighted.size() > 1 && recording.survey.size() > 1) {
     checked.add("survey.csv", "landmark", "other landmarks",
                 joined("of ", recording.survey.size(), " landmarks surveyed and ", sighted.size(),

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "check/survey_legs.hpp"
+
+#include "check/findings.hpp"
+
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFarthest = 40.0;  // m between two stops
+constexpr std::size_t kMost = 400;
+
+/// Evenly, down to a number that costs next to nothing.
+std::vector<SurveyLeg> thinned(std::vector<SurveyLeg> legs) {
+  if (legs.size() <= kMost) return legs;
+  std::vector<SurveyLeg> result;
+  result.reserve(kMost);
+  for (std::size_t k = 0; k < kMost; ++k) result.push_back(legs[k * legs.size() / kMost]);
+  return result;
+}
+
+}  // namespace
+
+std::set<std::string_view> sighted_landmarks(const Recording& recording) {
+  std::set<std::string_view> names;
+  for (const Sighting& one : recording.sightings) names.insert(one.landmark);
+  return names;
+}
+
+SurveyPlaces surveyed_places(const Recording& recording) {
+  const std::set<std::string_view> sighted = sighted_landmarks(recording);
+  SurveyPlaces places;
+  for (const SurveyPoint& one : recording.survey) {
+    if (sighted.contains(one.landmark)) places[one.landmark] = {one.x, one.y};
+  }
+  return places;
+}
+
+std::vector<SurveyLeg> legs_by_way(const Recording& recording, const SurveyPlaces& places,
+                                   const Track& track) {
+  std::vector<SurveyLeg> legs;
+  const Sighting* before = nullptr;
+  for (const Sighting& one : recording.sightings) {
+    if (!one.standing() || !places.contains(one.landmark)) continue;
+    if (before != nullptr && before->landmark != one.landmark &&
+        track.way_at(one.t) - track.way_at(before->t) < kFarthest) {
+      legs.push_back({before->landmark, one.landmark,
+                      track.at(one.t).position() - track.at(before->t).position(),
+                      places.at(one.landmark) - places.at(before->landmark), one.t});
+    }
+    before = &one;
+  }
+  return thinned(std::move(legs));
+}
+
+std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPlaces& places,
+                                     const Track& track, double bearing_unit) {
+  std::vector<SurveyLeg> legs;
+  const Sighting* before = nullptr;
+  for (const Sighting& one : recording.sightings) {
+    if (one.standing() || std::isnan(one.bearing) || !places.contains(one.landmark)) continue;
+    if (before != nullptr && before->t == one.t && before->landmark != one.landmark) {
+      const Pose pose = track.at(one.t);
+      legs.push_back({before->landmark, one.landmark,
+                      place_seen(one, pose, bearing_unit) - place_seen(*before, pose, bearing_unit),
+                      places.at(one.landmark) - places.at(before->landmark), one.t});
+    }
+    before = &one;
+  }
+  return thinned(std::move(legs));
+}
+
+}  // namespace trussmap
