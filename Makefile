@@ -9,6 +9,8 @@
 #                      of pages in a browser and the slow ones are left to make test
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too
+#   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
+#                      tests/fuzz/found, where make test replays it
 #   make install-deps  install the Debian packages that the build needs
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -18,7 +20,8 @@ ifeq ($(wildcard build/CMakeCache.txt),)
 GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
-.PHONY: all check demo test install-deps test-deps configure build command clean
+MINUTES ?= 1
+.PHONY: all check demo test fuzz install-deps test-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -41,6 +44,12 @@ check: install-deps build
 
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)
+
+fuzz:
+	@.ci/install-deps clang
+	@CC=clang CXX=clang++ cmake --preset fuzz $(GENERATOR) >/dev/null
+	@cmake --build build-fuzz --parallel $(JOBS)
+	@tests/fuzz/run build-fuzz $(MINUTES)
 
 install-deps:
 	@.ci/install-deps

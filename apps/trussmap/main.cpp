@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "help.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/table.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <csignal>
@@ -22,7 +23,7 @@ constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
 int complain(const std::exception& error, int status) {
-  std::fprintf(stderr, "trussmap: %s\n", error.what());
+  std::fprintf(stderr, "trussmap: %s\n", trussmap::escaped_controls(error.what(), true).c_str());
   return status;
 }
 

@@ -38,4 +38,10 @@ struct QuantityText {
 /// A probability: "0.31", "0.004", "3e-9", and "-" for NaN.
 [[nodiscard]] std::string probability_text(double p);
 
+/// Text that came from a file, for a reader's eye: nothing in it may command a terminal, turn the
+/// direction of what follows, or (unless `lines`) break the line. Control characters, marks and
+/// overrides of direction, separators of lines, and bytes that are no UTF-8 become \xHH or
+/// \u{HHHH}.
+[[nodiscard]] std::string escaped_controls(std::string_view text, bool lines = false);
+
 }  // namespace trussmap

@@ -172,6 +172,11 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   } catch (const NotPositiveDefinite&) {
     throw SolveError("the adjustment broke down: the model's noise spans too many magnitudes");
   }
+  if (!std::isfinite(fit.chi2)) {
+    throw SolveError(
+        "the errors are beyond all numbers: an effect's coefficient or a reading is far "
+        "too large");
+  }
   check_determined(system, problem, border);
   result.state = std::move(fit.state);
   result.coefficients = std::move(fit.coefficients);

@@ -3,6 +3,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -25,7 +26,12 @@ std::string decompressed(const std::string& bytes, const fs::path& path) {
     lzma_end(&stream);
     return InputError(path.string(), 0, what);
   };
-  if (lzma_stream_decoder(&stream, UINT64_MAX, LZMA_CONCATENATED) != LZMA_OK) {
+  constexpr std::uint64_t kMemory = std::uint64_t{256} << 20U;  // bytes; xz -9 needs 65 MiB
+  // Tables of numbers shrink to a tenth or so: what grows so much more is no such table.
+  constexpr std::size_t kGrowth = 200;
+  constexpr std::size_t kGrownBytes = std::size_t{64} << 20U;
+  const std::size_t most = std::max(kGrownBytes, kGrowth * bytes.size());
+  if (lzma_stream_decoder(&stream, kMemory, LZMA_CONCATENATED) != LZMA_OK) {
     throw fail("cannot be decompressed, expected an xz file");
   }
   stream.next_in = reinterpret_cast<const std::uint8_t*>(bytes.data());
@@ -38,7 +44,11 @@ std::string decompressed(const std::string& bytes, const fs::path& path) {
     stream.avail_out = buffer.size();
     status = lzma_code(&stream, LZMA_FINISH);
     text.append(reinterpret_cast<const char*>(buffer.data()), buffer.size() - stream.avail_out);
+    if (text.size() > most) {
+      throw fail("the xz data grow to more than 64 MiB and 200 times their size");
+    }
   }
+  if (status == LZMA_MEMLIMIT_ERROR) throw fail("the xz data need more than 256 MiB to be read");
   if (status != LZMA_STREAM_END) throw fail("the xz data are damaged or cut off");
   lzma_end(&stream);
   return text;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
 #include "io/xml_element.hpp"
+#include "text/plain_text.hpp"
 #include "text/xml_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
@@ -97,6 +98,10 @@ void read_node(const XmlElement& element, const KeyNames& names, const std::stri
   const std::string name = element.attribute("id");
   if (name.empty()) {
     throw InputError(file, element.line, "a node has no id, expected a landmark's name");
+  }
+  if (!is_plain_text(name)) {
+    throw InputError(file, element.line,
+                     "a node's id holds a control character, expected printable text in UTF-8");
   }
   const Attributes data(element, names, file, "landmark " + name);
   if (map.find(name)) data.fail("stands twice, expected each landmark once");

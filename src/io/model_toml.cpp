@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
 #include "io/csv.hpp"
+#include "io/toml_parser.hpp"
+#include "text/plain_text.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
@@ -12,25 +14,6 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-
-// What toml++ asserts of itself a file can violate ("[.a]"): it has to be an error there, and
-// nothing that the compiler may count on. Its shared library has been built otherwise, and with
-// NDEBUG it would take no macro.
-namespace trussmap {
-namespace {
-struct TomlAssertion {};
-}  // namespace
-}  // namespace trussmap
-#undef NDEBUG
-#undef TOML_HEADER_ONLY
-#undef TOML_SHARED_LIB
-#define TOML_HEADER_ONLY 1
-#define TOML_ASSERT(condition) \
-  (static_cast<bool>(condition) ? static_cast<void>(0) : throw ::trussmap::TomlAssertion())
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wterminate"  // of what no file reaches
-#include <toml++/toml.h>
-#pragma GCC diagnostic pop
 
 namespace trussmap {
 namespace {
@@ -105,6 +88,11 @@ class ModelReader {
     const auto value = node.value<double>();
     if (!node.is_number() || !value) fail(node.source(), name + " is no number, expected one");
     if (!std::isfinite(*value)) fail(node.source(), name + " is not finite, expected a number");
+    // Beyond all that robots have, in any unit: squares of larger ones overflow.
+    constexpr double kLargest = 1e12;
+    if (std::abs(*value) > kLargest) {
+      fail(node.source(), name + " is " + csv_number(*value) + ", expected at most 1e12 in size");
+    }
     return *value;
   }
 
@@ -250,6 +238,9 @@ class ModelReader {
   [[nodiscard]] Effect spelt_out(const toml::table& table) const {
     const toml::node* named = table.get("name");
     const std::string name = named == nullptr ? "" : text(*named, "name");
+    if (!is_plain_text(name)) {
+      fail(named->source(), "name holds a control character, expected printable text");
+    }
     if (name.empty()) fail(table.source(), "an effect has no name, expected name = \"...\"");
     const toml::node* channel = table.get("channel");
     const toml::node* shape = table.get("shape");
@@ -335,16 +326,21 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+/// -0 would be read as a whole number, without its sign.
+std::string toml_number(double value) {
+  return csv_number(value == 0.0 ? 0.0 : value);
+}
+
 std::string process_text(const NoiseProcess& process) {
   std::string text =
       "\n[[noise.process]]\nchannel = " + quoted(std::string(name_of(process.channel))) +
       "\nprocess = " + quoted(std::string(name_of(process.process))) +
-      "\nsd = " + csv_number(process.sd) + "\n";
+      "\nsd = " + toml_number(process.sd) + "\n";
   if (process.length > 0.0) {
-    text += "length = " + csv_number(process.length) +
+    text += "length = " + toml_number(process.length) +
             (process.process == ProcessKind::correlated_in_t ? "  # s\n" : "  # m\n");
   }
-  if (process.tails > 0.0) text += "tails = " + csv_number(process.tails) + "\n";
+  if (process.tails > 0.0) text += "tails = " + toml_number(process.tails) + "\n";
   return text;
 }
 
@@ -363,13 +359,13 @@ Model read_model(const std::filesystem::path& file) {
 }
 
 std::string format_model(const Model& model) {
-  std::string text = "[robot]\nwheelbase = " + csv_number(model.robot.wheelbase) + "  # m\n\n";
+  std::string text = "[robot]\nwheelbase = " + toml_number(model.robot.wheelbase) + "  # m\n\n";
   text += "[noise]\n";
   const Noise defaults;
   for (const NoiseKey& key : kNoise) {
     const double value = model.noise.*(key.value);
     if (value == 0.0 && defaults.*(key.value) == 0.0) continue;  // an optional law that is off
-    text += std::string(key.name) + " = " + csv_number(value) + "  # " + key.unit + "\n";
+    text += std::string(key.name) + " = " + toml_number(value) + "  # " + key.unit + "\n";
   }
   for (const NoiseProcess& process : model.noise.processes) text += process_text(process);
   for (const Effect& effect : model.effects) {
@@ -382,7 +378,7 @@ std::string format_model(const Model& model) {
     if (!effect.coefficients.empty()) {
       text += "coefficients = [";
       for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {
-        text += (k == 0 ? "" : ", ") + csv_number(effect.coefficients[k]);
+        text += (k == 0 ? "" : ", ") + toml_number(effect.coefficients[k]);
       }
       text += "]\n";
     }

@@ -4,6 +4,7 @@
 #include "io/csv.hpp"
 #include "recording/row_variables.hpp"
 #include "recording/well_formed.hpp"
+#include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -65,10 +66,9 @@ void refuse_other_columns(const CsvReader& csv, const std::vector<std::string_vi
 
 std::string landmark_name(const CsvReader& csv, int column) {
   const std::string_view name = csv.field(column);
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; };
   if (name.empty()) csv.fail("column landmark is empty, expected a landmark's name");
-  if (std::any_of(name.begin(), name.end(), control)) {
-    csv.fail("a landmark's name holds a control character, expected printable text");
+  if (!is_plain_text(name)) {
+    csv.fail("a landmark's name holds a control character, expected printable text in UTF-8");
   }
   return std::string(name);
 }

@@ -4,6 +4,8 @@
 
 #include "trussmap/error.hpp"
 
+#include <algorithm>
+#include <cstring>
 #include <expat.h>
 #include <memory>
 #include <string_view>
@@ -13,6 +15,9 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kDeepest = 100;  // elements
+// What a document may grow to by what it declares as defaults: so much, or so many times its size.
+constexpr std::size_t kGrowth = 10;
+constexpr std::size_t kGrownBytes = std::size_t{16} << 20U;
 constexpr std::string_view kSpace = " \t\r\n";
 // Expat counts in int.
 constexpr std::size_t kPortion = std::size_t{1} << 20U;  // bytes
@@ -29,6 +34,15 @@ struct Builder {
   XmlElement document;  // its child is the root
   std::vector<XmlElement*> open{&document};
   bool too_deep = false;
+  std::size_t most = 0;   // bytes that names, values and texts may come to
+  std::size_t grown = 0;  // and have
+
+  /// Whether there is room for so many more bytes.
+  bool take(std::size_t bytes) {
+    grown += bytes;
+    if (grown > most) XML_StopParser(parser, XML_FALSE);
+    return grown <= most;
+  }
 
   void begin(const char* name, const char** attributes) {
     if (open.size() > kDeepest) {
@@ -36,6 +50,12 @@ struct Builder {
       XML_StopParser(parser, XML_FALSE);
       return;
     }
+    constexpr std::size_t kElement = 64;  // bytes, beside its names and values
+    std::size_t bytes = kElement;
+    for (const char** one = attributes; one[0] != nullptr; ++one) {
+      bytes += std::strlen(*one);
+    }
+    if (!take(bytes)) return;
     XmlElement& element = open.back()->children.emplace_back();
     element.name = name;
     element.line = static_cast<int>(XML_GetCurrentLineNumber(parser));
@@ -75,6 +95,7 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
   if (!parser) throw std::bad_alloc();
   Builder tree;
   tree.parser = parser.get();
+  tree.most = std::max(kGrownBytes, kGrowth * document.size());
   XML_SetUserData(parser.get(), &tree);
   XML_SetElementHandler(
       parser.get(),
@@ -83,7 +104,9 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
       },
       [](void* data, const char*) { builder(data).end(); });
   XML_SetCharacterDataHandler(parser.get(), [](void* data, const char* text, int length) {
-    builder(data).open.back()->text.append(text, static_cast<std::size_t>(length));
+    Builder& all = builder(data);
+    const auto bytes = static_cast<std::size_t>(length);
+    if (all.take(bytes)) all.open.back()->text.append(text, bytes);
   });
   std::string_view rest = document;
   bool last = false;
@@ -94,6 +117,11 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
     const XML_Status status =
         XML_Parse(parser.get(), portion.data(), static_cast<int>(portion.size()), last ? 1 : 0);
     const auto line = static_cast<int>(XML_GetCurrentLineNumber(parser.get()));
+    if (tree.grown > tree.most) {
+      throw InputError(file, line,
+                       "elements and defaults grow beyond " + std::to_string(tree.most) +
+                           " bytes, expected a map");
+    }
     if (tree.too_deep) {
       throw InputError(
           file, line,

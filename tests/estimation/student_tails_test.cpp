@@ -165,7 +165,7 @@ Spread spread_of(double tails, int recordings) {
 
 // Against least squares of the same covariance the variance falls by 1/F, two thirds for 4 degrees
 // of freedom and two values; standard errors and chi^2 hold.
-TEST(StudentTails, SlowEstimatesAreTwoThirdsAsUncertain) {
+TEST(SlowStudentTails, EstimatesAreTwoThirdsAsUncertain) {
   constexpr int kRecordings = 150;
   const Spread normal = spread_of(0.0, kRecordings);
   const Spread tails = spread_of(kTails, kRecordings);

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "text/plain_text.hpp"
+
+#include "trussmap/table.hpp"
+
+#include <cstdint>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+struct CodePoint {
+  std::uint32_t value = 0;
+  std::size_t bytes = 0;  ///< 0: no UTF-8
+};
+
+CodePoint first_of(std::string_view text) {
+  const auto byte = [text](std::size_t k) {
+    return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k]));
+  };
+  const std::uint32_t lead = byte(0);
+  if (lead < 0x80U) return {lead, 1};
+  const std::size_t bytes = lead >= 0xF0U ? 4 : lead >= 0xE0U ? 3 : 2;
+  if (lead < 0xC2U || lead > 0xF4U || text.size() < bytes) return {};
+  std::uint32_t value = lead & (0x7FU >> bytes);
+  for (std::size_t k = 1; k < bytes; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80U) return {};
+    value = (value << 6U) | (byte(k) & 0x3FU);
+  }
+  const bool longer_than_needed =
+      (bytes == 3 && value < 0x800U) || (bytes == 4 && value < 0x10000U);
+  const bool surrogate = value >= 0xD800U && value <= 0xDFFFU;
+  if (longer_than_needed || surrogate || value > 0x10FFFFU) return {};
+  return {value, bytes};
+}
+
+bool is_command(std::uint32_t c) {
+  return c < 0x20U || (c >= 0x7FU && c <= 0x9FU) || c == 0x061CU ||  // Arabic letter mark
+         (c >= 0x200EU && c <= 0x200FU) ||                           // marks of direction
+         (c >= 0x2028U && c <= 0x202EU) ||  // separators of lines, overrides of direction
+         (c >= 0x2066U && c <= 0x2069U) ||  // isolates
+         c == 0xFEFFU || c == 0xFFFEU || c == 0xFFFFU;
+}
+
+}  // namespace
+
+std::string escaped_controls(std::string_view text, bool lines) {
+  std::string result;
+  while (!text.empty()) {
+    const CodePoint c = first_of(text);
+    if (c.bytes == 0) {
+      result += fmt::format("\\x{:02X}", static_cast<unsigned char>(text.front()));
+      text.remove_prefix(1);
+      continue;
+    }
+    if (!is_command(c.value) || (lines && c.value == '\n')) {
+      result += text.substr(0, c.bytes);
+    } else if (c.value < 0x100U) {
+      result += fmt::format("\\x{:02X}", c.value);
+    } else {
+      result += fmt::format("\\u{{{:04X}}}", c.value);
+    }
+    text.remove_prefix(c.bytes);
+  }
+  return result;
+}
+
+bool is_plain_text(std::string_view text) {
+  return escaped_controls(text) == text;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "fuzz/targets.hpp"
+
+#include "trussmap/check.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/shape.hpp"
+#include "trussmap/simulation.hpp"
+#include "trussmap/test_path.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <unistd.h>
+#include <vector>
+
+namespace trussmap::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this process alone, gone when it ends.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("trussmap_fuzz_" + std::to_string(::getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] fs::path write(const std::string& name, std::string_view bytes) const {
+    const fs::path file = path_ / name;
+    std::ofstream(file, std::ios::binary) << bytes;
+    return file;
+  }
+  void remove(const std::string& name) const {
+    std::error_code ignored;
+    fs::remove(path_ / name, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+const Folder& folder() {
+  static const Folder kFolder;
+  return kFolder;
+}
+
+/// Files in one input lie between lines of "====".
+std::vector<std::string_view> parts_of(std::string_view bytes) {
+  constexpr std::string_view kBetween = "====\n";
+  std::vector<std::string_view> parts;
+  while (true) {
+    const std::size_t at = bytes.find(kBetween);
+    parts.push_back(bytes.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    bytes.remove_prefix(at + kBetween.size());
+  }
+}
+
+/// Each part as the file of its name; those without a part are absent.
+void write_parts(std::string_view bytes, const std::vector<std::string>& names) {
+  const std::vector<std::string_view> parts = parts_of(bytes);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k < parts.size() && !parts[k].empty()) {
+      static_cast<void>(folder().write(names[k], parts[k]));
+    } else {
+      folder().remove(names[k]);
+    }
+  }
+}
+
+template <typename Call>
+void may_refuse(const Call& call) {
+  try {
+    call();
+  } catch (const InputError&) {
+  }
+}
+
+void fuzz_recording(std::string_view bytes) {
+  write_parts(bytes, {"drive.csv", "sightings.csv", "survey.csv", "truth.csv"});
+  may_refuse([] {
+    const Recording recording = read_recording(folder().path());
+    const Model model;
+    for (const CheckFinding& one : check_recordings({recording}, &model, "model.toml")) {
+      if (in_words(one).find('\n') != std::string::npos) throw std::logic_error("two lines");
+    }
+    static_cast<void>(check_recordings({recording, recording}));
+  });
+}
+
+/// What has been read is written, and read again the same.
+void fuzz_model(std::string_view bytes) {
+  may_refuse([bytes] {
+    const Model model = read_model(folder().write("model.toml", bytes));
+    const std::string text = format_model(model);
+    const Model again = read_model(folder().write("again.toml", text));
+    if (format_model(again) != text) throw std::logic_error("model changed on the way");
+  });
+}
+
+void fuzz_graphml(std::string_view bytes) {
+  may_refuse([bytes] {
+    const LandmarkGraph map = read_map_graphml(folder().write("map.graphml", bytes));
+    const std::string text = format_map_graphml(map);
+    static_cast<void>(read_map_graphml(folder().write("again.graphml", text)));
+    static_cast<void>(format_geojson(map));
+    static_cast<void>(format_dot(map));
+  });
+}
+
+void fuzz_g2o(std::string_view bytes) {
+  may_refuse([bytes] {
+    const PoseGraph graph = parse_g2o(bytes, "graph.g2o");
+    static_cast<void>(format_g2o(graph));
+  });
+}
+
+void fuzz_mrclam(std::string_view bytes) {
+  write_parts(bytes, {"Robot1_Odometry.dat", "Robot1_Measurement.dat", "Barcodes.dat",
+                      "Landmark_Groundtruth.dat", "Robot1_Groundtruth.dat"});
+  may_refuse([] { static_cast<void>(read_mrclam(folder().path() / "Robot1")); });
+}
+
+void fuzz_optiodom(std::string_view bytes) {
+  write_parts(bytes, {"a_run-01.csv", "a_metadata.csv"});
+  may_refuse([] { static_cast<void>(read_optiodom(folder().path() / "a_run-01.csv")); });
+}
+
+void fuzz_runs(std::string_view bytes) {
+  const fs::path file = folder().write("runs.csv", bytes);
+  may_refuse([&file] { static_cast<void>(read_square_runs(file, 16.0)); });
+  may_refuse([&file] { static_cast<void>(read_end_errors(file, 16.0)); });
+}
+
+void fuzz_words(std::string_view bytes) {
+  const std::string text(bytes);
+  const auto ask = [](const auto& call) {
+    try {
+      call();
+    } catch (const std::invalid_argument&) {
+    }
+  };
+  ask([&text] { static_cast<void>(Shape(text)); });
+  ask([&text] { static_cast<void>(parse_path(text)); });
+  ask([&text] { static_cast<void>(parse_mesh_size(text)); });
+  ask([&text] { static_cast<void>(parse_rough(text)); });
+}
+
+void fuzz_xz(std::string_view bytes) {
+  may_refuse(
+      [bytes] { static_cast<void>(read_square_runs(folder().write("runs.csv.xz", bytes), 16.0)); });
+}
+
+}  // namespace
+
+const std::map<std::string, Target>& targets() {
+  static const std::map<std::string, Target> kTargets = {{"recording", &fuzz_recording},
+                                                         {"model", &fuzz_model},
+                                                         {"graphml", &fuzz_graphml},
+                                                         {"g2o", &fuzz_g2o},
+                                                         {"mrclam", &fuzz_mrclam},
+                                                         {"optiodom", &fuzz_optiodom},
+                                                         {"runs", &fuzz_runs},
+                                                         {"words", &fuzz_words},
+                                                         {"xz", &fuzz_xz}};
+  return kTargets;
+}
+
+}  // namespace trussmap::fuzz
