@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -61,9 +62,15 @@ void use_one_thread_but_for_graphs(int argc, char** argv) {
   openblas_set_num_threads(1);
 }
 
-}  // namespace
+/// What was said has to have arrived: a full disk must not look like success.
+int with_output_written(int status) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return status;
+  std::fprintf(stderr, "trussmap: standard output could not be written\n");
+  return kFailed;
+}
 
-int main(int argc, char** argv) try {
+int run(int argc, char** argv) {
   clean_up_on_signals();
   use_one_thread_but_for_graphs(argc, argv);
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses.", "trussmap"};
@@ -107,6 +114,12 @@ int main(int argc, char** argv) try {
     return complain(error, kFailed);
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  return with_output_written(run(argc, argv));
 } catch (const std::exception& error) {  // while setting up, or while printing help
   return complain(error, kFailed);
 }

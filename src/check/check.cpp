@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNarrowest = 0.01;    // m: wheelbases that robots have
 constexpr double kWidest = 5.0;        // m
-constexpr double kWheelbaseOff = 1.6;  // factor that no effect of a wheelbase reaches
+constexpr double kWheelbaseOff = 2.5;  // factor that skidding does not reach
 constexpr double kBackwards = -0.5;    // share of the way, of a robot that drives backwards
 constexpr int kHandful = 5;            // degrees of freedom that test nothing
 
@@ -54,7 +54,16 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "nothing to test"};
 
 /// What may count its turns the other way round.
-enum Quantity { wheels, compass, bearings, survey, truth_heading, truth_course, quantities };
+enum Quantity {
+  wheels,
+  compass,
+  bearings,
+  survey,
+  whole_truth,  ///< both of the next
+  truth_heading,
+  truth_course,
+  quantities
+};
 
 /// Signs by which pairs of quantities agree; which quantity, alone, explains those that do not?
 class Signs {
@@ -69,17 +78,34 @@ class Signs {
         std::any_of(known_.begin(), known_.end(), [](const Known& one) { return one.sign < 0; });
     if (!wrong) return result;
     for (int q = 0; q < quantities; ++q) {
-      const auto explains = [q](const Known& one) {
-        return (one.a == q || one.b == q) == (one.sign < 0);
+      const auto is_of = [q](Quantity one) {
+        return one == q || (q == whole_truth && (one == truth_heading || one == truth_course));
+      };
+      const auto explains = [&is_of](const Known& one) {
+        return (is_of(one.a) || is_of(one.b)) == (one.sign < 0);
       };
       if (std::all_of(known_.begin(), known_.end(), explains)) {
         result.push_back(static_cast<Quantity>(q));
       }
     }
-    return result;
+    return result.empty() ? suspects() : result;
   }
 
  private:
+  /// Where no mistake alone explains all: whatever is contradicted.
+  [[nodiscard]] std::vector<Quantity> suspects() const {
+    std::set<Quantity> all;
+    for (const Known& one : known_) {
+      if (one.sign < 0) all.insert({one.a, one.b});
+    }
+    if (all.contains(truth_heading) && all.contains(truth_course)) {
+      all.erase(truth_heading);
+      all.erase(truth_course);
+      all.insert(whole_truth);
+    }
+    return {all.begin(), all.end()};
+  }
+
   struct Known {
     Quantity a;
     Quantity b;
@@ -115,6 +141,7 @@ Blame blame_of(Quantity quantity, double forward) {
     case survey:
       return {"survey.csv", "x,y", "survey mirrored", "a survey with x and y exchanged",
               "exchange x and y, or change the sign of one of them"};
+    case whole_truth:
     case truth_heading:
     case truth_course:
     case quantities:
@@ -168,7 +195,7 @@ int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& l
     rows += one.standing() || std::isfinite(one.bearing) ? 2 : 1;
   }
   for (const TruthRow& one : recording.truth) {
-    if (!instants.insert(one.t).second) continue;
+    instants.insert(one.t);
     rows += 3;
   }
   const int poses = static_cast<int>(instants.size());
@@ -190,9 +217,15 @@ void check_freedom(const std::vector<Recording>& recordings, CheckFindings& find
   dof -= 2 * static_cast<int>(landmarks.size());
   dof += 2 * static_cast<int>(surveyed.size());
   if (!framed && surveyed.empty()) dof += 2 + (recordings.front().drive.has_compass() ? 0 : 1);
-  if (dof >= kHandful) return;
+  // What a compass adds between sightings is not counted: where it has many readings, enough.
+  constexpr std::size_t kManyReadings = 50;
+  const bool reads = std::any_of(recordings.begin(), recordings.end(), [](const Recording& one) {
+    return one.drive.has_compass() && one.drive.rows() >= kManyReadings;
+  });
+  if (dof >= kHandful || (reads && dof > -kHandful)) return;
   Checked all{recordings.front(), findings};
-  all.add("sightings.csv", "", "nothing to test",
+  all.add(recordings.front().sightings.empty() ? "truth.csv" : "sightings.csv", "",
+          "nothing to test",
           joined("what was measured exceeds what is unknown by ", dof,
                  " values: a model can hardly fail there"),
           "drive routes again, or survey landmarks");
@@ -209,7 +242,9 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
         "state it in metres");
     return;
   }
-  if (turns.sign == 0 || checked.wrong.contains("left")) return;
+  if (turns.sign == 0 || checked.wrong.contains("left") || checked.wrong.contains("heading")) {
+    return;
+  }
   const double driven = 1.0 / std::abs(turns.slope);
   if (std::abs(std::log(driven / stated)) < std::log(kWheelbaseOff)) return;
   add("impossible wheelbase",
@@ -220,16 +255,24 @@ void check_wheelbase(Checked& checked, const Model& model, const std::string& mo
       "measure it again; if it is right, look at the units of left, right and heading");
 }
 
-/// The same travels, to the last digit; of few rows the same sightings, too.
+/// The same travels, readings and sightings, to the last digit: a programme driven twice has its
+/// own readings.
 bool same_session(const Recording& a, const Recording& b) {
-  constexpr std::size_t kCannotBeChance = 20;
   const auto same_sighting = [](const Sighting& one, const Sighting& other) {
     return one.landmark == other.landmark && one.t == other.t;
   };
+  const auto same_reading = [](double one, double other) {
+    return one == other || (std::isnan(one) && std::isnan(other));
+  };
+  const auto same_truth = [](const TruthRow& one, const TruthRow& other) {
+    return one.x == other.x && one.y == other.y && one.heading == other.heading;
+  };
   return a.drive.left == b.drive.left && a.drive.right == b.drive.right &&
-         (a.drive.rows() >= kCannotBeChance ||
-          std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(), b.sightings.end(),
-                     same_sighting));
+         std::equal(a.drive.heading.begin(), a.drive.heading.end(), b.drive.heading.begin(),
+                    b.drive.heading.end(), same_reading) &&
+         std::equal(a.sightings.begin(), a.sightings.end(), b.sightings.begin(), b.sightings.end(),
+                    same_sighting) &&
+         std::equal(a.truth.begin(), a.truth.end(), b.truth.begin(), b.truth.end(), same_truth);
 }
 
 void check_twice(const std::vector<Recording>& recordings, CheckFindings& findings) {
@@ -315,14 +358,14 @@ TurnAgreement check_recording(Checked& checked) {
     check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
   }
   const bool contradicted =
-      turns.contradicts || views.contradicts || surveyed.contradicts || truth.contradicts;
+      turns.unsigned_wheels || surveyed.unsigned_wheels || truth.unsigned_wheels;
   if (!wheels_wrong() && contradicted && never_negative(recording.drive)) {
     checked.add("drive.csv", "left,right", "wheels unsigned",
-                joined("no travel is negative, and the wheels do not turn with ",
-                       turns.contradicts      ? "the compass"
-                       : views.contradicts    ? "what is seen"
-                       : surveyed.contradicts ? "the survey's corners"
-                                              : "the truth"),
+                joined("no travel is negative, and the wheels go straight on where ",
+                       turns.unsigned_wheels      ? "the compass turns"
+                       : surveyed.unsigned_wheels ? "the survey has corners"
+                                                  : "the truth turns",
+                       " on the spot"),
                 "record travels with their sign: a turn on the spot has one wheel going backwards");
   }
   if (wheels_wrong()) return turns;
@@ -331,9 +374,10 @@ TurnAgreement check_recording(Checked& checked) {
   const std::size_t before = checked.findings.size();
   check_turns(checked, turns, views, surveyed, truth);
   if (checked.findings.size() > before) return turns;
-  if (!checked.wrong.contains("x") && !checked.wrong.contains("range")) {
+  if (!checked.broken && !checked.wrong.contains("x") && !checked.wrong.contains("range")) {
     check_survey_points(checked, track);
   }
+  if (checked.broken) return turns;
   const bool by_truth = truth.by_heading > 0 && truth.by_course > 0 &&
                         !checked.wrong.contains("truth heading") &&
                         !checked.wrong.contains("truth x");
@@ -363,6 +407,12 @@ void Checked::add(const char* file, const std::string& column, const char* kind,
     wrong.insert(std::string(file) == "truth.csv" ? "truth " + one : one);
     one.clear();
   }
+}
+
+void Checked::note(const char* file, const std::string& column, const char* kind,
+                   const std::string& evidence, const std::string& remedy) {
+  findings.push_back({recording.name + "/" + file, column, kind, evidence, remedy});
+  broken = true;
 }
 
 std::string figure(double value, const char* unit) {

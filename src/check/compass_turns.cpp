@@ -23,8 +23,8 @@ double wrapped(double angle, double turn) {
   return std::remainder(angle, turn);
 }
 
-/// Readings in units of which `turn` are a whole turn.
-TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn) {
+/// Readings in units of which `turn` are a whole turn, brought within half of one or going on.
+TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn, bool wrap = true) {
   double dd = 0.0;
   double dc = 0.0;
   double cc = 0.0;
@@ -40,7 +40,8 @@ TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn) {
     if (std::isnan(reading)) continue;
     if (!std::isnan(last)) {
       difference += waiting;
-      change += wrapped(reading - last, turn) * 2.0 * std::numbers::pi / turn;
+      change +=
+          (wrap ? wrapped(reading - last, turn) : reading - last) * 2.0 * std::numbers::pi / turn;
     }
     last = reading;
     waiting = 0.0;
@@ -62,27 +63,28 @@ TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn) {
   return result;
 }
 
-/// Seconds in which the compass turns and the wheels do not.
-int turns_without_wheels(const Drive& drive, double wheelbase) {
+/// Seconds in which the compass turns as wheels make it on the spot, both going on by as much.
+int turns_on_the_spot(const Drive& drive, double wheelbase) {
   constexpr double kWindow = 1.0;  // s
   constexpr double kTurns = 0.4;   // rad
-  constexpr double kShare = 0.15;  // of what the wheels would have to differ by
   int count = 0;
   double difference = 0.0;
+  double sum = 0.0;
   double first = kAbsent;
   double begun = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    difference += wheels_of(drive, row, WheelMistake::none).difference();
+    const Wheels wheels = wheels_of(drive, row, WheelMistake::none);
+    difference += wheels.difference();
+    sum += 2.0 * wheels.path();
     const double reading = drive.heading[row];
     if (std::isnan(reading)) continue;
     if (!std::isnan(first) && drive.t[row] - begun < kWindow) continue;
     const double turn = std::isnan(first) ? 0.0 : wrapped(reading - first, 2.0 * std::numbers::pi);
-    if (std::abs(turn) > kTurns && std::abs(difference) < kShare * wheelbase * std::abs(turn)) {
-      ++count;
-    }
+    if (std::abs(turn) > kTurns && looks_unsigned(turn, difference, sum, wheelbase)) ++count;
     first = reading;
     begun = drive.t[row];
     difference = 0.0;
+    sum = 0.0;
   }
   return count;
 }
@@ -91,26 +93,42 @@ const char* name_of(WheelMistake mistake) {
   return mistake == WheelMistake::left_negated ? "left" : "right";
 }
 
+/// Goes with the wheels, by a wheelbase that robots have.
+bool is_clear(const TurnAgreement& turns, const Checked& checked) {
+  constexpr double kNear = 3.0;  // times the wheelbase
+  if (std::abs(turns.correlation) < kClear) return false;
+  const double wheelbase = 1.0 / std::abs(turns.slope);
+  return checked.wheelbase_known
+             ? std::abs(std::log(wheelbase / checked.wheelbase)) < std::log(kNear)
+             : wheelbase > 0.03 && wheelbase < 3.0;
+}
+
 }  // namespace
+
+bool looks_unsigned(double turn, double difference, double sum, double wheelbase) {
+  const double on_the_spot = sum / wheelbase;
+  return std::abs(turn) > 0.4 * on_the_spot && std::abs(turn) < 1.6 * on_the_spot &&
+         std::abs(difference) < 0.3 * wheelbase * std::abs(turn);
+}
 
 TurnAgreement check_compass(Checked& checked) {
   const Drive& drive = checked.recording.drive;
   if (!drive.has_compass() || checked.wrong.contains("left")) return {};
   TurnAgreement best = turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi);
   if (best.turns >= kFewest && std::abs(best.correlation) < kClear) {
+    const TurnAgreement going_on =
+        turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi, false);
     const TurnAgreement degrees = turns_of(drive, WheelMistake::none, 360.0);
-    if (std::abs(degrees.correlation) > kClear) {
-      best = degrees;
+    if (is_clear(going_on, checked)) {
+      best = going_on;  // few readings, whole turns apart
+    } else if (is_clear(degrees, checked)) {
       checked.add(
           "drive.csv", "heading", "angle unit",
-          joined(
-              "as degrees the readings turn with the wheels (correlation ",
-              fixed_text(std::abs(degrees.correlation), 2), "), as radians they do not (",
-              fixed_text(
-                  std::abs(turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi).correlation),
-                  2),
-              ")"),
+          joined("as degrees the readings turn with the wheels (correlation ",
+                 fixed_text(std::abs(degrees.correlation), 2), "), as radians they do not (",
+                 fixed_text(std::abs(best.correlation), 2), ")"),
           "convert the readings to radians");
+      best = degrees;
     }
   }
   for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
@@ -127,7 +145,7 @@ TurnAgreement check_compass(Checked& checked) {
   }
   if (best.turns < kFewest || std::abs(best.correlation) < kClear) {
     constexpr int kFewestContradicting = 6;
-    best.contradicts = turns_without_wheels(drive, checked.wheelbase) >= kFewestContradicting;
+    best.unsigned_wheels = turns_on_the_spot(drive, checked.wheelbase) >= kFewestContradicting;
     best.sign = 0;
     return best;
   }

@@ -10,24 +10,28 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFastest = 10.0;     // m/s that a robot with two wheels drives
-constexpr double kSlowest = 0.004;    // m/s
-constexpr double kLongestRow = 2.0;   // s
-constexpr double kLongGap = 5.0;      // s
-constexpr double kGapRows = 20.0;     // of the usual length of a row
-constexpr double kSpike = 10.0;       // times the speed that 99 of 100 rows stay below
-constexpr double kSpikeTravel = 0.5;  // m
-constexpr double kStillTravel = 5.0;  // m that the other wheel has gone
-constexpr double kStillShare = 1e-6;  // of the other wheel's way
+constexpr double kFastest = 10.0;      // m/s that a robot with two wheels drives
+constexpr double kSlowest = 0.004;     // m/s
+constexpr double kShortTravel = 0.5;   // m in a row that has milliseconds for seconds
+constexpr double kOrdinary = 0.02;     // m/s once they are taken for what they are
+constexpr double kLongestRow = 2.0;    // s
+constexpr double kLongGap = 5.0;       // s
+constexpr double kGapRows = 20.0;      // of the usual length of a row
+constexpr double kSpike = 10.0;        // times the speed that 99 of 100 rows stay below
+constexpr double kSpikeTravel = 0.5;   // m
+constexpr double kStillTurns = 30.0;   // wheelbases: five turns about the wheel
+constexpr double kStillTravel = 10.0;  // m that the other wheel has gone
+constexpr double kStillShare = 1e-6;   // of the other wheel's way
 
 double larger(const Drive& drive, std::size_t row) {
   return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
 }
 
 struct Rows {
-  double duration = 0.0;       ///< s, median
-  std::vector<double> speeds;  ///< m/s of the faster wheel, of rows that move, ascending
-  bool whole = true;           ///< all travels are whole numbers
+  double duration = 0.0;        ///< s, median
+  std::vector<double> speeds;   ///< m/s of the faster wheel, of rows that move, ascending
+  std::vector<double> driving;  ///< those that are no jitter at rest
+  bool whole = true;            ///< all travels are whole numbers
 
   [[nodiscard]] double speed(double share) const {
     return speeds[static_cast<std::size_t>(share * static_cast<double>(speeds.size() - 1))];
@@ -40,12 +44,15 @@ Rows rows_of(const Drive& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     durations.push_back(drive.duration(row));
     const double travel = larger(drive, row);
-    if (travel > 0.0) rows.speeds.push_back(travel / durations.back());
+    const double speed = travel / durations.back();
+    if (travel > 0.0) rows.speeds.push_back(speed);
+    if (speed > kSlowest) rows.driving.push_back(speed);
     rows.whole = rows.whole && drive.left[row] == std::round(drive.left[row]) &&
                  drive.right[row] == std::round(drive.right[row]);
   }
   rows.duration = median(std::move(durations));
   std::sort(rows.speeds.begin(), rows.speeds.end());
+  std::sort(rows.driving.begin(), rows.driving.end());
   return rows;
 }
 
@@ -58,7 +65,8 @@ void check_units(Checked& checked, const Rows& rows) {
                        rows.whole ? ", and all travels are whole numbers" : "",
                        ": travels look like ", unit),
                 rows.whole ? "multiply them by the metres per tick" : "convert them to metres");
-  } else if (speed < kSlowest && rows.duration > kLongestRow) {
+  } else if (speed < kSlowest && rows.duration > kLongestRow &&
+             speed * rows.duration < kShortTravel && 1e3 * speed > kOrdinary) {
     checked.add("drive.csv", "t", "time unit",
                 joined("a row lasts ", figure(rows.duration, "s"), " and the robot drives at ",
                        figure(speed, "m/s"), " (medians): times look like ",
@@ -68,24 +76,27 @@ void check_units(Checked& checked, const Rows& rows) {
 }
 
 void check_spikes(Checked& checked, const Rows& rows) {
-  if (checked.wrong.contains("left") || rows.speeds.size() < 20) return;
+  if (checked.wrong.contains("left") || rows.driving.size() < 20) return;
   const Drive& drive = checked.recording.drive;
-  const double usual = rows.speed(0.99);
+  const double usual = rows.driving[rows.driving.size() * 99 / 100];
   std::vector<std::size_t> spikes;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double travel = larger(drive, row);
-    if (travel > kSpikeTravel && travel / drive.duration(row) > kSpike * usual) {
-      spikes.push_back(row);
-    }
+    const auto jumps = [&](std::size_t k) {
+      return larger(drive, k) > kSpikeTravel &&
+             larger(drive, k) / drive.duration(k) > kSpike * usual;
+    };
+    const bool alone =
+        (row == 0 || !jumps(row - 1)) && (row + 1 == drive.rows() || !jumps(row + 1));
+    if (jumps(row) && alone) spikes.push_back(row);
   }
   if (spikes.empty()) return;
   const std::size_t first = spikes.front();
-  checked.add("drive.csv", "left,right", "spike",
-              joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
-                     figure(larger(drive, first), "m"), ", where 99 of 100 stay below ",
-                     figure(usual * drive.duration(first), "m"),
-                     spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
-              "correct or remove the row: an encoder's jump, or an overflow of its counter");
+  checked.note("drive.csv", "left,right", "spike",
+               joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
+                      figure(larger(drive, first), "m"), ", where 99 of 100 stay below ",
+                      figure(usual * drive.duration(first), "m"),
+                      spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
+               "correct or remove the row: an encoder's jump, or an overflow of its counter");
 }
 
 void check_gaps(Checked& checked, const Rows& rows) {
@@ -103,13 +114,13 @@ void check_gaps(Checked& checked, const Rows& rows) {
   }
   if (gaps.empty()) return;
   const std::size_t first = gaps.front();
-  checked.add("drive.csv", "t", "gap",
-              joined("no row for ", figure(drive.duration(first), "s"),
-                     " before t = ", figure(drive.t[first], "s"), ", where a row lasts ",
-                     figure(rows.duration, "s"),
-                     gaps.size() > 1 ? joined("; ", gaps.size(), " gaps like it") : ""),
-              "find out whether the clock jumped or rows were lost; split the recording there if "
-              "the robot may have moved");
+  checked.note("drive.csv", "t", "gap",
+               joined("no row for ", figure(drive.duration(first), "s"),
+                      " before t = ", figure(drive.t[first], "s"), ", where a row lasts ",
+                      figure(rows.duration, "s"),
+                      gaps.size() > 1 ? joined("; ", gaps.size(), " gaps like it") : ""),
+               "find out whether the clock jumped or rows were lost; split the recording there if "
+               "the robot may have moved");
 }
 
 /// All the time, or for so long that no turn about that wheel is meant.
@@ -136,7 +147,7 @@ void check_still_wheel(Checked& checked) {
                   joined("the ", name, " wheel never moves, where the other one goes ",
                          figure(others, "m")),
                   "look at the encoder's cable and at the column's source");
-    } else if (most > std::max(kStillTravel, 12.0 * checked.wheelbase)) {
+    } else if (most > std::max(kStillTravel, kStillTurns * checked.wheelbase)) {
       checked.add("drive.csv", name, "still wheel",
                   joined("the ", name, " wheel stands still until t = ", figure(until, "s"),
                          " while the other one goes ", figure(most, "m")),

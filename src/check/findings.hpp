@@ -24,10 +24,14 @@ struct Checked {
   std::set<std::string> wrong = {};  ///< columns that something was found of
   double wheelbase = 0.0;            ///< m, the model's or what stands for it
   bool wheelbase_known = false;      ///< the model's, or found from the compass
+  bool broken = false;               ///< a gap or spike: no track leads through it
   double angle_unit = 1.0;           ///< rad per unit of bearings
 
   void add(const char* file, const std::string& column, const char* kind,
            const std::string& evidence, const std::string& remedy);
+  /// The same of a few rows alone: the column is trusted otherwise.
+  void note(const char* file, const std::string& column, const char* kind,
+            const std::string& evidence, const std::string& remedy);
 };
 
 /// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
@@ -46,9 +50,14 @@ struct TurnAgreement {
   int sign = 0;        ///< 1 alike, -1 opposite, 0: cannot be told, or neither
   double slope = 0.0;  ///< turn per difference of the wheels, rad/m
   double correlation = 0.0;
-  int turns = 0;             ///< samples
-  bool contradicts = false;  ///< neither alike nor opposite
+  int turns = 0;  ///< samples
+  /// On the spot, where the wheels go straight on: what unsigned wheels make of a turn.
+  bool unsigned_wheels = false;
 };
+
+/// Whether a turn (rad) is what unsigned wheels, of this difference and sum (m), make of one on the
+/// spot: no drive along an arc turns so much.
+[[nodiscard]] bool looks_unsigned(double turn, double difference, double sum, double wheelbase);
 
 /// Of the compass with the wheels, reported where it is in degrees or fits another mistake better.
 [[nodiscard]] TurnAgreement check_compass(Checked& checked);
@@ -67,6 +76,7 @@ struct SurveyAgreement {
   double way_ratio = 0.0;  ///< survey's lengths by those of the way; 0: none
   double views_ratio = 0.0;
   bool contradicts = false;  ///< neither alike nor mirrored, by the way
+  bool unsigned_wheels = false;
 };
 [[nodiscard]] SurveyAgreement survey_agreement(const Checked& checked, const Track& track);
 /// What of it is wrong by itself: names, spread, units; `compass`: whether its turns agree.
@@ -81,6 +91,7 @@ struct TruthAgreement {
   int by_course = 0;   ///< of its positions'
   bool in_degrees = false;
   bool contradicts = false;  ///< neither alike nor opposite
+  bool unsigned_wheels = false;
 };
 [[nodiscard]] TruthAgreement truth_agreement(const Checked& checked, const Track& track);
 void check_truth(Checked& checked, const Track& track, const TruthAgreement& agreement);

@@ -38,12 +38,14 @@ double ratio_of(const std::vector<SurveyLeg>& legs) {
 struct Sign {
   int value = 0;
   bool contradicts = false;
+  bool straight = false;  ///< no corner where the survey has them
 };
 
 /// 1, -1, or 0 where neither holds, which contradicts, or too few tell.
 Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
   std::vector<double> alike;
   std::vector<double> mirrored;
+  std::vector<double> corners;
   for (std::size_t k = 1; k < legs.size(); ++k) {
     const SurveyLeg& a = legs[k - 1];
     const SurveyLeg& b = legs[k];
@@ -53,15 +55,17 @@ Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
     const double measured = direction(b.measured) - direction(a.measured);
     const double surveyed = direction(b.surveyed) - direction(a.surveyed);
     if (std::abs(std::sin(surveyed)) < 0.3) continue;  // straight on: mirrored alike
+    corners.push_back(std::abs(wrap_angle(measured)));
     alike.push_back(std::abs(wrap_angle(measured - surveyed)));
     mirrored.push_back(std::abs(wrap_angle(measured + surveyed)));
   }
   if (alike.size() < kFewest) return {};
   const double as_is = median(std::move(alike));
   const double as_mirrored = median(std::move(mirrored));
-  if (as_is < kAlike && as_is < 0.5 * as_mirrored) return {1, false};
-  if (as_mirrored < kAlike && as_mirrored < 0.5 * as_is) return {-1, false};
-  return {0, std::min(as_is, as_mirrored) > kAlike};
+  if (as_is < kAlike && as_is < 0.5 * as_mirrored) return {1};
+  if (as_mirrored < kAlike && as_mirrored < 0.5 * as_is) return {-1};
+  constexpr double kStraight = 0.45;  // rad, what arcs on the way come to
+  return {0, std::min(as_is, as_mirrored) > kAlike, median(std::move(corners)) < kStraight};
 }
 
 /// The compass's reading less the track's heading where a leg ends.
@@ -83,31 +87,59 @@ void check_compass_frame(Checked& checked, const Track& track, const std::vector
               "let readings count from the survey's x axis, not from north");
 }
 
+struct Spread {
+  Vector2 mean = Vector2::Zero();
+  double wide = 0.0;  ///< m, root mean square along and across
+  double thin = 0.0;
+};
+
+Spread spread_of(const std::vector<Vector2>& points) {
+  Spread result;
+  const auto count = static_cast<double>(points.size());
+  for (const Vector2& point : points) result.mean += point / count;
+  Matrix2 squares = Matrix2::Zero();
+  for (const Vector2& point : points) {
+    squares += (point - result.mean) * (point - result.mean).transpose() / count;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(squares);
+  result.wide = std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
+  result.thin = std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
+  return result;
+}
+
+/// Whether landmarks were found all about, and not in a corridor.
+bool is_spread(const Checked& checked, const Track& track) {
+  constexpr double kCorridor = 0.2;
+  std::vector<Vector2> found;
+  for (const Sighting& one : checked.recording.sightings) {
+    if (!one.standing() && std::isnan(one.bearing)) continue;
+    found.push_back(place_seen(one, track.at(one.t), checked.angle_unit));
+  }
+  if (found.size() < 3) return false;
+  const Spread spread = spread_of(found);
+  return spread.thin > kCorridor * spread.wide;
+}
+
 /// Points on a line, or on one another, give a map no frame.
-void check_spread(Checked& checked, const std::set<std::string_view>& sighted) {
+void check_spread(Checked& checked, const Track& track, const std::set<std::string_view>& sighted) {
   std::vector<Vector2> points;
   for (const SurveyPoint& one : checked.recording.survey) {
     if (sighted.contains(one.landmark)) points.emplace_back(one.x, one.y);
   }
   if (points.size() < 3) return;
   constexpr double kThin = 1e-3;
-  Vector2 mean = Vector2::Zero();
-  for (const Vector2& point : points) mean += point / static_cast<double>(points.size());
-  Matrix2 spread = Matrix2::Zero();
-  for (const Vector2& point : points) spread += (point - mean) * (point - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix2> axes(spread / static_cast<double>(points.size()));
-  const double wide = std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
-  const double thin = std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
+  const auto [mean, wide, thin] = spread_of(points);
   if (wide <= 1e-9 * (1.0 + mean.norm())) {
     checked.add("survey.csv", "x,y", "survey at one point",
                 joined("all ", points.size(), " landmarks lie at (", figure(mean.x()), ", ",
                        figure(mean.y()), ")"),
                 "survey them one by one, or leave the file out");
-  } else if (thin < kThin * wide) {
-    checked.add("survey.csv", "x,y", "survey on a line",
-                joined("all ", points.size(), " landmarks lie within ", figure(thin, "m"),
-                       " of a line of ", figure(wide, "m"), " (root mean squares)"),
-                "survey a landmark away from the line: as they are, a mirrored map fits as well");
+  } else if (thin < kThin * wide && is_spread(checked, track)) {
+    checked.add(
+        "survey.csv", "x,y", "survey on a line",
+        joined("all ", points.size(), " landmarks lie within ", figure(thin, "m"), " of a line of ",
+               figure(wide, "m"), " (root mean squares); they were found all about"),
+        "look for a column that was written twice, or lost");
   }
 }
 
@@ -131,6 +163,7 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
   if (result.way_ratio > 0.0) {
     const Sign sign = sign_of(way, result.way_ratio);
     result.by_way = sign.value;
+    result.unsigned_wheels = sign.contradicts && sign.straight;
     const bool far = std::abs(std::log(result.way_ratio)) > std::log(kFarOff);
     result.contradicts =
         sign.contradicts || (sign.value == 0 && far && !looks_like_a_unit(result.way_ratio));
@@ -144,7 +177,7 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
 namespace {
 
 void check_units(Checked& checked, const SurveyAgreement& agreement) {
-  const double by_way = agreement.way_ratio;
+  const double by_way = agreement.contradicts ? 0.0 : agreement.way_ratio;
   const double by_views = checked.wrong.contains("range") ? 0.0 : agreement.views_ratio;
   const auto off = [](double ratio) {
     return ratio > 0.0 && !(unit_of_ratio(ratio).empty() && unit_of_ratio(1.0 / ratio).empty());
@@ -184,7 +217,7 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
                 "give both files the same names");
     return;
   }
-  check_spread(checked, sighted);
+  check_spread(checked, track, sighted);
   if (checked.wrong.contains("x") || checked.wrong.contains("t")) return;
   check_units(checked, agreement);
   if (!compass || checked.wrong.contains("x") || checked.wrong.contains("left")) return;

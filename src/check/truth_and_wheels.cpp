@@ -30,6 +30,7 @@ struct Stretch {
   double turn = 0;       ///< of the truth, in its unit, not wrapped
   double heading = 0.0;  ///< of the truth, halfway
   double forward = 0.0;  ///< m driven, signed
+  double way = 0.0;      ///< m driven
 };
 
 std::vector<Stretch> stretches_of(const Recording& recording, const Track& track) {
@@ -53,18 +54,33 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Track& track
     one.heading = before->heading + 0.5 * wrap_angle(one.turn);
     const double along = 0.5 * (a.heading + b.heading);
     one.forward = one.wheels.x * std::cos(along) + one.wheels.y * std::sin(along);
+    one.way = way;
     result.push_back(one);
     before = &row;
   }
   return result;
 }
 
+/// By far: as degrees do.
+bool turns_more_than_wheels(const std::vector<Stretch>& stretches) {
+  double wheels = 0.0;
+  double truth = 0.0;
+  for (const Stretch& one : stretches) {
+    wheels += std::abs(one.wheels.heading);
+    truth += std::abs(std::remainder(one.turn, 360.0));
+  }
+  constexpr double kFar = 8.0;
+  return truth > kFar * wheels;
+}
+
+/// Turns brought within half a turn, of so many units; 0: as they are, in radians.
 double correlation(const std::vector<Stretch>& stretches, double turn) {
   double ww = 0.0;
   double wt = 0.0;
   double tt = 0.0;
   for (const Stretch& one : stretches) {
-    const double truth = std::remainder(one.turn, turn) * 2.0 * std::numbers::pi / turn;
+    const double truth =
+        turn > 0.0 ? std::remainder(one.turn, turn) * 2.0 * std::numbers::pi / turn : one.turn;
     ww += one.wheels.heading * one.wheels.heading;
     wt += one.wheels.heading * truth;
     tt += truth * truth;
@@ -153,14 +169,28 @@ TruthAgreement truth_agreement(const Checked& checked, const Track& track) {
   const std::vector<Stretch> stretches = stretches_of(checked.recording, track);
   if (stretches.size() < kFewest) return result;
   const double radians = correlation(stretches, 2.0 * std::numbers::pi);
-  result.in_degrees =
-      std::abs(radians) < kClear && std::abs(correlation(stretches, 360.0)) > kClear;
+  const double going_on = correlation(stretches, 0.0);
+  result.in_degrees = std::abs(radians) < kClear &&
+                      std::abs(correlation(stretches, 360.0)) > kClear &&
+                      turns_more_than_wheels(stretches);
   if (result.in_degrees) return result;
+  if (std::abs(radians) < kClear && std::abs(going_on) > kClear) {  // whole turns between rows
+    result.by_heading = going_on > 0.0 ? 1 : -1;
+  }
   if (std::abs(radians) > kClear) result.by_heading = radians > 0.0 ? 1 : -1;
   result.by_course = sign_of_course(stretches);
   double turned = 0.0;
   for (const Stretch& one : stretches) turned += std::pow(wrap_angle(one.turn), 2);
-  constexpr double kTurns = 0.2;  // rad, rms
+  constexpr double kTurns = 0.2;      // rad, rms
+  constexpr double kOnTheSpot = 0.4;  // rad
+  constexpr std::ptrdiff_t kFewestSpins = 6;
+  const auto spins = std::count_if(stretches.begin(), stretches.end(), [&](const Stretch& one) {
+    const double turn = wrap_angle(one.turn);
+    return std::abs(turn) > kOnTheSpot &&
+           looks_unsigned(turn, one.wheels.heading * checked.wheelbase, 2.0 * one.way,
+                          checked.wheelbase);
+  });
+  result.unsigned_wheels = result.by_heading == 0 && spins >= kFewestSpins;
   result.contradicts =
       result.by_heading == 0 && turned > kTurns * kTurns * static_cast<double>(stretches.size());
   return result;

@@ -140,7 +140,6 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
     }
   }
   if (best.error > kFits || best.error > kBetter * recorded) {
-    result.contradicts = true;
     return result;
   }
   const std::string evidence =

@@ -61,7 +61,7 @@ class Attributes {
     const double xx = number("c_xx");
     const double xy = number("c_xy");
     const double yy = number("c_yy");
-    const Matrix2 C = (Matrix2() << xx, xy, xy, yy).finished();
+    Matrix2 C = (Matrix2() << xx, xy, xy, yy).finished();
     const double rounding = 1e-12 * C(0, 0) * C(1, 1);
     if (C(0, 0) < 0.0 || C(1, 1) < 0.0 || C.determinant() < -rounding) {
       fail("c_xx, c_xy, c_yy are no covariance, expected a positive semidefinite matrix");

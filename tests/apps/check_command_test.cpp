@@ -83,6 +83,15 @@ TEST(CheckCommand, OtherCommandsWarn) {
   }
 }
 
+TEST(CheckCommand, AnswersThatCannotBeWrittenAreAFailure) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
+  for (const std::string& command :
+       {"check " + kRiddleFolder, std::string("--help"), std::string("--version")}) {
+    EXPECT_EQ(run_trussmap(command + " >/dev/full").status, 1) << command;
+    EXPECT_EQ(run_trussmap(command + " >/dev/null").status, 0) << command;
+  }
+}
+
 TEST(CheckCommand, AModelWithoutAWheelbaseIsNamed) {
   const ScratchFolder scratch;
   const std::string model = scratch.path().string() + "/model.toml";

@@ -196,10 +196,13 @@ std::vector<Mistake> mistakes() {
       [](World& world) { scale(world.recording.drive.left, -1.0); });
   add("right negated", {"wheel negated"}, shows_turns,
       [](World& world) { scale(world.recording.drive.right, -1.0); });
-  add("wheels unsigned", {"wheels unsigned"}, shows_turns, [](World& world) {
-    for (double& travel : world.recording.drive.left) travel = std::abs(travel);
-    for (double& travel : world.recording.drive.right) travel = std::abs(travel);
-  });
+  add(
+      "wheels unsigned", {"wheels unsigned"},
+      [](const Equipment& e) { return e.compass || e.survey || e.truth; },
+      [](World& world) {
+        for (double& travel : world.recording.drive.left) travel = std::abs(travel);
+        for (double& travel : world.recording.drive.right) travel = std::abs(travel);
+      });
   add("axes exchanged", {"survey mirrored", "turns opposite"}, has_survey, [](World& world) {
     for (SurveyPoint& point : world.recording.survey) std::swap(point.x, point.y);
   });
@@ -268,8 +271,8 @@ std::vector<Mistake> mistakes() {
   });
   add("wheelbase in mm", {"impossible wheelbase"}, any_equipment,
       [](World& world) { world.model.robot.wheelbase *= 1000.0; });
-  add("twice the wheelbase", {"impossible wheelbase"}, has_compass,
-      [](World& world) { world.model.robot.wheelbase *= 2.0; });
+  add("three times the wheelbase", {"impossible wheelbase"}, has_compass,
+      [](World& world) { world.model.robot.wheelbase *= 3.0; });
   add("no wheelbase", {"no wheelbase"}, any_equipment,
       [](World& world) { world.model.robot.wheelbase_stated = false; });
   return all;
@@ -367,8 +370,7 @@ TEST(Check, TheSameSessionTwice) {
 }
 
 TEST(Check, NothingToTest) {
-  World world = world_of({}, 3);
-  world.recording.survey.clear();
+  World world = world_of({false, false, false, false}, 3);
   world.recording.sightings.resize(3);
   const std::vector<CheckFinding> findings =
       check_recordings({world.recording}, &world.model, "model.toml");
