@@ -145,7 +145,8 @@ const Spoilt kSpoilt[] = {
     {"NamelessLandmark", "sightings.csv", "t,landmark\n0,\n",
      "sightings.csv:2: column landmark is empty, expected a landmark's name"},
     {"ControlCharacter", "sightings.csv", "t,landmark\n0,A\x01\n",
-     "sightings.csv:2: a landmark's name holds a control character, expected printable text in UTF-8"},
+     "sightings.csv:2: a landmark's name holds a control character, expected printable text in "
+     "UTF-8"},
     {"SurveyedTwice", "survey.csv", "landmark,x,y\nA,0,0\nA,1,0\n",
      "survey.csv:3: landmark A is surveyed twice, expected each once"},
     {"SurveySd", "survey.csv", "landmark,x,y,sd\nA,0,0,0\n",
