@@ -46,7 +46,7 @@ test: test-deps build
 	@.ci/test build --parallel $(JOBS)
 
 fuzz:
-	@.ci/install-deps clang
+	@.ci/install-deps clang libclang-rt-dev
 	@CC=clang CXX=clang++ cmake --preset fuzz $(GENERATOR) >/dev/null
 	@cmake --build build-fuzz --parallel $(JOBS)
 	@tests/fuzz/run build-fuzz $(MINUTES)
