@@ -4,6 +4,7 @@
 // trussmap build: a landmark map from recordings.
 #include "commands.hpp"
 #include "json_values.hpp"
+#include "model_recordings.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -15,7 +16,6 @@
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/recording_files.hpp"
 #include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -256,10 +256,7 @@ void run_build(const BuildOptions& options) {
   check_usage(options);
   Progress progress({{"reading", 30}, {"building the map", 70}});
   progress.next();
-  std::vector<Recording> recordings;
-  for (const std::string& folder : options.recordings) {
-    recordings.push_back(read_recording(folder));
-  }
+  const std::vector<Recording> recordings = read_recordings(options.recordings);
   const Model model = read_model(options.model, recordings);
   warn_of_mistakes(recordings, model, options.model);
   progress.next();

@@ -3,6 +3,7 @@
 //
 // trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth or survey.
 #include "commands.hpp"
+#include "model_recordings.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -12,7 +13,6 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/recording_files.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -231,12 +231,8 @@ std::string text(const WheelCalibration& found, const CalibrationValidation& hel
 void run_calibrate(const CalibrateOptions& options) {
   Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
   progress.next();
-  std::vector<Recording> recordings;
-  for (const std::string& folder : options.recordings) {
-    recordings.push_back(read_recording(folder));
-  }
-  std::vector<Recording> test_drives;
-  for (const std::string& folder : options.test) test_drives.push_back(read_recording(folder));
+  const std::vector<Recording> recordings = read_recordings(options.recordings);
+  const std::vector<Recording> test_drives = read_recordings(options.test);
   const Model model = read_model(options.model, recordings);
   warn_of_mistakes(recordings, model, options.model);
   WheelCalibration found;

@@ -4,10 +4,10 @@
 // trussmap check: are recordings what they should be?
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "model_recordings.hpp"
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -39,10 +39,7 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
 }
 
 void run_check(const CheckCommand& options) {
-  std::vector<Recording> recordings;
-  for (const std::string& folder : options.recordings) {
-    recordings.push_back(read_recording(folder));
-  }
+  const std::vector<Recording> recordings = read_recordings(options.recordings);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
   const std::vector<CheckFinding> findings =

@@ -103,11 +103,16 @@ void take_frames(ModelRecordings& input, const ModelRecordingsOptions& options) 
 
 }  // namespace
 
+std::vector<Recording> read_recordings(const std::vector<std::string>& folders) {
+  std::vector<Recording> result;
+  result.reserve(folders.size());
+  for (const std::string& folder : folders) result.push_back(read_recording(folder));
+  return result;
+}
+
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   ModelRecordings result;
-  for (const std::string& folder : options.recordings) {
-    result.recordings.push_back(read_recording(folder));
-  }
+  result.recordings = read_recordings(options.recordings);
   result.model = read_model(options.model, result.recordings);
   warn_of_mistakes(result.recordings, result.model, options.model);
   take_frames(result, options);

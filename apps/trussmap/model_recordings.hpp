@@ -40,6 +40,9 @@ struct ModelRecordings {
   std::vector<std::string> notes;  ///< what of the recordings is not used, and why
 };
 
+/// One recording per folder, in their order. Throws InputError.
+[[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
+
 /// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp).
 /// Throws InputError, with the model file's line where an effect cannot be applied.
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);

@@ -302,11 +302,10 @@ void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
     const bool survey = by_survey && survey_agreement(checked, track).by_way > 0;
     const bool truth = by_truth && truth_agreement(checked, track).by_heading > 0;
     if (!survey && !truth) continue;
-    const std::string name = mistake == WheelMistake::left_negated ? "left" : "right";
-    checked.add("drive.csv", name, "wheel negated",
-                joined("with the ", name, " wheel's sign changed the wheels turn with the ",
-                       survey ? "survey's corners" : "truth", ", as recorded they do not"),
-                "change the sign of " + name);
+    add_lone_wheel(
+        checked, mistake,
+        joined("with the ", lone_wheel(mistake), " wheel's sign changed the wheels turn with the ",
+               survey ? "survey's corners" : "truth", ", as recorded they do not"));
     return;
   }
 }
@@ -375,7 +374,7 @@ TurnAgreement check_recording(Checked& checked) {
   check_turns(checked, turns, views, surveyed, truth);
   if (checked.findings.size() > before) return turns;
   if (!checked.broken && !checked.wrong.contains("x") && !checked.wrong.contains("range")) {
-    check_survey_points(checked, track);
+    check_survey_points(checked, surveyed);
   }
   if (checked.broken) return turns;
   const bool by_truth = truth.by_heading > 0 && truth.by_course > 0 &&
@@ -415,6 +414,15 @@ void Checked::note(const char* file, const std::string& column, const char* kind
   broken = true;
 }
 
+const char* lone_wheel(WheelMistake mistake) {
+  return mistake == WheelMistake::left_negated ? "left" : "right";
+}
+
+void add_lone_wheel(Checked& checked, WheelMistake mistake, const std::string& evidence) {
+  const std::string name = lone_wheel(mistake);
+  checked.add("drive.csv", name, "wheel negated", evidence, "change the sign of " + name);
+}
+
 std::string figure(double value, const char* unit) {
   const std::string text = short_text(value, 3);
   return *unit == '\0' ? text : text + " " + unit;
@@ -431,6 +439,10 @@ std::string unit_of_ratio(double ratio) {
     if (std::abs(std::log(ratio / one.ratio)) < 0.35) return one.name;
   }
   return {};
+}
+
+bool looks_like_a_unit(double ratio) {
+  return !unit_of_ratio(ratio).empty() || !unit_of_ratio(1.0 / ratio).empty();
 }
 
 const std::vector<std::string>& check_kinds() {

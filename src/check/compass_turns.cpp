@@ -17,7 +17,6 @@ constexpr double kLongest = 10.0;  // s
 constexpr int kFewest = 12;        // stretches
 constexpr double kClear = 0.8;     // correlation
 constexpr double kUnclear = 0.6;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 double wrapped(double angle, double turn) {
   return std::remainder(angle, turn);
@@ -89,10 +88,6 @@ int turns_on_the_spot(const Drive& drive, double wheelbase) {
   return count;
 }
 
-const char* name_of(WheelMistake mistake) {
-  return mistake == WheelMistake::left_negated ? "left" : "right";
-}
-
 /// Goes with the wheels, by a wheelbase that robots have.
 bool is_clear(const TurnAgreement& turns, const Checked& checked) {
   constexpr double kNear = 3.0;  // times the wheelbase
@@ -135,12 +130,11 @@ TurnAgreement check_compass(Checked& checked) {
     if (std::abs(best.correlation) > kUnclear) break;
     const TurnAgreement other = turns_of(drive, mistake, 2.0 * std::numbers::pi);
     if (other.turns < kFewest || other.correlation < kClear) continue;
-    checked.add("drive.csv", name_of(mistake), "wheel negated",
-                joined("with the ", name_of(mistake),
-                       " wheel's sign changed the wheels turn with the compass (correlation ",
-                       fixed_text(other.correlation, 2), "), as recorded they do not (",
-                       fixed_text(best.correlation, 2), ")"),
-                joined("change the sign of ", name_of(mistake)));
+    add_lone_wheel(checked, mistake,
+                   joined("with the ", lone_wheel(mistake),
+                          " wheel's sign changed the wheels turn with the compass (correlation ",
+                          fixed_text(other.correlation, 2), "), as recorded they do not (",
+                          fixed_text(best.correlation, 2), ")"));
     return {};
   }
   if (best.turns < kFewest || std::abs(best.correlation) < kClear) {

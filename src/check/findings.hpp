@@ -4,6 +4,7 @@
 // What each part of a check looks at, and what it adds to the list.
 #pragma once
 
+#include "check/survey_legs.hpp"
 #include "check/track.hpp"
 #include "trussmap/check.hpp"
 
@@ -37,6 +38,10 @@ struct Checked {
 /// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
 void check_drive_values(Checked& checked);
 
+/// "left" or "right", of a mistake with one wheel; and the finding that it is negated.
+[[nodiscard]] const char* lone_wheel(WheelMistake mistake);
+void add_lone_wheel(Checked& checked, WheelMistake mistake, const std::string& evidence);
+
 /// Blanks in names of landmarks.
 void check_names(Checked& checked);
 /// One name at two places. Places are the truth's where that is trusted, else the track's.
@@ -66,7 +71,8 @@ struct TurnAgreement {
 /// where another unit or mistake of the wheels fits better.
 [[nodiscard]] TurnAgreement check_views(Checked& checked, const Track& track);
 
-/// A landmark's place as seen from a pose of a track.
+/// Whether a sighting says where its landmark is, as place_seen has it from a pose of a track.
+[[nodiscard]] bool tells_place(const Sighting& sighting);
 [[nodiscard]] Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit);
 
 /// Of the survey with the way from landmark to landmark (wheels), or with views of both (bearings).
@@ -77,6 +83,8 @@ struct SurveyAgreement {
   double views_ratio = 0.0;
   bool contradicts = false;  ///< neither alike nor mirrored, by the way
   bool unsigned_wheels = false;
+  std::vector<SurveyLeg> way;  ///< what it is judged by
+  std::vector<SurveyLeg> views;
 };
 [[nodiscard]] SurveyAgreement survey_agreement(const Checked& checked, const Track& track);
 /// What of it is wrong by itself: names, spread, units; `compass`: whether its turns agree.
@@ -84,7 +92,7 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
                   bool compass);
 
 /// Points that lie elsewhere, exchanged labels.
-void check_survey_points(Checked& checked, const Track& track);
+void check_survey_points(Checked& checked, const SurveyAgreement& agreement);
 
 struct TruthAgreement {
   int by_heading = 0;  ///< sign of the truth's turns against the wheels'
@@ -123,7 +131,9 @@ inline constexpr double kCompassTurned = 0.35;
 /// "12.3 m/s", without figures that mean nothing.
 [[nodiscard]] std::string figure(double value, const char* unit = "");
 
-/// The unit that a ratio to metres looks like: "mm", "cm", "inch", "feet", or nothing.
+/// The unit that a ratio to metres looks like: "mm", "cm", "inches", "feet", or nothing.
 [[nodiscard]] std::string unit_of_ratio(double ratio);
+/// Whether it, or its inverse, looks like one.
+[[nodiscard]] bool looks_like_a_unit(double ratio);
 
 }  // namespace trussmap

@@ -70,7 +70,7 @@ std::optional<Pose> truth_at(const std::vector<TruthRow>& truth, double t) {
 Visits visits_of(const Checked& checked, const Track& track, bool by_truth) {
   Visits visits;
   for (const Sighting& one : checked.recording.sightings) {
-    if (!one.standing() && std::isnan(one.bearing)) continue;
+    if (!tells_place(one)) continue;
     const double way = track.way_at(one.t);
     std::vector<Visit>& own = visits[one.landmark];
     // Twice in one frame is worth asking.

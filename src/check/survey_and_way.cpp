@@ -112,7 +112,7 @@ bool is_spread(const Checked& checked, const Track& track) {
   constexpr double kCorridor = 0.2;
   std::vector<Vector2> found;
   for (const Sighting& one : checked.recording.sightings) {
-    if (!one.standing() && std::isnan(one.bearing)) continue;
+    if (!tells_place(one)) continue;
     found.push_back(place_seen(one, track.at(one.t), checked.angle_unit));
   }
   if (found.size() < 3) return false;
@@ -121,11 +121,10 @@ bool is_spread(const Checked& checked, const Track& track) {
 }
 
 /// Points on a line, or on one another, give a map no frame.
-void check_spread(Checked& checked, const Track& track, const std::set<std::string_view>& sighted) {
+void check_spread(Checked& checked, const Track& track, const SurveyPlaces& places) {
   std::vector<Vector2> points;
-  for (const SurveyPoint& one : checked.recording.survey) {
-    if (sighted.contains(one.landmark)) points.emplace_back(one.x, one.y);
-  }
+  points.reserve(places.size());
+  for (const auto& [name, place] : places) points.push_back(place);
   if (points.size() < 3) return;
   constexpr double kThin = 1e-3;
   const auto [mean, wide, thin] = spread_of(points);
@@ -143,45 +142,10 @@ void check_spread(Checked& checked, const Track& track, const std::set<std::stri
   }
 }
 
-}  // namespace
-
-namespace {
-
-bool looks_like_a_unit(double ratio) {
-  return !(unit_of_ratio(ratio).empty() && unit_of_ratio(1.0 / ratio).empty());
-}
-
-}  // namespace
-
-SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
-  const Recording& recording = checked.recording;
-  SurveyAgreement result;
-  if (recording.survey.empty() || recording.sightings.empty()) return result;
-  const SurveyPlaces places = surveyed_places(recording);
-  const std::vector<SurveyLeg> way = legs_by_way(recording, places, track);
-  result.way_ratio = ratio_of(way);
-  if (result.way_ratio > 0.0) {
-    const Sign sign = sign_of(way, result.way_ratio);
-    result.by_way = sign.value;
-    result.unsigned_wheels = sign.contradicts && sign.straight;
-    const bool far = std::abs(std::log(result.way_ratio)) > std::log(kFarOff);
-    result.contradicts =
-        sign.contradicts || (sign.value == 0 && far && !looks_like_a_unit(result.way_ratio));
-  }
-  const std::vector<SurveyLeg> views = legs_by_views(recording, places, track, checked.angle_unit);
-  result.views_ratio = ratio_of(views);
-  if (result.views_ratio > 0.0) result.by_views = sign_of(views, result.views_ratio).value;
-  return result;
-}
-
-namespace {
-
 void check_units(Checked& checked, const SurveyAgreement& agreement) {
   const double by_way = agreement.contradicts ? 0.0 : agreement.way_ratio;
   const double by_views = checked.wrong.contains("range") ? 0.0 : agreement.views_ratio;
-  const auto off = [](double ratio) {
-    return ratio > 0.0 && !(unit_of_ratio(ratio).empty() && unit_of_ratio(1.0 / ratio).empty());
-  };
+  const auto off = [](double ratio) { return ratio > 0.0 && looks_like_a_unit(ratio); };
   if (!off(by_way) && !off(by_views)) return;
   // Where only one of the two is off, it is that one which is wrong.
   const bool survey = (off(by_way) || by_way == 0.0) && (off(by_views) || by_views == 0.0);
@@ -202,6 +166,29 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
 
 }  // namespace
 
+SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
+  const Recording& recording = checked.recording;
+  SurveyAgreement result;
+  if (recording.survey.empty() || recording.sightings.empty()) return result;
+  const SurveyPlaces places = surveyed_places(recording);
+  result.way = legs_by_way(recording, places, track);
+  result.way_ratio = ratio_of(result.way);
+  if (result.way_ratio > 0.0) {
+    const Sign sign = sign_of(result.way, result.way_ratio);
+    result.by_way = sign.value;
+    result.unsigned_wheels = sign.contradicts && sign.straight;
+    const bool far = std::abs(std::log(result.way_ratio)) > std::log(kFarOff);
+    result.contradicts =
+        sign.contradicts || (sign.value == 0 && far && !looks_like_a_unit(result.way_ratio));
+  }
+  result.views = legs_by_views(recording, places, track, checked.angle_unit);
+  result.views_ratio = ratio_of(result.views);
+  if (result.views_ratio > 0.0) {
+    result.by_views = sign_of(result.views, result.views_ratio).value;
+  }
+  return result;
+}
+
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
                   bool compass) {
   const Recording& recording = checked.recording;
@@ -217,15 +204,14 @@ void check_survey(Checked& checked, const Track& track, const SurveyAgreement& a
                 "give both files the same names");
     return;
   }
-  check_spread(checked, track, sighted);
+  check_spread(checked, track, places);
   if (checked.wrong.contains("x") || checked.wrong.contains("t")) return;
   check_units(checked, agreement);
   if (!compass || checked.wrong.contains("x") || checked.wrong.contains("left")) return;
   if (agreement.by_way > 0) {
-    check_compass_frame(checked, track, legs_by_way(recording, places, track));
+    check_compass_frame(checked, track, agreement.way);
   } else if (agreement.by_views > 0) {
-    check_compass_frame(checked, track,
-                        legs_by_views(recording, places, track, checked.angle_unit));
+    check_compass_frame(checked, track, agreement.views);
   }
 }
 

@@ -3,6 +3,7 @@
 #include "check/survey_legs.hpp"
 
 #include "check/findings.hpp"
+#include "statistics/thinned.hpp"
 
 #include <cmath>
 
@@ -10,16 +11,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kFarthest = 40.0;  // m between two stops
-constexpr std::size_t kMost = 400;
-
-/// Evenly, down to a number that costs next to nothing.
-std::vector<SurveyLeg> thinned(std::vector<SurveyLeg> legs) {
-  if (legs.size() <= kMost) return legs;
-  std::vector<SurveyLeg> result;
-  result.reserve(kMost);
-  for (std::size_t k = 0; k < kMost; ++k) result.push_back(legs[k * legs.size() / kMost]);
-  return result;
-}
+constexpr std::size_t kMost = 400;  // that cost next to nothing
 
 }  // namespace
 
@@ -52,7 +44,7 @@ std::vector<SurveyLeg> legs_by_way(const Recording& recording, const SurveyPlace
     }
     before = &one;
   }
-  return thinned(std::move(legs));
+  return thinned(std::move(legs), kMost);
 }
 
 std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPlaces& places,
@@ -69,7 +61,7 @@ std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPla
     }
     before = &one;
   }
-  return thinned(std::move(legs));
+  return thinned(std::move(legs), kMost);
 }
 
 }  // namespace trussmap

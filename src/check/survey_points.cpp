@@ -156,12 +156,10 @@ std::vector<std::string_view> exchanged_points(const std::vector<SurveyLeg>& leg
 
 }  // namespace
 
-void check_survey_points(Checked& checked, const Track& track) {
-  const Recording& recording = checked.recording;
-  const SurveyPlaces places = surveyed_places(recording);
-  std::vector<SurveyLeg> legs = legs_by_way(recording, places, track);
-  const bool driven = legs.size() >= kFewestLegs;
-  if (!driven) legs = legs_by_views(recording, places, track, checked.angle_unit);
+void check_survey_points(Checked& checked, const SurveyAgreement& agreement) {
+  const SurveyPlaces places = surveyed_places(checked.recording);
+  const bool driven = agreement.way.size() >= kFewestLegs;
+  std::vector<SurveyLeg> legs = driven ? agreement.way : agreement.views;
   if (legs.size() < kFewestLegs) return;
   legs = turned_onto_survey(legs);
   const std::string legs_words = joined(" are not what was ", driven ? "driven" : "seen");

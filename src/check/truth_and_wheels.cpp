@@ -22,7 +22,6 @@ constexpr std::size_t kFewest = 12;
 constexpr double kClear = 0.7;      // correlation
 constexpr double kStraight = 0.15;  // rad
 constexpr double kTurned = 0.14;    // rad
-constexpr double kTogether = 0.9;   // length of the mean direction
 
 struct Stretch {
   Pose wheels;           ///< way, in the track's axes
@@ -118,9 +117,8 @@ void check_unit(Checked& checked, const std::vector<Stretch>& stretches) {
   }
   if (ratios.size() < kFewest) return;
   const double ratio = median(std::move(ratios));
-  if (!(ratio > 0.0)) return;
+  if (!(ratio > 0.0) || !looks_like_a_unit(ratio)) return;
   const std::string unit = unit_of_ratio(ratio);
-  if (unit.empty() && unit_of_ratio(1.0 / ratio).empty()) return;
   checked.add("truth.csv", "x,y", "truth unit",
               joined("the truth goes ", figure(ratio), " times as far as the wheels (median)",
                      unit.empty() ? "" : ": as if in " + unit),

@@ -11,6 +11,7 @@
 // exchanged wheels and clockwise bearings cannot be told apart here.
 #include "check/findings.hpp"
 #include "statistics/median.hpp"
+#include "statistics/thinned.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -54,12 +55,7 @@ std::vector<Pair> pairs_of(const Recording& recording, const Track& track) {
     }
     before = &one;
   }
-  if (pairs.size() <= kMostPairs) return pairs;
-  std::vector<Pair> thinned;
-  for (std::size_t k = 0; k < kMostPairs; ++k) {
-    thinned.push_back(pairs[k * pairs.size() / kMostPairs]);
-  }
-  return thinned;
+  return thinned(std::move(pairs), kMostPairs);
 }
 
 struct Reading {
@@ -87,6 +83,10 @@ double disagreement(const std::vector<Pair>& pairs, const Track& track, const Re
 }
 
 }  // namespace
+
+bool tells_place(const Sighting& sighting) {
+  return sighting.standing() || is_view(sighting);
+}
 
 Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit) {
   if (sighting.standing()) return from.position();
@@ -139,9 +139,7 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
       if (error < best.error) best = {error, wheels, unit};
     }
   }
-  if (best.error > kFits || best.error > kBetter * recorded) {
-    return result;
-  }
+  if (best.error > kFits || best.error > kBetter * recorded) return result;
   const std::string evidence =
       joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
              fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",
@@ -164,13 +162,10 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
                   "change the sign of left and right");
       break;
     case WheelMistake::left_negated:
-    case WheelMistake::right_negated: {
-      const std::string name = best.wheels == WheelMistake::left_negated ? "left" : "right";
-      checked.add("drive.csv", name, "wheel negated",
-                  evidence + "with the " + name + " wheel's sign changed",
-                  "change the sign of " + name);
+    case WheelMistake::right_negated:
+      add_lone_wheel(checked, best.wheels,
+                     evidence + "with the " + lone_wheel(best.wheels) + " wheel's sign changed");
       break;
-    }
   }
   return result;
 }

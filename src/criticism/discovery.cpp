@@ -240,7 +240,8 @@ class Discoverer {
     const HorizonError before = present_horizons().after_30;
     const HorizonError after = horizon_errors(*fit.state).after_30;
     if (std::min(before.windows, after.windows) < kFewestWindows) return std::nullopt;
-    return after.rms / before.rms;
+    if (before.rms > 0.0) return after.rms / before.rms;
+    return after.rms > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
   }
 
   /// What the tests of all effects together are too many for may yet be plain where a known error

@@ -4,6 +4,7 @@
 
 #include "estimation/pose_reckoner.hpp"
 #include "linalg/dense.hpp"
+#include "statistics/thinned.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -87,15 +88,7 @@ namespace {
 
 constexpr double kSamePlace = 0.5;  // m
 
-/// Evenly, down to a number that can be compared with one another.
-std::vector<Vector2> thinned(const std::vector<Vector2>& places) {
-  constexpr std::size_t kMost = 25;
-  if (places.size() <= kMost) return places;
-  std::vector<Vector2> result;
-  result.reserve(kMost);
-  for (std::size_t k = 0; k < kMost; ++k) result.push_back(places[k * places.size() / kMost]);
-  return result;
-}
+constexpr std::size_t kMostCompared = 25;  // places of a landmark, with one another
 
 std::ptrdiff_t votes(const std::vector<Vector2>& places, const Vector2& place) {
   return std::count_if(places.begin(), places.end(), [&place](const Vector2& other) {
@@ -269,7 +262,7 @@ void heed_majority(const RecordingProblem& problem, RecordingState& state) {
     return false;
   };
   for (std::size_t k = 0; k < places.size(); ++k) {
-    const std::vector<Vector2> seen = thinned(places[k]);
+    const std::vector<Vector2> seen = thinned(places[k], kMostCompared);
     const std::ptrdiff_t here = votes(seen, before[k]);
     if (2 * here > std::ssize(seen)) continue;
     std::ptrdiff_t most = here;
