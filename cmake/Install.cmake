@@ -1,11 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# Two sets of targets, so that find_package(trussmap COMPONENTS map) needs only what maps need.
+# Three sets of targets, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
 install(TARGETS trussmap_map EXPORT trussmapMapTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS trussmap_store EXPORT trussmapStoreTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS trussmap EXPORT trussmapTargets
@@ -14,6 +17,7 @@ install(TARGETS trussmap EXPORT trussmapTargets
 install(DIRECTORY include/trussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT trussmapMapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
+install(EXPORT trussmapStoreTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 install(EXPORT trussmapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 configure_package_config_file(cmake/trussmapConfig.cmake.in
                               ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake

@@ -5,11 +5,16 @@
 // group of processes, and -1, which a failed fork() returns, means all of them.
 #pragma once
 
+#include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <sys/mman.h>
 #include <sys/types.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace trussmap::testing {
 
@@ -33,5 +38,61 @@ inline int wait_for(pid_t process) {
   }
   return status;
 }
+
+/// A copy of this process that does one thing and nothing else, until it is killed.
+class ChildProcess {
+ public:
+  template <typename Work>
+  explicit ChildProcess(const Work& work) : id_(::fork()) {
+    if (id_ < 0) throw std::runtime_error("no process could be made");
+    if (id_ > 0) return;
+    try {
+      work();
+    } catch (...) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  ~ChildProcess() {
+    if (running_) kill();
+  }
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Kills it (SIGKILL) and waits; the signal that it died of, 0 where it had ended by itself.
+  int kill() const {
+    running_ = false;
+    send_signal(id_, SIGKILL);
+    const int status = wait_for(id_);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+
+ private:
+  pid_t id_;
+  mutable bool running_ = true;
+};
+
+/// A number that a process and its children share; 0 at first.
+class SharedCounter {
+ public:
+  SharedCounter()
+      : memory_(::mmap(nullptr, sizeof(Number), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
+                       -1, 0)) {
+    if (memory_ == MAP_FAILED) throw std::runtime_error("no memory could be shared");
+    number_ = new (memory_) Number(0);
+  }
+  ~SharedCounter() { ::munmap(memory_, sizeof(Number)); }
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+
+  void set(std::int64_t value) const { *number_ = value; }
+  [[nodiscard]] std::int64_t get() const { return *number_; }
+
+ private:
+  using Number = std::atomic<std::int64_t>;
+  static_assert(Number::is_always_lock_free);
+  void* memory_;
+  Number* number_ = nullptr;
+};
 
 }  // namespace trussmap::testing

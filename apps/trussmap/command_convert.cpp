@@ -4,6 +4,7 @@
 // trussmap convert: maps between formats, and foreign recordings to recordings.
 #include "commands.hpp"
 #include "trussmap/map_files.hpp"
+#include "trussmap/map_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
@@ -77,13 +78,17 @@ void run_convert(const ConvertOptions& options) {
     convert_optiodom(in, out);
     return;
   }
-  if (in.extension() != ".graphml" && in.extension() != ".g2o") {
+  if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
     throw UsageError("cannot tell what " + in.string() +
-                     " is: expected a map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or "
-                     "an OptiOdom run (..._run-NN.csv, plain or .xz)");
+                     " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
+                     "or an OptiOdom run (..._run-NN.csv, plain or .xz)");
   }
-  const LandmarkGraph map = read_map(in);
-  write_file(out, format_map(map, out, ""));
+  const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
+  if (is_map_store(out)) {
+    static_cast<void>(MapStore::create(out, map, {.method = Method::gauss_markov}));
+  } else {
+    write_file(out, format_map(map, out, ""));
+  }
   fmt::print("converted: {} landmarks and {} routes to {}\n", map.landmarks(), map.routes(),
              out.string());
 }
@@ -95,14 +100,15 @@ void setup_convert(const Command& app) {
   const Command command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      .add_option("IN", options->in,
-                  "A map (.graphml, .g2o), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
-                  "..._run-NN.csv (plain or .xz files)")
+      .add_option(
+          "IN", options->in,
+          "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
+          "..._run-NN.csv (plain or .xz files)")
       .required()
       .type_name("FILE");
   command
       .add_option("OUT", options->out,
-                  "A map (.graphml, .g2o, .geojson, .dot), or the recording's folder")
+                  "A map (.graphml, .g2o, .geojson, .dot, .db), or the recording's folder")
       .required()
       .type_name("FILE|DIR");
   command.callback([options] { run_convert(*options); });

@@ -87,6 +87,11 @@ Option Command::add_option(const std::string& name, std::optional<double>& value
   return Option(app_->add_option(name, value, description));
 }
 
+Option Command::add_option(const std::string& name, std::optional<std::string>& value,
+                           const std::string& description) const {
+  return Option(app_->add_option(name, value, description));
+}
+
 Option Command::add_option(const std::string& name, int& value,
                            const std::string& description) const {
   return Option(app_->add_option(name, value, description));

@@ -70,6 +70,8 @@ class Command {
   Option add_option(const std::string& name, double& value, const std::string& description) const;
   Option add_option(const std::string& name, std::optional<double>& value,
                     const std::string& description) const;
+  Option add_option(const std::string& name, std::optional<std::string>& value,
+                    const std::string& description) const;
   Option add_option(const std::string& name, int& value, const std::string& description) const;
   Option add_option(const std::string& name, std::uint64_t& value,
                     const std::string& description) const;

@@ -7,9 +7,9 @@
 
 #include "command_line.hpp"
 #include "page_runtime.hpp"
-#include "trussmap/estimate.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/umbmark.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -93,7 +93,9 @@ struct MapOnSurvey {
 struct BuiltMap {
   LandmarkGraph map;  ///< with covariances of the landmarks where they were adjusted
   Method method = Method::adjustment;
+  bool extended = false;  ///< the map was there before, with other recordings' landmarks
   int legs = 0;
+  int new_landmarks = 0;   ///< of the map's, those that these recordings brought
   int first_sight = 0;     ///< loops closed
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there
@@ -112,6 +114,23 @@ struct BuiltMap {
   /// Nothing speaks against the map.
   [[nodiscard]] bool good() const { return warnings.empty(); }
 };
+
+/// Whose axes a map has that recordings are to extend.
+enum class MapAxes {
+  compass,    ///< those of a compass: a recording with a compass has the same
+  landmarks,  ///< of its own: every recording is turned until the landmarks fit
+};
+
+/// Hands one session's legs to a builder that may hold a map already, by the builder's method. What
+/// build_map does to a recording before its legs are reckoned is done to this one, on its own: it
+/// is adjusted, wrong sightings are left out, common errors freed. A recording that has not the
+/// map's axes is turned by the landmarks that both have. The result tells of this recording, but
+/// for its map, which is the builder's. Of the options the gate and min_drive count. Throws as
+/// build_map does, and SolveError where a recording would have to be turned and shares fewer than
+/// two landmarks with the map; the builder may have taken some of the legs then.
+[[nodiscard]] BuiltMap extend_map(MapBuilder& builder, const Recording& recording,
+                                  const Model& model, MapAxes axes,
+                                  const BuildMapOptions& options = {});
 
 /// Builds one map from the sessions. Throws InputError where a recording has no sightings or there
 /// is no leg, SolveError where a session or a landmark is tied to nothing, std::invalid_argument on

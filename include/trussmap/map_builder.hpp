@@ -107,6 +107,13 @@ class MapBuilder {
  public:
   /// Throws std::invalid_argument on options out of range.
   explicit MapBuilder(const MapBuilderOptions& options = {});
+
+  /// Goes on with a map that was made before: its landmarks are settled, its routes have their
+  /// averages, and the first landmark stays for ever. The robot must start() on one of them. Throws
+  /// std::invalid_argument, too, on a route without traversals or with a displacement or covariance
+  /// that no leg may have; SolveError where a landmark is tied to nothing.
+  explicit MapBuilder(const LandmarkGraph& map, const MapBuilderOptions& options = {});
+
   ~MapBuilder();
   MapBuilder(MapBuilder&&) noexcept;
   MapBuilder& operator=(MapBuilder&&) noexcept;
@@ -166,7 +173,9 @@ class MapBuilder {
   [[nodiscard]] LandmarkGraph map() const;
 
  private:
+  friend class BuilderAccess;  // for map_store.hpp
   class State;
+  explicit MapBuilder(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

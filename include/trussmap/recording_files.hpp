@@ -86,6 +86,10 @@ struct OptiOdomRecording {
 /// Throws InputError with file and line; a run of another robot than the differential one is named.
 [[nodiscard]] OptiOdomRecording read_optiodom(const std::filesystem::path& file);
 
+/// 16 hexadecimal digits that two recordings share only if their wheels, compass and sightings are
+/// the same, to the last bit: whatever the folders are called.
+[[nodiscard]] std::string fingerprint(const Recording& recording);
+
 // ----------------------------------------
 // Poses over time as text, for other programs. Numbers read back to the same bits.
 //

@@ -3,11 +3,12 @@
 //
 // All of trussmap. Exploration code needs less: map_builder.hpp, or build_map.hpp.
 //
-// Two targets to link. trussmap::map has what stands in alignment, arc, build_map, channel,
+// Three targets to link. trussmap::map has what stands in arc, build_map, channel,
 // corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
-// noise_fit, planar, pose_graph, recording, survey_comparison, test_path and truss. All the others,
-// and effects in a model (a shape is read from its text), take trussmap::trussmap, which includes
-// it. Find the first alone by find_package(trussmap COMPONENTS map).
+// noise_fit, planar, pose_graph, recording, survey_comparison, test_path and truss; trussmap::store
+// map_store, too. All the others, and effects in a model (a shape is read from its text), take
+// trussmap::trussmap. Both include trussmap::map. Find the first alone by
+// find_package(trussmap COMPONENTS map).
 #pragma once
 
 #include "trussmap/arc.hpp"
@@ -22,7 +23,6 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/estimate.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/gate.hpp"
@@ -30,6 +30,7 @@
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/map_builder.hpp"
 #include "trussmap/map_files.hpp"
+#include "trussmap/map_store.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/noise_fit.hpp"

@@ -37,7 +37,6 @@
 // signs, and so do the betas. An axis y that points to the right does the same.
 #pragma once
 
-#include "trussmap/estimate.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/test_path.hpp"
 
@@ -48,6 +47,28 @@
 #include <Eigen/Core>
 
 namespace trussmap {
+
+/// A number with how sure it is: the standard error, and the degrees of freedom behind that error.
+struct Estimate {
+  double value = 0.0;
+  double standard_error = 0.0;
+  double dof = 0.0;  ///< 0: there is no scatter to judge by, or none was needed
+};
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Two-sided interval by Student's t. `confidence` in (0, 1).
+[[nodiscard]] Interval confidence_interval(const Estimate& estimate, double confidence = 0.95);
+
+/// Mean of a sample of plane vectors, and its covariance (scatter / n).
+struct SampleMean {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  int count = 0;
+};
 
 /// The two systematic errors of a differential drive, and what undoes them.
 struct GeometryErrors {

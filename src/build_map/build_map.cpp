@@ -6,6 +6,7 @@
 #include "build_map/map_doubts.hpp"
 #include "build_map/map_fit.hpp"
 #include "recording/well_formed.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
@@ -57,21 +58,6 @@ std::set<std::string> landmarks_stood_on(const std::vector<ClearedRecording>& cl
   return names;
 }
 
-BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& clear,
-                const std::vector<SessionGuide>& guides, const BuildMapOptions& options) {
-  const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
-  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
-  if (options.method == Method::adjustment) how.build.method = Method::gauss_markov;
-  BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how);
-  built.method = options.method;
-  if (options.method == Method::adjustment) place_as(landmarks, built.map);
-  const RecordingAdjustment& fit = best.fit.adjustment;
-  built.fit = MapFit{fit.chi2, fit.dof, fit.p_value, fit.iterations, fit.converged};
-  built.freed = best.freed;
-  built.rejected = left_out_of(best.fit);
-  return built;
-}
-
 std::vector<SurveyPoint> survey_of(const std::vector<Recording>& recordings) {
   std::map<std::string, SurveyPoint> survey;
   for (const Recording& recording : recordings) {
@@ -94,6 +80,52 @@ std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
   return result;
 }
 
+BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& clear,
+                const std::vector<SessionGuide>& guides, const BuildMapOptions& options) {
+  const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
+  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
+  if (options.method == Method::adjustment) how.build.method = Method::gauss_markov;
+  MapBuilder builder = builder_for(how.build);
+  BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
+  built.method = options.method;
+  if (options.method == Method::adjustment) place_as(landmarks, built.map);
+  return built;
+}
+
+/// Angle that turns the adjusted landmarks into the map's axes, rad.
+double turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
+                 const std::string& recording) {
+  std::vector<Vector2> here;
+  std::vector<Vector2> there;
+  for (int k = 0; k < adjusted.landmarks(); ++k) {
+    const std::optional<int> known = builder.find(adjusted.landmark(k).name);
+    if (!known) continue;
+    here.push_back(adjusted.landmark(k).position);
+    there.push_back(builder.position(*known));
+  }
+  if (here.size() < 2) {
+    throw SolveError(joined(recording, " shares ", here.size(),
+                            " landmarks with the map, expected two at least to turn it by: one of "
+                            "the two has no compass"));
+  }
+  return align_rigidly(here, there).angle;
+}
+
+/// What the fit says of the map, and what speaks against it.
+BuiltMap judged(BuiltMap built, const MapFitState& best, const std::vector<Recording>& recordings,
+                const Model& model, const std::vector<SightedDrive>& believed) {
+  const RecordingAdjustment& fit = best.fit.adjustment;
+  built.fit = MapFit{fit.chi2, fit.dof, fit.p_value, fit.iterations, fit.converged};
+  built.freed = best.freed;
+  built.rejected = left_out_of(best.fit);
+  ReckonedMap reckoned = reckoned_map(believed);
+  built.quality = quality_of(built, best, reckoned);
+  built.dead_reckoned = std::move(reckoned.places);
+  built.on_survey = laid_on_survey(built, recordings);
+  doubt(built, best, recordings, model);
+  return built;
+}
+
 }  // namespace
 
 BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
@@ -104,12 +136,28 @@ BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
   const std::vector<SessionGuide> guides = guides_of(best.fit);
   const std::vector<ClearedRecording> believed = cleared(recordings, model);
   BuiltMap built = map_of(best, best.freed.empty() ? believed : cleared(best.fit), guides, options);
-  ReckonedMap reckoned = reckoned_map(sessions_of(believed, model, guides));
-  built.quality = quality_of(built, best, reckoned);
-  built.dead_reckoned = std::move(reckoned.places);
-  built.on_survey = laid_on_survey(built, recordings);
-  doubt(built, best, recordings, model);
-  return built;
+  return judged(std::move(built), best, recordings, model, sessions_of(believed, model, guides));
+}
+
+BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model& model,
+                    MapAxes axes, const BuildMapOptions& options) {
+  const std::vector<Recording> recordings{recording};
+  check(recordings, options);
+  require_sightings(recordings);
+  const MapFitState best = fit_map(recordings, model, options.gate);
+  const std::vector<SessionGuide> guides = guides_of(best.fit);
+  const std::vector<ClearedRecording> believed = cleared(recordings, model);
+  const std::vector<ClearedRecording> clear = best.freed.empty() ? believed : cleared(best.fit);
+  const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
+  const bool extended = builder.landmarks() > 0;
+  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
+  how.build.method = builder.options().method;
+  if (extended && (axes == MapAxes::landmarks || !recording.drive.has_compass())) {
+    how.to_map = rotation(turn_onto(landmarks, builder, recording.name));
+  }
+  BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
+  built.extended = extended;
+  return judged(std::move(built), best, recordings, model, sessions_of(believed, model, guides));
 }
 
 }  // namespace trussmap

@@ -25,20 +25,26 @@ std::vector<const SightedDrive*> in_order(const std::vector<SightedDrive>& sessi
 
 }  // namespace
 
-BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLegOptions& options) {
+MapBuilder builder_for(const BuildMapOptions& options) {
+  MapBuilderOptions how;
+  how.method = options.method;
+  how.eta = options.eta;
+  how.gate = std::numeric_limits<double>::infinity();  // the best fit has left out what is wrong
+  return MapBuilder(how);
+}
+
+BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLegOptions& options,
+                        MapBuilder& builder) {
+  const int before = builder.landmarks();
   BuiltMap result;
   result.method = options.build.method;
-  MapBuilderOptions how;
-  how.method = options.build.method;
-  how.eta = options.build.eta;
-  how.gate = std::numeric_limits<double>::infinity();  // the best fit has left out what is wrong
-  MapBuilder builder(how);
   for (const SightedDrive* session : in_order(sessions)) {
     Session(*session, options, builder, result).run();
   }
   // Stiffness follows the routes' directions in the map, which the first rest may change.
   for (int round = 0; round < kRests; ++round) builder.rest();
   result.map = builder.map();
+  result.new_landmarks = builder.landmarks() - before;
   if (result.legs == 0) {
     throw InputError(sessions.front().recording().name, 0,
                      "no leg, expected a drive from one landmark to another");

@@ -24,11 +24,15 @@ namespace trussmap {
 struct LegByLegOptions {
   BuildMapOptions build;       ///< with a method that a map builder has
   const LandmarkGraph& guide;  ///< landmarks and their covariances as the best fit has them
-  std::set<std::string> stood_on = {};  ///< landmarks that the robot stands on somewhere
+  std::set<std::string> stood_on = {};   ///< landmarks that the robot stands on somewhere
+  Matrix2 to_map = Matrix2::Identity();  ///< turns the guide's axes into the map's
 };
 
-/// Throws as build_map does.
+/// For these options, empty.
+[[nodiscard]] MapBuilder builder_for(const BuildMapOptions& options);
+
+/// Onto what the builder has. Throws as build_map does.
 [[nodiscard]] BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions,
-                                      const LegByLegOptions& options);
+                                      const LegByLegOptions& options, MapBuilder& builder);
 
 }  // namespace trussmap

@@ -227,7 +227,13 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
   }
   if (built.method != Method::adjustment) {
     const double off = built.quality.from_adjusted;
-    if (off > kMuchWorse * built.quality.median_sd && off > kLoose * extent) {
+    const bool apart = off > kMuchWorse * built.quality.median_sd && off > kLoose * extent;
+    if (apart && built.extended) {
+      warnings.push_back("adjusted by itself, the recording puts its landmarks " +
+                         fixed_text(off, 2) +
+                         " m (rms) from where the map has them: have some moved, or is it another "
+                         "place?");
+    } else if (apart) {
       warnings.push_back("this method's map lies " + fixed_text(off, 2) +
                          " m (rms) from the adjusted one, which is the better one: take that");
     }

@@ -87,12 +87,16 @@ void Session::visit(const Stop& stop) {
 void Session::arrive(const Stop& stop, const Accepted& at) {
   const PositionEstimate place = landmark_from_pose(pose_, at.offset);
   const HeadingEstimate heading = heading_after(at, place);
-  const Arrival arrival =
-      builder_.arrive(at.sighting->landmark, {place.position, place.covariance});
+  const Arrival arrival = builder_.arrive(at.sighting->landmark, in_map(place));
   ++result_.legs;
   if (arrival.kind == Arrival::Kind::first_sight) ++result_.first_sight;
   if (arrival.kind == Arrival::Kind::refinement) ++result_.refinements;
   settle(stop, at, heading);
+}
+
+Traversal Session::in_map(const PositionEstimate& place) const {
+  const Matrix2& R = options_.to_map;
+  return {R * place.position, R * place.covariance * R.transpose()};
 }
 
 /// With a compass as reckoned; without, as the best fit has it, and as certain as one that is taken
@@ -140,7 +144,7 @@ void Session::observe(const std::vector<Accepted>& others) {
     const PositionEstimate place = landmark_from_pose(pose_, other.offset);
     if (place.position.squaredNorm() <= 0.0) continue;  // two landmarks stood on at once
     if (dilutes(other.sighting->landmark, place.covariance)) continue;
-    builder_.observe(other.sighting->landmark, {place.position, place.covariance});
+    builder_.observe(other.sighting->landmark, in_map(place));
     ++result_.side_sightings;
   }
 }

@@ -35,6 +35,7 @@ class Session {
   void arrive(const Stop& stop, const Accepted& at);
   void observe(const std::vector<Accepted>& others);
   [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
+  [[nodiscard]] Traversal in_map(const PositionEstimate& place) const;
   void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
   [[nodiscard]] HeadingEstimate first_heading(const Sighting& at,
                                               const InitialHeading& first) const;

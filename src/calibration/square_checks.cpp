@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "calibration/welch.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/umbmark.hpp"
 
+#include "calibration/welch.hpp"
 #include "trussmap/error.hpp"
 
 #include <cmath>

@@ -28,6 +28,12 @@ void write_covariance(std::string& text, const std::string& prefix, const Matrix
   write_data(text, (prefix + "c_yy").c_str(), covariance(1, 1));
 }
 
+/// XML allows none in a comment, nor one before its end.
+std::string without_double_hyphens(std::string text) {
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.insert(++at, " ");
+  return text;
+}
+
 using KeyNames = std::map<std::string, std::string>;
 
 /// The data of one node or edge, by attribute name.
@@ -163,7 +169,7 @@ LandmarkGraph read_map_graphml(const std::filesystem::path& file) {
 
 std::string format_map_graphml(const LandmarkGraph& map, const std::string& comment) {
   std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  if (!comment.empty()) text += "<!-- " + comment + " -->\n";
+  if (!comment.empty()) text += "<!-- " + without_double_hyphens(comment) + " -->\n";
   text += "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n";
   const auto declare = [&text](const char* domain, const char* prefix, const char* attribute) {
     const bool count = std::string(attribute) == "traversals";

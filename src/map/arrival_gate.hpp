@@ -28,6 +28,9 @@ class ArrivalGate {
   [[nodiscard]] double scale() const { return scale_; }
   void set_gate(double gate) { gate_ = gate; }
 
+  /// The misfits that s rests on, in the order in which they came.
+  [[nodiscard]] const std::deque<double>& remembered() const { return last_; }
+
  private:
   double gate_;
   double scale_ = 1.0;

@@ -40,6 +40,11 @@ SparseMatrix between(int i, int j, const Eigen::Matrix<double, 2, Eigen::Dynamic
 
 }  // namespace
 
+ExactIncrements::ExactIncrements(int joints, std::vector<Bar> bars)
+    : joints_(joints), bars_(std::move(bars)) {
+  for (const Bar& bar : bars_) check(bar.i, bar.j);
+}
+
 void ExactIncrements::check(int i, int j) const {
   if (i < 0 || j < 0 || i >= joints_ || j >= joints_ || i == j) {
     throw std::invalid_argument("a bar joins two different joints of the truss");

@@ -35,6 +35,9 @@ class ExactIncrements {
   /// Joint 0 is held. Each further joint comes with the bar that ties it.
   ExactIncrements() = default;
 
+  /// A truss that is there already: `joints` (1 at least), all tied together by the bars.
+  ExactIncrements(int joints, std::vector<Bar> bars);
+
   /// Makes room for one more joint and bar: adding them cannot fail then.
   void reserve();
 

@@ -19,6 +19,7 @@
 
 #include "trussmap/planar.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -33,6 +34,12 @@ namespace trussmap {
 /// it as it was.
 class OpenChain {
  public:
+  OpenChain() = default;
+
+  /// As landmarks() and roots() were.
+  OpenChain(std::vector<int> chain, std::vector<int> roots)
+      : chain_(std::move(chain)), root_(std::move(roots)) {}
+
   /// Makes room for landmarks 0 ... count - 1: no other call with these will fail.
   void reserve(int count);
 
@@ -53,6 +60,9 @@ class OpenChain {
   void settle(const Closing& closing, int b) noexcept;
 
   [[nodiscard]] const std::vector<int>& landmarks() const { return chain_; }
+
+  /// Per landmark what its loop hangs on, -1: nothing; landmarks beyond its end: nothing.
+  [[nodiscard]] const std::vector<int>& roots() const { return root_; }
 
  private:
   [[nodiscard]] int above(int landmark) const;

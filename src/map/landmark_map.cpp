@@ -3,21 +3,12 @@
 #include "trussmap/landmark_map.hpp"
 
 #include "geometry/index.hpp"
+#include "map/make_room.hpp"
 
 #include <stdexcept>
 #include <utility>
 
 namespace trussmap {
-
-namespace {
-
-/// So that the next push_back cannot fail.
-template <typename Value>
-void make_room(std::vector<Value>& values) {
-  if (values.size() == values.capacity()) values.reserve(2 * values.size() + 2);
-}
-
-}  // namespace
 
 int LandmarkGraph::add_landmark(const std::string& name, const Vector2& position) {
   if (name.empty()) throw std::invalid_argument("a landmark needs a name");

@@ -3,10 +3,10 @@
 #include "trussmap/map_builder.hpp"
 
 #include "geometry/index.hpp"
+#include "linalg/connected_parts.hpp"
 #include "linalg/dense.hpp"
-#include "map/arrival_gate.hpp"
-#include "map/exact_increments.hpp"
-#include "map/first_sight.hpp"
+#include "map/builder_memory.hpp"
+#include "map/make_room.hpp"
 #include "map/map_truss.hpp"
 #include "map/nearest_landmarks.hpp"
 #include "text/number_text.hpp"
@@ -41,12 +41,58 @@ void check(const Traversal& leg) {
   }
 }
 
+/// Symmetric to the last bit, so that three numbers hold the covariance.
+Traversal checked(const Traversal& leg) {
+  check(leg);
+  const Matrix2 C = 0.5 * (leg.covariance + leg.covariance.transpose());
+  return {leg.displacement, C};
+}
+
+void check_tied(const LandmarkGraph& map) {
+  std::vector<NodePair> ties;
+  for (int number = 0; number < map.routes(); ++number) {
+    ties.push_back({map.route(number).source, map.route(number).target});
+  }
+  const std::vector<int> part = connected_parts(map.landmarks(), ties);
+  for (int k = 1; k < map.landmarks(); ++k) {
+    if (part[idx(k)] == part[0]) continue;
+    throw SolveError("landmark " + map.landmark(k).name +
+                     " is tied to nothing: no chain of routes leads to it from landmark " +
+                     map.landmark(0).name);
+  }
+}
+
+/// All landmarks settled, and the routes' averages as they are.
+BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& options) {
+  BuilderMemory memory(options.gate);
+  std::vector<Bar> bars;
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    check({route.displacement, route.covariance});
+    if (route.traversals < 1) throw std::invalid_argument("a route has a traversal at least");
+    bars.push_back({route.source, route.target, route.traversals * route.covariance.inverse()});
+  }
+  check_tied(map);
+  memory.graph = map;
+  memory.chain.reserve(map.landmarks());
+  if (options.method == Method::gauss_markov) {
+    memory.increments = ExactIncrements(std::max(map.landmarks(), 1), std::move(bars));
+  }
+  return memory;
+}
+
 }  // namespace
 
 class MapBuilder::State {
  public:
-  explicit State(const MapBuilderOptions& options) : options_(options), gate_(options.gate) {
+  explicit State(const MapBuilderOptions& options) : State(options, BuilderMemory(options.gate)) {}
+
+  State(const MapBuilderOptions& options, BuilderMemory memory)
+      : options_(options), m_(std::move(memory)) {
     check_options();
+    m_.gate.set_gate(options.gate);
+    if (!indexed()) return;
+    for (int k = 0; k < m_.graph.landmarks(); ++k) nearest_.insert(k, stored(k));
   }
 
   void set_options(const MapBuilderOptions& options) {
@@ -55,7 +101,7 @@ class MapBuilder::State {
     }
     State(options).check_options();
     options_ = options;
-    gate_.set_gate(options.gate);
+    m_.gate.set_gate(options.gate);
   }
 
   void check_options() const {
@@ -76,79 +122,78 @@ class MapBuilder::State {
   }
 
   void start(const std::string& landmark, const Vector2& position) {
-    const std::optional<int> known = graph_.find(landmark);
-    if (!known && graph_.landmarks() > 0) {
+    const std::optional<int> known = m_.graph.find(landmark);
+    if (!known && m_.graph.landmarks() > 0) {
       throw SolveError("landmark " + landmark +
                        " is tied to nothing: a session must start on a landmark of the map");
     }
-    chain_.reserve(graph_.landmarks() + 1);
+    m_.chain.reserve(m_.graph.landmarks() + 1);
     if (!known) {
       if (!std::isfinite(position.squaredNorm())) {
         throw std::invalid_argument("the first landmark needs a finite position");
       }
-      graph_.add_landmark(landmark, position);
+      m_.graph.add_landmark(landmark, position);
       if (indexed()) nearest_.insert(0, position);
     }
-    here_ = known.value_or(0);
-    chain_.restart(here_);
-    carried_.reset();
+    m_.here = known.value_or(0);
+    m_.chain.restart(m_.here);
+    m_.carried.reset();
   }
 
   /// Drives there; the leg goes on from one that was left out.
   Arrival arrive(const std::string& landmark, const Traversal& leg) {
-    check(leg);
-    const Traversal whole = carried_ ? Traversal{carried_->displacement + leg.displacement,
-                                                 carried_->covariance + leg.covariance}
-                                     : leg;
+    const Traversal whole = m_.carried ? Traversal{m_.carried->displacement + leg.displacement,
+                                                   m_.carried->covariance + leg.covariance}
+                                       : leg;
     Arrival arrival = travel(landmark, whole);
     if (arrival.kind == Arrival::Kind::left_out) {
-      carried_ = whole;
+      m_.carried = whole;
     } else {
-      carried_.reset();
-      here_ = arrival.landmark;
+      m_.carried.reset();
+      m_.here = arrival.landmark;
     }
     return arrival;
   }
 
   Arrival observe(const std::string& landmark, const Traversal& from_here) {
-    if (!carried_) return travel(landmark, from_here);
-    return travel(landmark, {carried_->displacement + from_here.displacement,
-                             carried_->covariance + from_here.covariance});
+    if (!m_.carried) return travel(landmark, from_here);
+    return travel(landmark, {m_.carried->displacement + from_here.displacement,
+                             m_.carried->covariance + from_here.covariance});
   }
 
-  [[nodiscard]] const std::vector<LeftOutArrival>& left_out() const { return left_out_; }
+  [[nodiscard]] const std::vector<LeftOutArrival>& left_out() const { return m_.left_out; }
 
   Arrival travel(const std::string& landmark, const Traversal& leg) {
-    if (here_ < 0) throw std::invalid_argument("the robot must start on a landmark first");
+    if (m_.here < 0) throw std::invalid_argument("the robot must start on a landmark first");
     check(leg);
-    const std::optional<int> known = graph_.find(landmark);
+    const std::optional<int> known = m_.graph.find(landmark);
     if (!known) return discover(landmark, leg);
-    if (*known == here_)
+    if (*known == m_.here)
       throw std::invalid_argument("the robot stands on " + landmark + " already");
     Arrival arrival;
     arrival.landmark = *known;
-    arrival.misfit = leg.displacement - (stored(*known) - stored(here_));
+    arrival.misfit = leg.displacement - (stored(*known) - stored(m_.here));
     if (options_.method == Method::gauss_markov) return increment_gated(arrival, leg);
-    if (!graph_.route_between(here_, *known)) return close(arrival, leg);
+    if (!m_.graph.route_between(m_.here, *known)) return close(arrival, leg);
     return refine(arrival, leg);
   }
 
   double settle(double gain_limit) {
     check_gain_limit(gain_limit);
     std::vector<Vector2> before;
-    before.reserve(idx(graph_.landmarks()));
-    for (int k = 0; k < graph_.landmarks(); ++k) before.push_back(stored(k));
-    const Vector2 offset_before = offset_;
+    before.reserve(idx(m_.graph.landmarks()));
+    for (int k = 0; k < m_.graph.landmarks(); ++k) before.push_back(stored(k));
+    const Vector2 offset_before = m_.offset;
     double largest = 0.0;
     try {
-      for (int number = 0; number < graph_.routes(); ++number) {
+      for (int number = 0; number < m_.graph.routes(); ++number) {
         Arrival arrival;
         make(truss_.refinement(number, options_.eta, gain_limit), arrival);
         largest = std::max(largest, arrival.largest_move);
       }
     } catch (...) {
-      for (int k = 0; k < graph_.landmarks(); ++k) put(k, before[idx(k)]);
-      offset_ = offset_before;
+      for (int k = 0; k < m_.graph.landmarks(); ++k) put(k, before[idx(k)]);
+      m_.offset = offset_before;
       throw;
     }
     return largest;
@@ -160,23 +205,35 @@ class MapBuilder::State {
     return arrival.largest_move;
   }
 
-  [[nodiscard]] Vector2 position(int landmark) const { return stored(landmark) + offset_; }
+  [[nodiscard]] Vector2 position(int landmark) const { return stored(landmark) + m_.offset; }
 
   [[nodiscard]] LandmarkGraph map() const {
-    LandmarkGraph map = graph_;
+    LandmarkGraph map = m_.graph;
     for (int k = 0; k < map.landmarks(); ++k) map.set_position(k, position(k));
     return map;
   }
 
   [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
-  [[nodiscard]] const LandmarkGraph& graph() const { return graph_; }
-  [[nodiscard]] int here() const { return here_; }
+  [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
+  [[nodiscard]] int here() const { return m_.here; }
+  [[nodiscard]] const BuilderMemory& memory() const { return m_; }
+
+  /// Makes the call and puts it into the journal, if there is one: both or neither.
+  template <typename Call>
+  auto journaled(BuilderCall entry, const Call& call) {
+    if (journal != nullptr) make_room(*journal);
+    const auto result = call(entry);
+    if (journal != nullptr) journal->push_back(entry);
+    return result;
+  }
+
+  std::vector<BuilderCall>* journal = nullptr;
 
  private:
-  // Positions in the graph are short of the map's by offset_, so that a shift of the whole map
+  // Positions in the graph are short of the map's by m_.offset, so that a shift of the whole map
   // touches no landmark.
   [[nodiscard]] const Vector2& stored(int landmark) const {
-    return graph_.landmark(landmark).position;
+    return m_.graph.landmark(landmark).position;
   }
 
   [[nodiscard]] bool indexed() const {
@@ -191,16 +248,16 @@ class MapBuilder::State {
   // What may fail comes first in all that follows, what changes the map last.
 
   Arrival discover(const std::string& name, const Traversal& leg) {
-    chain_.reserve(graph_.landmarks() + 1);
-    increments_.reserve();
+    m_.chain.reserve(m_.graph.landmarks() + 1);
+    m_.increments.reserve();
     Arrival arrival;
     arrival.kind = Arrival::Kind::new_landmark;
-    arrival.landmark = graph_.add_landmark(name, here_, leg);
-    arrival.route = graph_.routes() - 1;
+    arrival.landmark = m_.graph.add_landmark(name, m_.here, leg);
+    arrival.route = m_.graph.routes() - 1;
     if (options_.method == Method::gauss_markov) {
-      increments_.add_joint(here_, leg.covariance.inverse());  // bar number = route number
+      m_.increments.add_joint(m_.here, leg.covariance.inverse());  // bar number = route number
     } else {
-      chain_.append(here_, arrival.landmark);
+      m_.chain.append(m_.here, arrival.landmark);
     }
     if (indexed()) nearest_.insert(arrival.landmark, stored(arrival.landmark));
     return arrival;
@@ -210,10 +267,10 @@ class MapBuilder::State {
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg) {
     const Vector2 misfit = leg.displacement - (stored(j) - stored(i));
     const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
-    if (gate_.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
+    if (m_.gate.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
     Matrix2 of_map;
     for (Eigen::Index c = 0; c < 2; ++c) {
-      const std::vector<Vector2> u = increments_.pull(i, j, Matrix2::Identity().col(c));
+      const std::vector<Vector2> u = m_.increments.pull(i, j, Matrix2::Identity().col(c));
       of_map.col(c) = u[idx(j)] - u[idx(i)];
     }
     const Matrix2 both = leg.covariance + 0.5 * (of_map + of_map.transpose());
@@ -221,19 +278,19 @@ class MapBuilder::State {
   }
 
   Arrival increment_gated(Arrival arrival, const Traversal& leg) {
-    if (std::isinf(options_.gate)) return increment(here_, arrival, leg);
-    left_out_.reserve(left_out_.size() + 1);
-    const double misfit = squared_misfit(here_, arrival.landmark, leg);
-    ArrivalGate gate = gate_;
+    if (std::isinf(options_.gate)) return increment(m_.here, arrival, leg);
+    m_.left_out.reserve(m_.left_out.size() + 1);
+    const double misfit = squared_misfit(m_.here, arrival.landmark, leg);
+    ArrivalGate gate = m_.gate;
     gate.remember(misfit);
     if (gate.lets_in(misfit)) {
-      arrival = increment(here_, arrival, leg);
+      arrival = increment(m_.here, arrival, leg);
     } else {
       arrival.kind = Arrival::Kind::left_out;
-      left_out_.push_back({graph_.landmark(here_).name, graph_.landmark(arrival.landmark).name, leg,
-                           std::sqrt(misfit)});
+      m_.left_out.push_back({m_.graph.landmark(m_.here).name,
+                             m_.graph.landmark(arrival.landmark).name, leg, std::sqrt(misfit)});
     }
-    gate_ = std::move(gate);
+    m_.gate = std::move(gate);
     try {
       take_back_in(arrival);
     } catch (const std::exception&) {
@@ -244,44 +301,44 @@ class MapBuilder::State {
 
   /// Order does not matter to least squares: what fits by now is taken in late.
   void take_back_in(Arrival& arrival) {
-    for (std::size_t k = 0; k < left_out_.size();) {
-      const LeftOutArrival& one = left_out_[k];
-      const int from = *graph_.find(one.from);
+    for (std::size_t k = 0; k < m_.left_out.size();) {
+      const LeftOutArrival& one = m_.left_out[k];
+      const int from = *m_.graph.find(one.from);
       Arrival late;
-      late.landmark = *graph_.find(one.to);
+      late.landmark = *m_.graph.find(one.to);
       late.misfit = one.leg.displacement - (stored(late.landmark) - stored(from));
-      const bool this_one = arrival.kind == Arrival::Kind::left_out && k + 1 == left_out_.size();
-      if (this_one || !gate_.lets_in(squared_misfit(from, late.landmark, one.leg))) {
+      const bool this_one = arrival.kind == Arrival::Kind::left_out && k + 1 == m_.left_out.size();
+      if (this_one || !m_.gate.lets_in(squared_misfit(from, late.landmark, one.leg))) {
         ++k;
         continue;
       }
       late = increment(from, late, one.leg);
       arrival.largest_move = std::max(arrival.largest_move, late.largest_move);
       ++arrival.back;
-      left_out_.erase(left_out_.begin() + static_cast<std::ptrdiff_t>(k));
+      m_.left_out.erase(m_.left_out.begin() + static_cast<std::ptrdiff_t>(k));
     }
   }
 
   Arrival increment(int from, Arrival arrival, const Traversal& leg) {
-    const std::optional<int> known_route = graph_.route_between(from, arrival.landmark);
+    const std::optional<int> known_route = m_.graph.route_between(from, arrival.landmark);
     arrival.kind = known_route ? Arrival::Kind::refinement : Arrival::Kind::first_sight;
-    Route route = known_route ? graph_.route(*known_route) : Route();
+    Route route = known_route ? m_.graph.route(*known_route) : Route();
     average_in(route, known_route && route.source != from ? reversed(leg) : leg);
     const Matrix2 one = options_.pooled ? route.covariance.inverse() : leg.covariance.inverse();
     if (!known_route) {
-      increments_.add_bar(from, arrival.landmark, one);
+      m_.increments.add_bar(from, arrival.landmark, one);
     } else {
-      increments_.set_stiffness(
+      m_.increments.set_stiffness(
           *known_route, options_.pooled ? Matrix2(route.traversals * one)
-                                        : Matrix2(increments_.stiffness(*known_route) + one));
+                                        : Matrix2(m_.increments.stiffness(*known_route) + one));
     }
     Moves moves;
     try {
-      for (int k = 0; k < graph_.landmarks(); ++k) moves.landmarks.push_back(k);
-      moves.displacements = increments_.pull(from, arrival.landmark, one * arrival.misfit);
-      arrival.route = graph_.add_traversal(from, arrival.landmark, leg);
+      for (int k = 0; k < m_.graph.landmarks(); ++k) moves.landmarks.push_back(k);
+      moves.displacements = m_.increments.pull(from, arrival.landmark, one * arrival.misfit);
+      arrival.route = m_.graph.add_traversal(from, arrival.landmark, leg);
     } catch (...) {
-      increments_.take_back();
+      m_.increments.take_back();
       throw;
     }
     make(moves, arrival);
@@ -289,11 +346,11 @@ class MapBuilder::State {
   }
 
   Arrival close(Arrival arrival, const Traversal& leg) {
-    const OpenChain::Closing closing = chain_.closing(here_, arrival.landmark);
+    const OpenChain::Closing closing = m_.chain.closing(m_.here, arrival.landmark);
     std::vector<Matrix2> stiffnesses;
     for (std::size_t n = 1; n < closing.landmarks.size(); ++n) {
-      const auto route = graph_.route_between(closing.landmarks[n - 1], closing.landmarks[n]);
-      stiffnesses.push_back(truss_.stiffness(graph_.route(*route)));
+      const auto route = m_.graph.route_between(closing.landmarks[n - 1], closing.landmarks[n]);
+      stiffnesses.push_back(truss_.stiffness(m_.graph.route(*route)));
     }
     stiffnesses.push_back(
         bar_stiffness(StiffnessLaw::printed, leg.covariance, direction(leg.displacement), 1.0));
@@ -304,18 +361,18 @@ class MapBuilder::State {
     require_finite(moves);
 
     arrival.kind = moves.landmarks.empty() ? Arrival::Kind::new_route : Arrival::Kind::first_sight;
-    arrival.route = graph_.add_traversal(here_, arrival.landmark, leg);
+    arrival.route = m_.graph.add_traversal(m_.here, arrival.landmark, leg);
     make(moves, arrival);
-    chain_.settle(closing, arrival.landmark);
+    m_.chain.settle(closing, arrival.landmark);
     return arrival;
   }
 
   Arrival refine(Arrival arrival, const Traversal& leg) {
     arrival.kind = Arrival::Kind::refinement;
-    arrival.route = *graph_.route_between(here_, arrival.landmark);
-    const Route before = graph_.route(arrival.route);
-    Route& route = graph_.route(arrival.route);
-    average_in(route, route.source == here_ ? leg : reversed(leg));
+    arrival.route = *m_.graph.route_between(m_.here, arrival.landmark);
+    const Route before = m_.graph.route(arrival.route);
+    Route& route = m_.graph.route(arrival.route);
+    average_in(route, route.source == m_.here ? leg : reversed(leg));
     if (!options_.refine) return arrival;
     try {
       const Moves moves = truss_.refinement(arrival.route, options_.eta, gain_limit());
@@ -335,51 +392,77 @@ class MapBuilder::State {
       if (move > kMoved) ++arrival.landmarks_moved;
       arrival.largest_move = std::max(arrival.largest_move, move);
     }
-    offset_ += moves.shift;
+    m_.offset += moves.shift;
   }
 
   void put(int landmark, const Vector2& position) noexcept {
     if (indexed()) nearest_.move(landmark, stored(landmark), position);
-    graph_.set_position(landmark, position);
+    m_.graph.set_position(landmark, position);
   }
 
   MapBuilderOptions options_;
-  LandmarkGraph graph_;
-  Vector2 offset_ = Vector2::Zero();
-  OpenChain chain_;
-  ExactIncrements increments_;
+  BuilderMemory m_;
   NearestLandmarks nearest_;
-  MapTruss truss_{graph_, nearest_};
-  ArrivalGate gate_;
-  std::vector<LeftOutArrival> left_out_;
-  std::optional<Traversal> carried_;  ///< driven since here_, by legs whose ends were left out
-  int here_ = -1;
+  MapTruss truss_{m_.graph, nearest_};
 };
 
 MapBuilder::MapBuilder(const MapBuilderOptions& options)
     : state_(std::make_unique<State>(options)) {}
+MapBuilder::MapBuilder(const LandmarkGraph& map, const MapBuilderOptions& options)
+    : MapBuilder(std::make_unique<State>(options, memory_of(map, options))) {}
+MapBuilder::MapBuilder(std::unique_ptr<State> state) : state_(std::move(state)) {}
 MapBuilder::~MapBuilder() = default;
 MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
 MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
 
+MapBuilder BuilderAccess::restored(BuilderMemory memory, const MapBuilderOptions& options) {
+  return MapBuilder(std::make_unique<MapBuilder::State>(options, std::move(memory)));
+}
+
+const BuilderMemory& BuilderAccess::memory(const MapBuilder& builder) {
+  return builder.state_->memory();
+}
+
+void BuilderAccess::keep_journal(MapBuilder& builder, std::vector<BuilderCall>* journal) {
+  builder.state_->journal = journal;
+}
+
 void MapBuilder::start(const std::string& landmark, const Vector2& position) {
-  state_->start(landmark, position);
+  state_->journaled({BuilderCall::Kind::start, -1, -1, {position, Matrix2::Zero()}},
+                    [&](BuilderCall& entry) {
+                      state_->start(landmark, position);
+                      return entry.to = here();
+                    });
 }
 
-Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
-  return state_->arrive(landmark, leg);
+Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& given) {
+  const Traversal leg = checked(given);
+  return state_->journaled({BuilderCall::Kind::arrive, here(), -1, leg}, [&](BuilderCall& entry) {
+    const Arrival arrival = state_->arrive(landmark, leg);
+    entry.to = arrival.landmark;
+    return arrival;
+  });
 }
 
-Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_here) {
-  return state_->observe(landmark, from_here);
+Arrival MapBuilder::observe(const std::string& landmark, const Traversal& given) {
+  const Traversal leg = checked(given);
+  return state_->journaled({BuilderCall::Kind::observe, here(), -1, leg}, [&](BuilderCall& entry) {
+    const Arrival arrival = state_->observe(landmark, leg);
+    entry.to = arrival.landmark;
+    return arrival;
+  });
 }
 
 double MapBuilder::settle(double gain_limit) {
-  return state_->options().method == Method::elastic ? state_->settle(gain_limit) : 0.0;
+  if (state_->options().method != Method::elastic) return 0.0;
+  return state_->journaled({.kind = BuilderCall::Kind::settle, .gain = gain_limit},
+                           [&](BuilderCall&) { return state_->settle(gain_limit); });
 }
 
 double MapBuilder::rest() {
-  return state_->options().method == Method::elastic ? state_->rest() : 0.0;
+  if (state_->options().method != Method::elastic) return 0.0;
+  return state_->journaled({.kind = BuilderCall::Kind::rest},
+                           [&](BuilderCall&) { return state_->rest(); });
 }
 
 const std::vector<LeftOutArrival>& MapBuilder::left_out() const {

@@ -120,5 +120,54 @@ TEST(BuildMap, RefusesARecordingWithoutSightings) {
   EXPECT_THROW((void)build_map({}, Model{}), std::invalid_argument);
 }
 
+MapBuilder grown_by(const std::vector<Recording>& recordings, MapAxes axes, Method method) {
+  MapBuilder builder({.method = method, .eta = {.hold_first = false}});
+  for (const Recording& one : recordings) (void)extend_map(builder, one, Model{}, axes);
+  return builder;
+}
+
+double error_of(const MapBuilder& builder, const Recording& surveyed) {
+  BuiltMap built;
+  built.map = builder.map();
+  return error_of(built, surveyed);
+}
+
+/// The first session makes the map that build_map makes by the same method; each further one is
+/// turned into its axes, whatever way its own point, and makes it no worse.
+TEST(ExtendMap, SessionsOneByOne) {
+  for (const Method method : {Method::elastic, Method::gauss_markov}) {
+    const Recording first = drive_about(true, 21);
+    const BuiltMap alone = build_map({first}, Model{}, {.method = method});
+    MapBuilder builder = grown_by({first}, MapAxes::compass, method);
+    EXPECT_NEAR(error_of(builder, first), error_of(alone, first), 1e-9);
+
+    Recording askew = drive_about(true, 22);
+    for (double& reading : askew.drive.heading) reading += 0.7;  // a compass of another country
+    const BuiltMap second = extend_map(builder, askew, Model{}, MapAxes::landmarks);
+    EXPECT_TRUE(second.extended);
+    EXPECT_EQ(second.new_landmarks, 0);
+    const BuiltMap third = extend_map(builder, drive_about(false, 23), Model{}, MapAxes::compass);
+    EXPECT_TRUE(third.good());
+    EXPECT_LE(error_of(builder, first), 1.3 * error_of(alone, first));
+    const Alignment laid = compare_with_survey(positions_of(builder.map()), first.survey).rigid;
+    EXPECT_NEAR(laid.angle, 0.0, 0.01);  // still the first compass's
+  }
+}
+
+TEST(ExtendMap, ASessionElsewhereIsRefusedOrDoubted) {
+  MapBuilder builder = grown_by({drive_about(true, 24)}, MapAxes::compass, Method::gauss_markov);
+  Recording nowhere = drive_about(false, 25);
+  for (Sighting& one : nowhere.sightings) one.landmark += " abroad";
+  EXPECT_THROW((void)extend_map(builder, nowhere, Model{}, MapAxes::compass), SolveError);
+  Recording mirrored = drive_about(true, 26);
+  for (Sighting& one : mirrored.sightings) {  // L2_1 is where L1_2 was
+    std::swap(one.landmark[1], one.landmark[3]);
+  }
+  const BuiltMap doubted = extend_map(builder, mirrored, Model{}, MapAxes::compass);
+  EXPECT_FALSE(doubted.good());
+  EXPECT_NE(doubted.warnings.front().find("from where the map has them"), std::string::npos)
+      << doubted.warnings.front();
+}
+
 }  // namespace
 }  // namespace trussmap

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # After check.cmake: builds and runs the project in CONSUMER_DIR/map against the installation, by
-# the component map alone and as if what reads files and models were nowhere to be found. Stops with
-# an error at the first thing that fails.
+# the component map alone and as if what reads files and models were nowhere to be found; and in
+# the same way the one in CONSUMER_DIR/store by the component store. Stops with an error at the first
+# thing that fails.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 set(prefix ${BUILD_DIR}/install-test/prefix)
 set(explorer ${BUILD_DIR}/install-test/explorer)
@@ -20,6 +21,28 @@ file(WRITE ${explorer}/readme.cpp "${CMAKE_MATCH_1}")
 foreach(package fmt muparser LibLZMA EXPAT tomlplusplus nlohmann_json CLI11 Boost)
   list(APPEND absent -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
+
+# The second one, which keeps its map: run twice, the file is gone on with.
+set(keeper ${BUILD_DIR}/install-test/keeper)
+file(REMOVE_RECURSE ${keeper})
+string(REGEX MATCH "```cpp\n(#include <trussmap/map_store.hpp>[^`]*)```" found "${readme}")
+if(NOT found)
+  message(FATAL_ERROR "README.md has no example of a map store")
+endif()
+file(WRITE ${keeper}/readme.cpp "${CMAKE_MATCH_1}")
+run(${CMAKE_COMMAND} -S ${CONSUMER_DIR}/store -B ${keeper} -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Debug
+    -D README_EXAMPLE=${keeper}/readme.cpp ${absent})
+run(${CMAKE_COMMAND} --build ${keeper})
+foreach(calls 3 6)
+  run(${CMAKE_COMMAND} -E chdir ${keeper} ./keeper)
+  if(NOT output STREQUAL "2 landmarks, ${calls} calls kept\n")
+    message(FATAL_ERROR "the example of a map store says:\n${output}")
+  endif()
+endforeach()
+
+# Maps need no database either.
+list(APPEND absent -D CMAKE_DISABLE_FIND_PACKAGE_SQLite3=ON)
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR}/map -B ${explorer} -D CMAKE_PREFIX_PATH=${prefix}
     -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Debug
     -D README_EXAMPLE=${explorer}/readme.cpp ${absent})
@@ -28,7 +51,7 @@ foreach(program readme explorer)
   run(${explorer}/${program})
   message(STATUS "${output}")
   run(readelf -d ${explorer}/${program})
-  string(REGEX MATCH "NEEDED[^\n]*(expat|lzma|muparser|fmt|toml|json)[^\n]*" needed "${output}")
+  string(REGEX MATCH "NEEDED[^\n]*(sqlite|expat|lzma|muparser|fmt|toml|json)[^\n]*" needed "${output}")
   if(needed)
     message(FATAL_ERROR "${program} needs more than maps do: ${needed}")
   endif()

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 
@@ -295,6 +296,48 @@ TEST(MapBuilder, AtRestNoForceIsLeft) {
     force[idx(route.source)] -= pull;
   }
   for (int k = 1; k < map.landmarks(); ++k) EXPECT_LE(force[idx(k)].norm(), 1e-6 * largest) << k;
+}
+
+/// Exact increments know no more of the past than the routes' averages where the covariances of all
+/// traversals were alike.
+TEST(MapBuilder, GoesOnFromAMap) {
+  Walk walk = random_walk(12, 240, 1.0, 31);
+  for (Traversal& leg : walk.legs) leg.covariance = 0.02 * Matrix2::Identity();
+  for (const Method method : {Method::elastic, Method::gauss_markov}) {
+    MapBuilderOptions options;
+    options.method = method;
+    options.eta = {Eta::Kind::fixed, 5, false};
+    options.gate = std::numeric_limits<double>::infinity();
+    Walk half = walk;
+    half.legs.resize(120);
+    MapBuilder whole = built(half, options);
+    MapBuilder second(whole.map(), options);
+    second.start(name(walk.visits[120]));
+    for (std::size_t k = 120; k < walk.legs.size(); ++k) {
+      whole.arrive(name(walk.visits[k + 1]), walk.legs[k]);
+      second.arrive(name(walk.visits[k + 1]), walk.legs[k]);
+    }
+    for (int k = 0; k < whole.landmarks(); ++k) {
+      EXPECT_LE((whole.position(k) - second.position(k)).norm(), 1e-9) << name_of(method);
+    }
+  }
+}
+
+TEST(MapBuilder, RefusesAMapThatNoBuilderCanHave) {
+  LandmarkGraph map;
+  map.add_landmark("A", {0.0, 0.0});
+  map.add_landmark("B", 0, {{1.0, 0.0}, 0.01 * Matrix2::Identity()});
+  map.add_landmark("C", {5.0, 0.0});
+  try {
+    MapBuilder builder(map);
+    FAIL();
+  } catch (const SolveError& error) {
+    EXPECT_STREQ(error.what(),
+                 "landmark C is tied to nothing: no chain of routes leads to it from landmark A");
+  }
+  map.add_route(1, 2);
+  EXPECT_THROW(MapBuilder{map}, std::invalid_argument);  // never driven
+  EXPECT_EQ(MapBuilder(LandmarkGraph()).landmarks(), 0);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/estimate.hpp"
+#include "calibration/welch.hpp"
 
 #include "statistics/distributions.hpp"
 

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "store_sessions.hpp"
+
+#include "build_output.hpp"
+#include "command_line.hpp"
+#include "model_recordings.hpp"
+#include "recording_warnings.hpp"
+#include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/map_store.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/wording.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr const char* kAxes = "axes";  // a note of the store: whose axes its map has
+
+std::string option_of(Method method) {
+  std::string name = name_of(method);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+MapStore opened(const StoreSessions& options) {
+  if (!is_map_store(options.store)) {
+    throw UsageError(options.store + " is no name of a store, expected one that ends in .db");
+  }
+  std::error_code ignored;
+  if (!std::filesystem::exists(options.store, ignored)) {
+    MapBuilderOptions fresh;
+    fresh.method = options.method.value_or(Method::gauss_markov);
+    fresh.eta = options.build.eta;
+    return MapStore(options.store, fresh);
+  }
+  MapStore store(options.store);
+  const MapBuilderOptions& kept = store.builder().options();
+  const bool other_eta =
+      options.eta && (options.eta->kind != kept.eta.kind || options.eta->count != kept.eta.count);
+  if (other_eta || options.method.value_or(kept.method) != kept.method) {
+    throw UsageError(fmt::format("{} keeps the method and the eta that it was made with, {}",
+                                 options.store, option_of(kept.method)));
+  }
+  return store;
+}
+
+/// The first session says whose axes the map has.
+MapAxes axes_of(MapStore& store, const Recording& recording) {
+  if (store.builder().landmarks() == 0) {
+    store.set_note(kAxes, recording.drive.has_compass() ? "compass" : "landmarks");
+  }
+  return store.note(kAxes) == "compass" ? MapAxes::compass : MapAxes::landmarks;
+}
+
+BuiltMap added(MapStore& store, const std::string& key, const Recording& recording,
+               const Model& model, const StoreSessions& options) {
+  const MapAxes axes = axes_of(store, recording);
+  BuiltMap built;
+  store.append(key, recording.name, [&](MapBuilder& builder) {
+    try {
+      built = extend_map(builder, recording, model, axes, options.build);
+    } catch (const std::invalid_argument& error) {  // an effect that it cannot have
+      throw InputError(options.model, 0, error.what());
+    }
+  });
+  return built;
+}
+
+/// The map as a whole is older than this recording: how good it is, nothing of it tells.
+std::string verdict_of_session(const BuiltMap& built) {
+  if (!built.good()) return verdict_in_words(built);
+  if (!built.extended) return "good: nothing speaks against it";
+  return fmt::format(
+      "good: adjusted by itself it puts its landmarks {:.3f} m (rms) from where the map has them",
+      built.quality.from_adjusted);
+}
+
+void print_session(const Recording& recording, const BuiltMap& built) {
+  fmt::print("{}: {} legs, {} new landmarks\n", recording.name, built.legs, built.new_landmarks);
+  fmt::print("  {}\n",
+             verdict_text(built.good() ? Mood::good : Mood::doubt, verdict_of_session(built)));
+  for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
+    fmt::print("  {}", warning_text(built.warnings[k]));
+  }
+  for (const std::string& note : built.notes) fmt::print("  note: {}\n", note);
+  std::fflush(stdout);  // who reads it may rely on it
+}
+
+}  // namespace
+
+void add_sessions(const StoreSessions& options) {
+  const std::vector<Recording> recordings = read_recordings(options.recordings);
+  const Model model = read_model(options.model, recordings);
+  warn_of_mistakes(recordings, model, options.model);
+  MapStore store = opened(options);
+  json sessions = json::array();
+  for (const Recording& recording : recordings) {
+    const std::string key = fingerprint(recording);
+    if (store.has_session(key)) {
+      fmt::print("{}: is in the store already, nothing added\n", recording.name);
+      continue;
+    }
+    const BuiltMap built = added(store, key, recording, model, options);
+    print_session(recording, built);
+    json session = build_json(built, option_of(built.method));
+    session["recording"] = recording.name;
+    sessions.push_back(std::move(session));
+  }
+
+  const MapBuilder& builder = store.builder();
+  const LandmarkGraph map = builder.map();
+  const std::string method = option_of(builder.options().method);
+  Files files;
+  if (!options.out.empty()) {
+    files.emplace_back(options.out, format_map(map, options.out,
+                                               "trussmap build, from a store, method " + method));
+  }
+  if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(map));
+  if (!options.json_file.empty()) {
+    const json result = {{"store", options.store},
+                         {"method", method},
+                         {"landmarks", map.landmarks()},
+                         {"routes", map.routes()},
+                         {"sessions", store.sessions().size()},
+                         {"legs", store.legs()},
+                         {"left_out", builder.left_out().size()},
+                         {"positions", positions_json(map)},
+                         {"added", sessions}};
+    files.emplace_back(options.json_file, result.dump(2) + "\n");
+  }
+  write_files(files);
+  fmt::print(
+      "\nmap of {} landmarks and {} routes in {}, method {}: {} sessions, {} arrivals left "
+      "out\n",
+      map.landmarks(), map.routes(), options.store, method, store.sessions().size(),
+      builder.left_out().size());
+  print_written(files);
+}
+
+}  // namespace trussmap::app

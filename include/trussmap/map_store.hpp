@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A map that grows for weeks: a map builder (map_builder.hpp) whose memory is a file.
+//
+//   MapStore store("map.db");              // made, or gone on with where it stopped
+//   store.start("dock");
+//   store.arrive("door", {displacement, covariance});     // once this returns, the leg is kept
+//   store.builder().position(...)
+//
+// What a call has returned from survives the end of the program, kill -9 and the loss of power; a
+// call that was under way then has either happened or not. Every leg is kept as it was given, so
+// that a better map can be made of them later. Opening costs what the map costs, not its history:
+// landmarks and routes are read, legs are not.
+//
+// The file is an SQLite database (write-ahead log, synchronous in full), and no program but one
+// writes it at a time; others may read meanwhile. Its tables:
+//
+//   map        landmark, x, y                                     where the landmarks are now, m
+//   routes     source, target (numbers of landmarks), traversals, stretch, orientation, dx, dy,
+//              c_xx, c_xy, c_yy                                   as landmark_map.hpp has them
+//   legs       number, session, kind (0 start, 1 arrive, 2 observe, 3 settle, 4 rest), source,
+//              target, dx, dy, c_xx, c_xy, c_yy, gain             every call, in order; m, m^2
+//   sessions   number, key, name, first_leg, legs                 those that append() took in
+//   landmarks, chain, misfits, left_out, state, facts             what else the builder remembers
+//
+// Link trussmap::store. All of this throws InputError, naming the file, where the file cannot be
+// read or written, is no store or a damaged one, or is being written by another program.
+#pragma once
+
+#include "trussmap/map_builder.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// A call of the builder, as it was made. Names are empty where the kind has none.
+struct StoredLeg {
+  enum class Kind { start, arrive, observe, settle, rest };
+  Kind kind = Kind::start;
+  std::string from;
+  std::string to;
+  Traversal leg;      ///< of start its position alone
+  double gain = 0.0;  ///< of settle
+  int session = -1;   ///< its place in sessions(), -1: none
+};
+
+/// Many calls that were taken in as one.
+struct StoredSession {
+  std::string key;   ///< what tells it from others
+  std::string name;  ///< for people
+  std::int64_t first_leg = 0;
+  std::int64_t legs = 0;
+};
+
+/// Whether the file's name ends like a store's: .db, .sqlite or .sqlite3.
+[[nodiscard]] bool is_map_store(const std::filesystem::path& file);
+
+/// A call that throws leaves the store and its builder as they were. Not for several threads at
+/// once.
+class MapStore {
+ public:
+  /// Goes on with the store, or makes one where there is no file. A store keeps its method and its
+  /// kind of eta (std::invalid_argument for others); its other options are the given ones from now
+  /// on, or where none are given those it had.
+  explicit MapStore(const std::filesystem::path& file,
+                    const std::optional<MapBuilderOptions>& options = {});
+  ~MapStore();
+  MapStore(MapStore&&) noexcept;
+  MapStore& operator=(MapStore&&) noexcept;
+
+  /// A new store that begins with a map made elsewhere (read_map_graphml, say), as
+  /// MapBuilder(map, options) does. Throws as that does, and where the file is there already.
+  [[nodiscard]] static MapStore create(const std::filesystem::path& file, const LandmarkGraph& map,
+                                       const MapBuilderOptions& options = {});
+
+  // As MapBuilder's, and kept once they return.
+  void start(const std::string& landmark, const Vector2& position = Vector2::Zero());
+  Arrival arrive(const std::string& landmark, const Traversal& leg);
+  Arrival observe(const std::string& landmark, const Traversal& from_here);
+  double settle(double gain_limit);
+  double rest();
+
+  /// Many calls as one: what `drive` does to the builder is kept as a whole or, where it throws,
+  /// not at all. `key` tells the session from others; throws std::invalid_argument if it is empty
+  /// or there already.
+  void append(const std::string& key, const std::string& name,
+              const std::function<void(MapBuilder&)>& drive);
+
+  /// The map and all that can be asked of it.
+  [[nodiscard]] const MapBuilder& builder() const;
+
+  [[nodiscard]] std::vector<StoredSession> sessions() const;
+  [[nodiscard]] bool has_session(const std::string& key) const;
+
+  /// Calls kept so far.
+  [[nodiscard]] std::int64_t legs() const;
+
+  /// All of them, in order.
+  void for_each_leg(const std::function<void(const StoredLeg&)>& visit) const;
+
+  /// What a program wants to know of its map next time: a text per name; empty: none.
+  [[nodiscard]] std::string note(const std::string& name) const;
+  void set_note(const std::string& name, const std::string& text);
+
+ private:
+  class Impl;
+  explicit MapStore(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What a store holds.
+struct StoredMap {
+  LandmarkGraph map;
+  Method method = Method::elastic;
+  std::vector<StoredSession> sessions;
+  std::int64_t legs = 0;
+};
+
+/// Reads a store, also while another program writes it: the map as of the last call kept.
+[[nodiscard]] StoredMap read_map_store(const std::filesystem::path& file);
+
+}  // namespace trussmap

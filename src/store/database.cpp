@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "store/database.hpp"
+
+#include <sqlite3.h>
+
+namespace trussmap {
+namespace {
+
+constexpr int kPatience = 1000;  // ms that another program may take to get out of the way
+
+}  // namespace
+
+bool DatabaseError::busy() const {
+  return (code_ & 0xff) == SQLITE_BUSY || (code_ & 0xff) == SQLITE_LOCKED;
+}
+
+bool DatabaseError::no_database() const {
+  return (code_ & 0xff) == SQLITE_NOTADB;
+}
+
+Statement::Statement(const Database& database, const std::string& sql) : database_(&database) {
+  sqlite3_stmt* statement = nullptr;
+  const int code = sqlite3_prepare_v3(database.handle(), sql.c_str(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+  statement_.reset(statement);
+  check(code);
+}
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const noexcept {
+  sqlite3_finalize(statement);
+}
+
+void Statement::check(int code) const {
+  if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
+  throw DatabaseError(code, sqlite3_errmsg(database_->handle()));
+}
+
+Statement& Statement::bind(int place, double value) {
+  check(sqlite3_bind_double(statement_.get(), place + 1, value));
+  return *this;
+}
+
+Statement& Statement::bind(int place, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_.get(), place + 1, value));
+  return *this;
+}
+
+Statement& Statement::bind(int place, const std::string& text) {
+  check(sqlite3_bind_text64(statement_.get(), place + 1, text.data(), text.size(), SQLITE_TRANSIENT,
+                            SQLITE_UTF8));
+  return *this;
+}
+
+bool Statement::step() {
+  const int code = sqlite3_step(statement_.get());
+  if (code != SQLITE_ROW && code != SQLITE_DONE) {
+    const DatabaseError error(code, sqlite3_errmsg(database_->handle()));
+    reset();
+    throw error;
+  }
+  return code == SQLITE_ROW;
+}
+
+void Statement::run() {
+  while (step()) {
+  }
+  reset();
+}
+
+void Statement::reset() noexcept {
+  sqlite3_reset(statement_.get());
+  sqlite3_clear_bindings(statement_.get());
+}
+
+double Statement::real(int column) const {
+  return sqlite3_column_double(statement_.get(), column);
+}
+
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+std::string Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return text == nullptr ? std::string() : std::string(text, static_cast<std::size_t>(size));
+}
+
+bool Statement::is_null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+Database::Database(const std::filesystem::path& file, Access access) {
+  // A reader that may write leaves no files of its own behind.
+  const int write = SQLITE_OPEN_READWRITE | (access == Access::write ? SQLITE_OPEN_CREATE : 0);
+  int code = open(file, write);
+  if (code != SQLITE_OK && access == Access::read) code = open(file, SQLITE_OPEN_READONLY);
+  if (code != SQLITE_OK) {
+    throw DatabaseError(code, handle() != nullptr ? sqlite3_errmsg(handle()) : "out of memory");
+  }
+  sqlite3_extended_result_codes(handle(), 1);
+  sqlite3_busy_timeout(handle(), kPatience);
+  if (access == Access::read) run("PRAGMA query_only = ON");
+}
+
+int Database::open(const std::filesystem::path& file, int flags) {
+  sqlite3* database = nullptr;
+  const int code = sqlite3_open_v2(file.c_str(), &database, flags, nullptr);
+  database_.reset(database);
+  return code;
+}
+
+void Database::Close::operator()(sqlite3* database) const noexcept {
+  sqlite3_close_v2(database);
+}
+
+void Database::run(const std::string& sql) const {
+  const int code = sqlite3_exec(handle(), sql.c_str(), nullptr, nullptr, nullptr);
+  if (code != SQLITE_OK) throw DatabaseError(code, sqlite3_errmsg(handle()));
+}
+
+std::int64_t Database::number(const std::string& sql) const {
+  Statement statement(*this, sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+bool Database::in_transaction() const {
+  return sqlite3_get_autocommit(handle()) == 0;
+}
+
+}  // namespace trussmap

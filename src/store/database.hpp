@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// SQLite, as far as a store needs it: a connection, and statements that are prepared once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace trussmap {
+
+class DatabaseError : public std::runtime_error {
+ public:
+  DatabaseError(int code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  [[nodiscard]] bool busy() const;
+  [[nodiscard]] bool no_database() const;
+
+ private:
+  int code_;  ///< SQLite's
+};
+
+class Database;
+
+/// Parameters and columns count from 0. Calls throw DatabaseError.
+class Statement {
+ public:
+  Statement(const Database& database, const std::string& sql);
+
+  Statement& bind(int place, double value);
+  Statement& bind(int place, std::int64_t value);
+  Statement& bind(int place, int value) { return bind(place, std::int64_t{value}); }
+  Statement& bind(int place, const std::string& text);
+
+  /// The next row; false: there is none.
+  bool step();
+
+  /// To the end, ready for the next binding; what is not bound anew then is null.
+  void run();
+  void reset() noexcept;
+
+  [[nodiscard]] double real(int column) const;
+  [[nodiscard]] std::int64_t integer(int column) const;
+  [[nodiscard]] std::string text(int column) const;
+  [[nodiscard]] bool is_null(int column) const;
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const noexcept;
+  };
+  void check(int code) const;
+
+  const Database* database_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+class Database {
+ public:
+  enum class Access { read, write };
+
+  /// To write, the file is made if it is not there.
+  Database(const std::filesystem::path& file, Access access);
+
+  void run(const std::string& sql) const;
+
+  /// The first column of the first row; 0 without one.
+  [[nodiscard]] std::int64_t number(const std::string& sql) const;
+
+  [[nodiscard]] bool in_transaction() const;
+  [[nodiscard]] sqlite3* handle() const { return database_.get(); }
+
+ private:
+  int open(const std::filesystem::path& file, int flags);
+
+  struct Close {
+    void operator()(sqlite3* database) const noexcept;
+  };
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+}  // namespace trussmap

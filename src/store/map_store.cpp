@@ -1,0 +1,503 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/map_store.hpp"
+
+#include "geometry/index.hpp"
+#include "store/database.hpp"
+#include "store/memory_rows.hpp"
+#include "text/number_text.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
+constexpr std::int64_t kVersion = 1;
+constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::gauss_markov};
+constexpr std::array kEtas{Eta::Kind::all, Eta::Kind::fixed, Eta::Kind::estimated};
+constexpr int kCallKinds = 5;
+
+InputError said(const fs::path& file, const DatabaseError& error) {
+  if (error.busy()) {
+    return {file.string(), 0, "is being written by another program, expected one at a time"};
+  }
+  if (error.no_database()) return {file.string(), 0, "is no map store"};
+  return {file.string(), 0, std::string("cannot be read or written: ") + error.what()};
+}
+
+/// Calls something; what the database or damaged rows throw becomes an InputError.
+template <typename Call>
+auto naming(const fs::path& file, const Call& call) {
+  try {
+    return call();
+  } catch (const DatabaseError& error) {
+    throw said(file, error);
+  }
+}
+
+/// With a folder in front: SQLite gives a meaning of its own to some names.
+fs::path place_of(const fs::path& file) {
+  std::error_code ignored;
+  if (file.empty() || fs::is_directory(file, ignored)) {
+    throw InputError(file.string(), 0, "is a folder, expected a map store");
+  }
+  return fs::absolute(file);
+}
+
+std::string eta_name(Eta::Kind kind) {
+  if (kind == Eta::Kind::all) return "all";
+  return kind == Eta::Kind::fixed ? "fixed" : "estimated";
+}
+
+class Facts {
+ public:
+  explicit Facts(const Database& database)
+      : get_(database, "SELECT value FROM facts WHERE name = ?"),
+        put_(database, "REPLACE INTO facts VALUES (?, ?)") {}
+
+  std::string text(const std::string& name) {
+    get_.bind(0, name);
+    const std::string value = get_.step() ? get_.text(0) : std::string();
+    get_.reset();
+    return value;
+  }
+
+  double real(const std::string& name) {
+    get_.bind(0, name);
+    const double value = get_.step() ? get_.real(0) : 0.0;
+    get_.reset();
+    return value;
+  }
+
+  template <typename Value>
+  void put(const std::string& name, const Value& value) {
+    put_.bind(0, name).bind(1, value).run();
+  }
+
+ private:
+  Statement get_;
+  Statement put_;
+};
+
+void put_options(Facts& facts, const MapBuilderOptions& options) {
+  facts.put("method", name_of(options.method));
+  facts.put("eta", eta_name(options.eta.kind));
+  facts.put("eta_count", options.eta.count);
+  facts.put("hold_first", options.eta.hold_first ? 1 : 0);
+  facts.put("gain_limit", options.gain_limit);
+  facts.put("refine", options.refine ? 1 : 0);
+  facts.put("pooled", options.pooled ? 1 : 0);
+  facts.put("gate", options.gate);
+}
+
+MapBuilderOptions options_in(Facts& facts) {
+  MapBuilderOptions options;
+  const std::string method = facts.text("method");
+  const std::string eta = facts.text("eta");
+  const auto named = std::find_if(kMethods.begin(), kMethods.end(),
+                                  [&](Method one) { return name_of(one) == method; });
+  const auto kind =
+      std::find_if(kEtas.begin(), kEtas.end(), [&](Eta::Kind one) { return eta_name(one) == eta; });
+  if (named == kMethods.end() || kind == kEtas.end()) {
+    throw std::invalid_argument("a method that is unknown");
+  }
+  options.method = *named;
+  options.eta.kind = *kind;
+  options.eta.count = static_cast<int>(std::clamp(facts.real("eta_count"), 0.0, 1e9));
+  options.eta.hold_first = facts.real("hold_first") != 0.0;
+  options.gain_limit = facts.real("gain_limit");
+  options.refine = facts.real("refine") != 0.0;
+  options.pooled = facts.real("pooled") != 0.0;
+  options.gate = facts.real("gate");
+  return options;
+}
+
+/// False: there is nothing yet. Throws InputError where there is something else.
+bool is_made(const fs::path& file, const Database& database) {
+  const std::int64_t application = database.number("PRAGMA application_id");
+  const std::int64_t version = database.number("PRAGMA user_version");
+  if (application == 0 && database.number("SELECT count(*) FROM sqlite_schema") == 0) return false;
+  if (application != kApplication) throw InputError(file.string(), 0, "is no map store");
+  if (version != kVersion) {
+    throw InputError(file.string(), 0,
+                     joined("is a map store of version ", version, ", expected ", kVersion));
+  }
+  return true;
+}
+
+void make(const Database& database, const MapBuilderOptions& options) {
+  database.run(joined("PRAGMA application_id = ", kApplication));
+  database.run(joined("PRAGMA user_version = ", kVersion));
+  database.run(R"sql(
+    CREATE TABLE facts(name TEXT PRIMARY KEY, value) WITHOUT ROWID;
+    CREATE TABLE sessions(number INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
+                          name TEXT NOT NULL, first_leg INTEGER NOT NULL, legs INTEGER NOT NULL);
+    CREATE TABLE legs(number INTEGER PRIMARY KEY, session INTEGER, kind INTEGER NOT NULL,
+                      source INTEGER, target INTEGER, dx REAL, dy REAL, c_xx REAL, c_xy REAL,
+                      c_yy REAL, gain REAL);
+  )sql");
+  create_memory_tables(database);
+  Facts facts(database);
+  put_options(facts, options);
+}
+
+std::int64_t legs_in(const Database& database) {
+  return database.number("SELECT max(number) + 1 FROM legs");
+}
+
+std::vector<StoredSession> sessions_in(const Database& database) {
+  Statement rows(database, "SELECT key, name, first_leg, legs FROM sessions ORDER BY number");
+  std::vector<StoredSession> sessions;
+  while (rows.step()) {
+    sessions.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.integer(3)});
+  }
+  return sessions;
+}
+
+/// What the rows of a damaged store are called.
+template <typename Call>
+auto undamaged(const fs::path& file, const Call& call) {
+  try {
+    return call();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(file.string(), 0, std::string("is damaged: it has ") + error.what());
+  }
+}
+
+}  // namespace
+
+bool is_map_store(const fs::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".db" || ending == ".sqlite" || ending == ".sqlite3";
+}
+
+class MapStore::Impl {
+ public:
+  /// `first`: what a new store begins with; null: nothing, or go on.
+  Impl(const fs::path& file, const std::optional<MapBuilderOptions>& options,
+       const MapBuilder* first)
+      : file_(file), database_(open()) {
+    if (options) MapBuilder{*options};  // refuses those out of range
+    database_.run("BEGIN IMMEDIATE");
+    const bool made = is_made(file_, database_);
+    if (made && first != nullptr) {
+      throw InputError(file_.string(), 0, "is there already, expected a new file");
+    }
+    if (!made) {
+      make(database_, options.value_or(MapBuilderOptions{}));
+      if (first != nullptr) {
+        MemoryRows(database_).save(BuilderAccess::memory(*first), first->options());
+      }
+      database_.run("COMMIT; BEGIN IMMEDIATE");
+    }
+    rows_.emplace(database_);
+    facts_.emplace(database_);
+    put_leg_.emplace(database_, "INSERT INTO legs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    version_ = database_.number("PRAGMA data_version");
+    load();
+    if (options) take(*options);
+  }
+
+  /// Makes calls of the builder; they are kept, or the builder is as it was.
+  template <typename Call>
+  std::invoke_result_t<Call> keep(const Call& call) {
+    return keep_as(nullptr, call);
+  }
+
+  template <typename Call>
+  std::invoke_result_t<Call> keep_as(const StoredSession* session, const Call& call) {
+    return naming(file_, [&] {
+      begin();
+      journal_.clear();
+      if constexpr (std::is_void_v<std::invoke_result_t<Call>>) {
+        attempt(call);
+        commit(session);
+      } else {
+        auto result = attempt(call);
+        commit(session);
+        return result;
+      }
+    });
+  }
+
+  [[nodiscard]] MapBuilder& builder() {
+    if (!builder_) {
+      throw InputError(file_.string(), 0,
+                       "could not be read again after a call that failed, expected to be opened "
+                       "anew");
+    }
+    return *builder_;
+  }
+
+  [[nodiscard]] std::int64_t legs() const { return legs_; }
+
+  [[nodiscard]] std::vector<StoredSession> sessions() const {
+    return naming(file_, [&] { return sessions_in(database_); });
+  }
+
+  [[nodiscard]] bool has_session(const std::string& key) const {
+    return naming(file_, [&] {
+      Statement statement(database_, "SELECT 1 FROM sessions WHERE key = ?");
+      statement.bind(0, key);
+      return statement.step();
+    });
+  }
+
+  void for_each_leg(const std::function<void(const StoredLeg&)>& visit) {
+    naming(file_, [&] {
+      Statement rows(database_,
+                     "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session "
+                     "FROM legs ORDER BY number");
+      const LandmarkGraph& graph = BuilderAccess::memory(builder()).graph;
+      const auto name = [&](int column) {
+        const std::int64_t number = rows.is_null(column) ? -1 : rows.integer(column);
+        if (number >= graph.landmarks()) {
+          throw InputError(file_.string(), 0, "is damaged: it has a leg to no landmark");
+        }
+        return number < 0 ? std::string() : graph.landmark(static_cast<int>(number)).name;
+      };
+      while (rows.step()) {
+        StoredLeg one;
+        const std::int64_t kind = rows.integer(0);
+        if (kind < 0 || kind >= kCallKinds) {
+          throw InputError(file_.string(), 0, "is damaged: it has a leg of no kind");
+        }
+        one.kind = static_cast<StoredLeg::Kind>(kind);
+        one.from = name(1);
+        one.to = name(2);
+        one.leg.displacement = {rows.real(3), rows.real(4)};
+        one.leg.covariance << rows.real(5), rows.real(6), rows.real(6), rows.real(7);
+        one.gain = rows.real(8);
+        one.session = rows.is_null(9) ? -1 : static_cast<int>(rows.integer(9));
+        visit(one);
+      }
+    });
+  }
+
+  [[nodiscard]] std::string note(const std::string& name) {
+    return naming(file_, [&] { return facts_->text("note:" + name); });
+  }
+
+  void set_note(const std::string& name, const std::string& text) {
+    keep([&] { facts_->put("note:" + name, text); });
+  }
+
+ private:
+  Database open() {
+    return naming(file_, [&] {
+      Database database(place_of(file_), Database::Access::write);
+      is_made(file_, database);  // before anything is changed
+      database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
+      Statement wal(database, "PRAGMA journal_mode = WAL");
+      if (!wal.step() || wal.text(0) != "wal") {
+        throw InputError(file_.string(), 0,
+                         "lies where no map store can: the file system has no shared memory");
+      }
+      database.run("PRAGMA synchronous = FULL");
+      return database;
+    });
+  }
+
+  void load() {
+    undamaged(file_, [&] {
+      const MapBuilderOptions options = options_in(*facts_);
+      builder_.emplace(BuilderAccess::restored(rows_->load(options), options));
+    });
+    BuilderAccess::keep_journal(*builder_, &journal_);
+    legs_ = legs_in(database_);
+  }
+
+  void take(const MapBuilderOptions& options) {
+    builder().set_options(options);
+    keep([&] { put_options(*facts_, options); });
+  }
+
+  /// No other program writes from here on. One that did so since the last call has left a map that
+  /// this builder does not know.
+  void begin() {
+    static_cast<void>(builder());
+    if (!database_.in_transaction()) database_.run("BEGIN IMMEDIATE");
+    if (database_.number("PRAGMA data_version") == version_) return;
+    throw InputError(file_.string(), 0,
+                     "was written by another program meanwhile, expected to be opened anew");
+  }
+
+  /// A single call that throws leaves the builder as it was; those before it must be undone.
+  template <typename Call>
+  std::invoke_result_t<Call> attempt(const Call& call) {
+    try {
+      return call();
+    } catch (...) {
+      if (!journal_.empty()) go_back();
+      throw;
+    }
+  }
+
+  void commit(const StoredSession* session) {
+    try {
+      if (session != nullptr) put_session(*session);
+      for (std::size_t k = 0; k < journal_.size(); ++k) put_leg(journal_[k], k, session != nullptr);
+      rows_->save(BuilderAccess::memory(*builder_), builder_->options());
+      database_.run("COMMIT");
+    } catch (...) {
+      go_back();
+      throw;
+    }
+    legs_ += static_cast<std::int64_t>(journal_.size());
+    try {
+      database_.run("BEGIN IMMEDIATE");  // others are kept out between two calls, too
+    } catch (const DatabaseError&) {
+      // The next call says so, if it is still true then.
+    }
+  }
+
+  void put_session(const StoredSession& session) {
+    Statement put(database_,
+                  "INSERT INTO sessions(key, name, first_leg, legs) VALUES (?, ?, ?, ?)");
+    put.bind(0, session.key).bind(1, session.name).bind(2, legs_);
+    put.bind(3, static_cast<std::int64_t>(journal_.size())).run();
+    put_options(*facts_, builder_->options());  // which may have been set on the way
+    session_ = database_.number("SELECT max(number) FROM sessions");
+  }
+
+  void put_leg(const BuilderCall& call, std::size_t place, bool in_session) {
+    Statement& put = *put_leg_;
+    put.bind(0, legs_ + static_cast<std::int64_t>(place)).bind(2, static_cast<int>(call.kind));
+    if (in_session) put.bind(1, session_ - 1);  // places in sessions() count from 0
+    if (call.from >= 0) put.bind(3, call.from);
+    if (call.to >= 0) put.bind(4, call.to);
+    if (call.kind <= BuilderCall::Kind::observe) {
+      put.bind(5, call.leg.displacement.x()).bind(6, call.leg.displacement.y());
+      const Matrix2& C = call.leg.covariance;
+      put.bind(7, C(0, 0)).bind(8, 0.5 * (C(0, 1) + C(1, 0))).bind(9, C(1, 1));
+    }
+    if (call.kind == BuilderCall::Kind::settle) put.bind(10, call.gain);
+    put.run();
+  }
+
+  /// To what the file holds.
+  void go_back() noexcept {
+    try {
+      builder_.reset();
+      if (database_.in_transaction()) database_.run("ROLLBACK");
+      database_.run("BEGIN");
+      load();
+      database_.run("COMMIT");
+    } catch (...) {
+      builder_.reset();
+    }
+  }
+
+  fs::path file_;
+  Database database_;
+  std::optional<MemoryRows> rows_;
+  std::optional<Facts> facts_;
+  std::optional<Statement> put_leg_;
+  std::optional<MapBuilder> builder_;
+  std::vector<BuilderCall> journal_;  // of the present call
+  std::int64_t legs_ = 0;
+  std::int64_t session_ = 0;
+  std::int64_t version_ = 0;  // changes when another program has written
+};
+
+MapStore::MapStore(const fs::path& file, const std::optional<MapBuilderOptions>& options)
+    : impl_(naming(file, [&] { return std::make_unique<Impl>(file, options, nullptr); })) {}
+MapStore::MapStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+MapStore::~MapStore() = default;
+MapStore::MapStore(MapStore&&) noexcept = default;
+MapStore& MapStore::operator=(MapStore&&) noexcept = default;
+
+MapStore MapStore::create(const fs::path& file, const LandmarkGraph& map,
+                          const MapBuilderOptions& options) {
+  const MapBuilder first(map, options);
+  return MapStore(naming(file, [&] { return std::make_unique<Impl>(file, options, &first); }));
+}
+
+void MapStore::start(const std::string& landmark, const Vector2& position) {
+  impl_->keep([&] { impl_->builder().start(landmark, position); });
+}
+
+Arrival MapStore::arrive(const std::string& landmark, const Traversal& leg) {
+  return impl_->keep([&] { return impl_->builder().arrive(landmark, leg); });
+}
+
+Arrival MapStore::observe(const std::string& landmark, const Traversal& from_here) {
+  return impl_->keep([&] { return impl_->builder().observe(landmark, from_here); });
+}
+
+double MapStore::settle(double gain_limit) {
+  return impl_->keep([&] { return impl_->builder().settle(gain_limit); });
+}
+
+double MapStore::rest() {
+  return impl_->keep([&] { return impl_->builder().rest(); });
+}
+
+void MapStore::append(const std::string& key, const std::string& name,
+                      const std::function<void(MapBuilder&)>& drive) {
+  if (key.empty() || has_session(key)) {
+    throw std::invalid_argument("a session of a store needs a key of its own");
+  }
+  const StoredSession session{key, name, 0, 0};
+  impl_->keep_as(&session, [&] { drive(impl_->builder()); });
+}
+
+const MapBuilder& MapStore::builder() const {
+  return impl_->builder();
+}
+
+std::vector<StoredSession> MapStore::sessions() const {
+  return impl_->sessions();
+}
+
+bool MapStore::has_session(const std::string& key) const {
+  return impl_->has_session(key);
+}
+
+std::int64_t MapStore::legs() const {
+  return impl_->legs();
+}
+
+void MapStore::for_each_leg(const std::function<void(const StoredLeg&)>& visit) const {
+  impl_->for_each_leg(visit);
+}
+
+std::string MapStore::note(const std::string& name) const {
+  return impl_->note(name);
+}
+
+void MapStore::set_note(const std::string& name, const std::string& text) {
+  impl_->set_note(name, text);
+}
+
+StoredMap read_map_store(const fs::path& file) {
+  return naming(file, [&] {
+    if (!fs::exists(file))
+      throw InputError(file.string(), 0, "cannot be opened, expected a map store");
+    const Database database(place_of(file), Database::Access::read);
+    database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; BEGIN");
+    if (!is_made(file, database))
+      throw InputError(file.string(), 0, "is empty, expected a map store");
+    return undamaged(file, [&] {
+      Facts facts(database);
+      const MapBuilderOptions options = options_in(facts);
+      StoredMap stored;
+      stored.map = BuilderAccess::restored(MemoryRows(database).load(options), options).map();
+      stored.method = options.method;
+      stored.sessions = sessions_in(database);
+      stored.legs = legs_in(database);
+      return stored;
+    });
+  });
+}
+
+}  // namespace trussmap

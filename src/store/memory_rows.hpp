@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A builder's memory as rows of a database: read whole, and written where it differs from what is
+// there already, so that an arrival costs as many rows as it changed.
+#pragma once
+
+#include "map/builder_memory.hpp"
+#include "store/database.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Makes the tables, with an empty memory in them. Within a transaction.
+void create_memory_tables(const Database& database);
+
+class MemoryRows {
+ public:
+  explicit MemoryRows(const Database& database);
+
+  /// Throws std::invalid_argument, saying what, where the rows cannot be a builder's memory.
+  [[nodiscard]] BuilderMemory load(const MapBuilderOptions& options);
+
+  /// Writes what differs from the last load or save. After a transaction that was rolled back, call
+  /// load first.
+  void save(const BuilderMemory& memory, const MapBuilderOptions& options);
+
+ private:
+  struct Written {
+    std::vector<Vector2> positions;
+    std::vector<int> roots;
+    std::vector<int> traversals;  ///< per route, which change whenever the route does
+    std::vector<int> chain;
+    std::vector<double> misfits;
+    std::vector<LeftOutArrival> left_out;
+  };
+
+  void load_landmarks(BuilderMemory& memory);
+  void load_routes(BuilderMemory& memory, bool with_bars);
+  void load_rest(BuilderMemory& memory);
+  void save_landmarks(const BuilderMemory& memory);
+  void save_routes(const BuilderMemory& memory, bool with_bars);
+  void save_chain(const BuilderMemory& memory);
+  void save_gate(const BuilderMemory& memory);
+  void save_state(const BuilderMemory& memory);
+
+  const Database& database_;
+  Written written_;
+  Statement put_landmark_;
+  Statement move_landmark_;
+  Statement put_route_;
+  Statement put_link_;
+  Statement cut_chain_;
+  Statement put_misfit_;
+  Statement put_left_out_;
+  Statement put_state_;
+};
+
+}  // namespace trussmap
