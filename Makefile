@@ -11,6 +11,7 @@
 #                      installed too
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
+#   make tsan          the tests of threads under ThreadSanitizer
 #   make install-deps  install the Debian packages that the build needs
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -21,7 +22,7 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test fuzz install-deps test-deps configure build command clean
+.PHONY: all check demo test fuzz tsan install-deps test-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -50,6 +51,11 @@ fuzz:
 	@CC=clang CXX=clang++ cmake --preset fuzz $(GENERATOR) >/dev/null
 	@cmake --build build-fuzz --parallel $(JOBS)
 	@tests/fuzz/run build-fuzz $(MINUTES)
+
+tsan: install-deps
+	@cmake --preset tsan $(GENERATOR) >/dev/null
+	@cmake --build build-tsan --parallel $(JOBS) --target trussmap_thread_tests
+	@OPENBLAS_NUM_THREADS=1 .ci/test build-tsan
 
 install-deps:
 	@.ci/install-deps

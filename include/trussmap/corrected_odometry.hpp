@@ -65,7 +65,8 @@ struct CorrectedSighting {
                                            ///< met the landmark: the levers
 };
 
-/// Movable. Equal rows give equal results, to the bit.
+/// Movable. Equal rows give equal results, to the bit. One thread at a time; several of one model
+/// may drive in as many threads.
 class CorrectedOdometry {
  public:
   /// Effects without coefficients count as 0; one that is `per_session` must have those of one

@@ -63,7 +63,8 @@ struct Landmark {
   std::optional<Matrix2> covariance;   ///< of the position, m^2, where known
 };
 
-/// A call that throws leaves the graph as it was.
+/// A call that throws leaves the graph as it was. Threads may read it at once while none changes
+/// it.
 class LandmarkGraph {
  public:
   /// Throws std::invalid_argument if the name is empty or taken.

@@ -103,6 +103,7 @@ struct LeftOutArrival {
   double sds = 0.0;  ///< how far off it was, in standard deviations of leg and map together
 };
 
+/// Threads may ask at once (const calls) while none drives it on.
 class MapBuilder {
  public:
   /// Throws std::invalid_argument on options out of range.

@@ -62,8 +62,8 @@ struct StoredSession {
 /// Whether the file's name ends like a store's: .db, .sqlite or .sqlite3.
 [[nodiscard]] bool is_map_store(const std::filesystem::path& file);
 
-/// A call that throws leaves the store and its builder as they were. Not for several threads at
-/// once.
+/// A call that throws leaves the store and its builder as they were. One thread at a time,
+/// const calls included.
 class MapStore {
  public:
   /// Goes on with the store, or makes one where there is no file. A store keeps its method and its

@@ -31,6 +31,7 @@ struct FitEvidence;
 struct PageContent;
 struct TourResult;
 
+/// Copies share the content, which nothing changes: threads may use them at once.
 class Page {
  public:
   /// For the library's own use, as `content`.

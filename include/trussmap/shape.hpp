@@ -34,6 +34,7 @@ struct ShapeParameter {
 
 class CompiledShape;
 
+/// Copies share what was read. Threads may use one, and its copies, at once.
 class Shape {
  public:
   /// Throws std::invalid_argument, in a sentence that names the expression, on what cannot be read.

@@ -9,6 +9,10 @@
 // map_store, too. All the others, and effects in a model (a shape is read from its text), take
 // trussmap::trussmap. Both include trussmap::map. Find the first alone by
 // find_package(trussmap COMPONENTS map).
+//
+// Threads. Functions share nothing that is changed: they may run in as many threads as there are,
+// on the same recordings, models and maps. An object may be read (const calls) by several threads
+// as long as none changes it; the classes that ask for more say so.
 #pragma once
 
 #include "trussmap/arc.hpp"

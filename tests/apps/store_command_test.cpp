@@ -8,6 +8,7 @@
 #include "trussmap/map_files.hpp"
 #include "trussmap/map_store.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fcntl.h>
@@ -95,9 +96,14 @@ TEST(StoreCommand, ConvertsInAndOut) {
   EXPECT_FALSE(fs::exists(at + "none.db"));
 }
 
-/// The command, its output going to a file, killed at a random moment.
+std::string content_of(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// The command, its output going to a file, killed so long after it has said so many lines.
 std::string output_until_killed(const std::vector<std::string>& arguments, const fs::path& output,
-                                int microseconds) {
+                                int lines, int microseconds) {
   std::vector<char*> argv;
   std::string command = TRUSSMAP_COMMAND;
   argv.push_back(command.data());
@@ -110,10 +116,16 @@ std::string output_until_killed(const std::vector<std::string>& arguments, const
     ::dup2(file, STDERR_FILENO);
     ::execv(command.c_str(), argv.data());
   });
+  const auto said = [&] {
+    const std::string text = content_of(output);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  for (int ms = 0; ms < 2000 && said() < lines; ++ms) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   std::this_thread::sleep_for(std::chrono::microseconds(microseconds));
   child.kill();
-  std::ifstream stream(output);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return content_of(output);
 }
 
 /// What the command has said is kept, whole sessions alone are, and the next run goes on.
@@ -137,8 +149,11 @@ TEST(SlowStoreCommand, KillLosesNothingThatWasAcknowledged) {
       for (const char* ending : {"", "-wal", "-shm"}) fs::remove(store.string() + ending);
       acknowledged = 0;
     }
-    const std::string said = output_until_killed(
-        arguments, scratch.path() / "output", std::uniform_int_distribution<int>(0, 90000)(random));
+    fs::remove(scratch.path() / "output");
+    const int lines = std::uniform_int_distribution<int>(0, 8)(random);
+    const int moment = std::uniform_int_distribution<int>(0, 20000)(random);
+    const std::string said =
+        output_until_killed(arguments, scratch.path() / "output", lines, moment);
     for (std::size_t at = 0; (at = said.find(" legs, ", at)) != std::string::npos; ++at) {
       ++acknowledged;
     }

@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What public headers say of threads: many at once give what one gives, to the bit. ThreadSanitizer
+// (make tsan) sees what luck hides.
+#include "estimation/simulated_recordings.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/build_map.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/check.hpp"
+#include "trussmap/compare.hpp"
+#include "trussmap/corrected_odometry.hpp"
+#include "trussmap/diagnose.hpp"
+#include "trussmap/fit_model.hpp"
+#include "trussmap/map_builder.hpp"
+#include "trussmap/map_files.hpp"
+#include "trussmap/map_store.hpp"
+#include "trussmap/pose_graph.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/tour_experiment.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+constexpr int kThreads = 4;
+
+/// The same work in every thread, begun at once; what each came to.
+template <typename Result>
+std::vector<Result> in_threads(const std::function<Result(int)>& work) {
+  std::vector<Result> results(kThreads);
+  std::atomic<int> ready{0};
+  std::vector<std::thread> threads;
+  for (int k = 0; k < kThreads; ++k) {
+    threads.emplace_back([&, k] {
+      ++ready;
+      while (ready < kThreads) std::this_thread::yield();
+      results[static_cast<std::size_t>(k)] = work(k);
+    });
+  }
+  for (std::thread& one : threads) one.join();
+  return results;
+}
+
+/// Every thread's text is what the work gives alone.
+void expect_alone(const std::function<std::string(int)>& work) {
+  const std::string alone = work(0);
+  EXPECT_FALSE(alone.empty());
+  for (const std::string& one : in_threads<std::string>(work)) EXPECT_EQ(one, alone);
+}
+
+struct World {
+  Recording recording =
+      testing::simulate_recording({.range_sensor = true, .tours = 1}, 5).recording;
+  Model model = [] {
+    Model result;
+    result.effects = {{.name = "of this robot", .channel = Channel::turn, .shape = "speed > 0.2"},
+                      {.name = "of another", .channel = Channel::compass, .shape = "sin(heading)"}};
+    return result;
+  }();
+};
+
+std::string numbers(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += std::to_string(value) + " ";
+  return text;
+}
+
+std::vector<double> coefficients_of(const ModelFit& fit) {
+  std::vector<double> result;
+  for (const EffectEstimate& one : fit.effects) {
+    result.insert(result.end(), one.effect.coefficients.begin(), one.effect.coefficients.end());
+  }
+  return result;
+}
+
+TEST(Threads, ShareRecordingsAndModels) {
+  const World world;
+  expect_alone(
+      [&](int) { return numbers(coefficients_of(fit_model({world.recording}, world.model))); });
+  expect_alone([&](int) { return format_map_graphml(build_map({world.recording}, Model{}).map); });
+  expect_alone([&](int) {
+    const Comparison result = compare({world.recording}, Model{});
+    return numbers({result.chi2, result.p_value});
+  });
+  expect_alone([&](int) { return fingerprint(world.recording); });
+  EXPECT_EQ(in_threads<std::size_t>(
+                [&](int) { return check_recordings({world.recording}, &world.model).size(); }),
+            std::vector<std::size_t>(kThreads));
+}
+
+TEST(Threads, DiagnoseAtOnce) {
+  const World world;
+  expect_alone([&](int) {
+    const Diagnosis result = diagnose({world.recording}, Model{});
+    return result.missing + " " + numbers({result.chi2, result.p_value});
+  });
+}
+
+TEST(Threads, ReadOneMapAndGrowTheirOwn) {
+  MapBuilder shared;
+  const auto grow = [](MapBuilder& builder) {
+    builder.start("dock");
+    for (int k = 0; k < 60; ++k) {
+      const double side = k % 4 < 2 ? 5.0 : -5.0;
+      const Vector2 d = k % 2 == 0 ? Vector2(side, 0.1) : Vector2(0.1, side);
+      builder.arrive(k % 4 == 3 ? "dock" : "corner " + std::to_string(k % 4),
+                     {d, 0.01 * Matrix2::Identity()});
+    }
+  };
+  grow(shared);
+  expect_alone([&](int) {
+    std::string text = format_map_graphml(shared.map());
+    for (int k = 0; k < shared.landmarks(); ++k) text += numbers({shared.position(k).x()});
+    return text + std::to_string(shared.here()) + std::to_string(*shared.find("corner 1"));
+  });
+  for (const Method method : {Method::elastic, Method::gauss_markov}) {
+    expect_alone([&](int) {
+      MapBuilder own({.method = method});
+      grow(own);
+      return format_map_graphml(own.map());
+    });
+  }
+}
+
+TEST(Threads, ReadAndUseOneShape) {
+  const World world;
+  expect_alone([&](int) {
+    const Shape own("sin(heading) + 1");
+    std::string text = own.text();
+    for (const Effect& one : world.model.effects) {
+      const Shape copy = one.shape;
+      text += copy.text() + std::to_string(copy.speaks_of("speed"));
+    }
+    return text;
+  });
+  const Drive& drive = world.recording.drive;
+  expect_alone([&](int) {  // as many robots of one model
+    Model model = world.model;
+    for (Effect& one : model.effects) one.coefficients = {0.01};
+    CorrectedOdometry odometry(model, {.compass = true});
+    Pose pose;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      pose =
+          odometry
+              .drive({drive.duration(row), drive.left[row], drive.right[row], drive.heading[row]},
+                     {})
+              .pose.pose;
+    }
+    return numbers({pose.x, pose.y, pose.heading});
+  });
+}
+
+TEST(Threads, WriteAndReadFilesOfTheirOwn) {
+  const testing::ScratchFolder scratch;
+  const World world;
+  expect_alone([&](int k) {
+    const auto folder = scratch.path() / ("rec" + std::to_string(k));
+    write_recording(folder, world.recording, "");
+    write_file(scratch.path() / ("text" + std::to_string(k)), "text");
+    return fingerprint(read_recording(folder)) +
+           read_file(scratch.path() / ("text" + std::to_string(k)));
+  });
+}
+
+TEST(Threads, OneWritesAStoreWhileOthersRead) {
+  const testing::ScratchFolder scratch;
+  const auto file = scratch.path() / "map.db";
+  const auto leg = [](double x, double y) { return Traversal{{x, y}, 0.01 * Matrix2::Identity()}; };
+  {
+    MapStore store(file);
+    store.start("A");
+    store.arrive("B", leg(1.0, 0.0));
+  }
+  const std::vector<bool> fine = in_threads<bool>([&](int k) {
+    if (k == 0) {
+      MapStore store(file);
+      for (int lap = 0; lap < 20; ++lap) {
+        store.arrive("A", leg(-1.0, 0.1));
+        store.arrive("B", leg(1.0, 0.1));
+      }
+      return store.legs() == 42;
+    }
+    std::int64_t legs = 2;
+    for (int round = 0; round < 20; ++round) {
+      const StoredMap read = read_map_store(file);
+      if (read.legs < legs || read.map.landmarks() != 2) return false;
+      if (read.map.route(0).traversals != read.legs - 1) return false;  // never a mixture
+      legs = read.legs;
+    }
+    return true;
+  });
+  EXPECT_EQ(fine, std::vector<bool>(kThreads, true));
+}
+
+TEST(Threads, AdjustPoseGraphsAtOnce) {
+  PoseGraph graph = parse_g2o(
+      "EDGE_SE2 0 1 1 0 1.57 100 0 0 100 0 100\nEDGE_SE2 1 2 1 0 1.57 100 0 0 100 0 100\n"
+      "EDGE_SE2 2 3 1 0 1.57 100 0 0 100 0 100\nEDGE_SE2 3 0 1 0.1 1.57 100 0 0 100 0 100\n",
+      "a square");
+  expect_alone([&](int) { return numbers({adjust(graph).chi2}); });
+}
+
+/// They make threads of their own besides.
+TEST(Threads, TourAtOnce) {
+  TourOptions options;
+  options.mesh = even_mesh({3, 3}, 1.0);
+  options.tours = 2;
+  options.seeds = 5;
+  expect_alone([&](int) {
+    std::string text;
+    for (const MethodMetrics& tour : run_tours(options).tours) {
+      for (const auto& [method, metrics] : tour) text += numbers({metrics.stretch_error.mean});
+    }
+    return text;
+  });
+}
+
+}  // namespace
+}  // namespace trussmap
