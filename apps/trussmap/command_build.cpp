@@ -17,7 +17,6 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -231,10 +230,11 @@ void print_result(const BuiltMap& built, const BuildOptions& options) {
 }
 
 void print_written(const Files& files) {
-  if (files.empty()) return;
+  const std::vector<fs::path> paths = files.paths();
+  if (paths.empty()) return;
   fmt::print("\n  written: ");
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    fmt::print("{}{}", k == 0 ? "" : ", ", files[k].first.string());
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    fmt::print("{}{}", k == 0 ? "" : ", ", paths[k].string());
   }
   fmt::print("\n");
 }
@@ -285,7 +285,7 @@ void run_build(const BuildOptions& options) {
     const std::string subject = subject_of(options.recordings, options.model) + ", " + method;
     add_page(files, map_page(built, subject), options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print_result(built, options);
   print_written(files);

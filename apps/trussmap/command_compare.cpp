@@ -14,7 +14,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -262,7 +261,7 @@ void run_compare(const CompareCommand& options) {
                              subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print(result, input.model.noise, options);
   print_budget(budget);

@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: MIT
 //
 // Whole files in and out: read at once, written whole or not at all.
+//
+// What is written goes to temporaries first, on the disk (fsync) before the first of them is
+// renamed: .NAME.XXXXXXXXXXXX.trussmap-part beside its place, with letters that nobody can foresee.
+// A run that is killed leaves them; the next one that writes into the same folder removes them, and
+// knows by a lock (flock) which belong to a run that lives. Files get the rights that new files
+// have, whatever those of the files that they replace.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +22,42 @@ namespace trussmap {
 /// or is no xz file.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
+/// Files, by path and content.
+using NamedContents = std::vector<std::pair<std::filesystem::path, std::string>>;
+
+/// A folder whose files belong together.
+struct FolderOfFiles {
+  std::filesystem::path folder;  ///< made where it is missing, with its parents
+  /// By name and content. The first is the one without which the folder is none of its kind.
+  std::vector<std::pair<std::string, std::string>> files;
+  std::vector<std::string> gone;  ///< further files that belonged to it, to be removed
+};
+
 /// Writes to a temporary file beside `path`, then renames it. Throws InputError if that fails;
 /// `path` is then as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// Several files at once: all temporaries are written before the first is renamed, so
-/// that a full disk or a missing right leaves all of them as they were. Folders are not made. A
-/// link is followed; a pipe or device (/dev/stdout) is written to as it is. Throws InputError, too,
-/// where a path is a folder or is named twice.
-void write_files(const std::vector<std::pair<std::filesystem::path, std::string>>& files);
+/// Several files and folders at once: all temporaries are written before the first is renamed, so
+/// that a full disk or a missing right leaves all of them as they were. Parents of files are not
+/// made. A link is followed; a pipe or device (/dev/stdout) is written to as it is, last. Throws
+/// InputError, too, where a path is a folder or is named twice, and where a disk fails so late
+/// that the renames are done but may not last; std::invalid_argument where a name in a folder is
+/// none.
+///
+/// Whenever the run ends (SIGKILL, power), each file is old or new, and so is each folder as a
+/// whole: a new folder takes the old one's place in one rename, with links to the files in it that
+/// are nobody's concern here. Programs that stand in the old folder have to enter it anew. Two
+/// things cannot be had:
+/// - Different files, and different folders, are renamed one after the other.
+/// - A folder stays the one that it is, and gets its files one after the other, where its parent
+///   takes no new folder, where it is a mount point, another user's, the current folder or a
+///   parent of it, where it has folders in it, links among the files to write, an access list or
+///   more than a thousand files, and where the file system knows neither hard links nor an
+///   exchange of names. Its first file then goes first and comes last: what is there meanwhile
+///   lacks it.
+void write_files(const NamedContents& files, const std::vector<FolderOfFiles>& folders = {});
 
-/// Deletes the temporary files of a write_files() that is under way in any thread: for the handler
+/// Deletes the temporaries of a write_files() that is under way in any thread: for the handler
 /// of a signal that ends the program, and safe there.
 void discard_temporaries() noexcept;
 
