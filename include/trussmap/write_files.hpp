@@ -10,6 +10,7 @@
 // have, whatever those of the files that they replace.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,8 +19,22 @@
 
 namespace trussmap {
 
-/// The file's bytes; decompressed if the name ends in .xz. Throws InputError if it cannot be read
-/// or is no xz file.
+/// How large a file may be, and what one may become that is compressed, or that declares defaults
+/// for its elements: a small one could fill the memory.
+struct ReadLimits {
+  /// Bytes, of a file as it is and of what it becomes. 0: any file as it is; a compressed one 64
+  /// MiB or, if that is more, 200 times its size; a map's defaults 16 MiB or 10 times its size.
+  std::size_t bytes = 0;
+  int nesting = 100;  ///< depth of the elements of a map
+};
+
+/// For all files that are read from now on, in any thread. Throws std::invalid_argument unless
+/// `nesting` is from 1 to 10000.
+void set_read_limits(const ReadLimits& limits);
+[[nodiscard]] ReadLimits read_limits();
+
+/// The file's bytes; decompressed if the name ends in .xz, in 256 MiB of memory or the limit's
+/// bytes. Throws InputError if it cannot be read, is no xz file, or exceeds the limits.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 /// Files, by path and content.
