@@ -54,10 +54,10 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 
 /// Several files and folders at once: all temporaries are written before the first is renamed, so
 /// that a full disk or a missing right leaves all of them as they were. Parents of files are not
-/// made. A link is followed; a pipe or device (/dev/stdout) is written to as it is, last. Throws
-/// InputError, too, where a path is a folder or is named twice, and where a disk fails so late
-/// that the renames are done but may not last; std::invalid_argument where a name in a folder is
-/// none.
+/// made. A link is followed; a pipe or device (/dev/stdout) is written to as it is, before the
+/// renames. Throws InputError, too, where a path is a folder or is named twice, and where a disk
+/// fails so late that the renames are done but may not last; std::invalid_argument where a name in
+/// a folder is none.
 ///
 /// Whenever the run ends (SIGKILL, power), each file is old or new, and so is each folder as a
 /// whole: a new folder takes the old one's place in one rename, with links to the files in it that

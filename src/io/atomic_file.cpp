@@ -212,6 +212,9 @@ void Writing::write() {
 }
 
 void Writing::rename() {
+  for (const Target& target : targets_) {  // may wait for a reader: Ctrl-C leaves nothing then
+    if (target.stream) write_stream(target);
+  }
   {
     const SignalsWait wait;
     for (const auto& folder : folders_) folder->rename();
@@ -228,9 +231,6 @@ void Writing::rename() {
     if (!keep_folder(place)) throw unwritten(place, errno);
   }
   for (const auto& folder : folders_) folder->finish();
-  for (const Target& target : targets_) {
-    if (target.stream) write_stream(target);
-  }
 }
 
 }  // namespace
