@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
@@ -17,12 +18,14 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
 #include <sys/ptrace.h>
 #include <thread>
 #include <unistd.h>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -53,10 +56,18 @@ bool traced_on(pid_t child) {
   return ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr) == 0;
 }
 
-/// Runs `work` up to its `stops`-th entry into or return from the system, and kills it there. True
-/// if it had ended by itself before; nothing where the system lets nobody trace.
-std::optional<bool> killed_at(int stops, const std::function<void()>& work) {
+/// As the command does.
+void end_by(int signal) {
+  discard_temporaries();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// Runs `work` up to its `stops`-th entry into or return from the system, and sends it a signal
+/// there. True if it had ended by itself before; nothing where the system lets nobody trace.
+std::optional<bool> ended_at(int stops, int signal, const std::function<void()>& work) {
   const pid_t child = begin_child([&work] {
+    std::signal(SIGINT, end_by);
     if (::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) ::_exit(77);
     ::raise(SIGSTOP);
     work();
@@ -68,9 +79,14 @@ std::optional<bool> killed_at(int stops, const std::function<void()>& work) {
     status = wait_for(child);
     if (WIFEXITED(status)) return true;
   }
-  send_signal(child, SIGKILL);
+  send_signal(child, signal);
+  ::ptrace(PTRACE_DETACH, child, nullptr, nullptr);
   static_cast<void>(wait_for(child));
   return false;
+}
+
+std::optional<bool> killed_at(int stops, const std::function<void()>& work) {
+  return ended_at(stops, SIGKILL, work);
 }
 
 struct Seen {
@@ -91,9 +107,9 @@ Contents without_temporaries(const Contents& all, bool* any = nullptr) {
   return rest;
 }
 
-/// Kills `work` at each of its steps in turn, from the same start each time.
+/// Kills `work` at every step of its, or every so many, from the same start each time.
 Seen killed_at_every_step(const ScratchFolder& scratch, const std::function<void()>& prepare,
-                          const std::function<void()>& work) {
+                          const std::function<void()>& work, int stride = 1) {
   Seen seen;
   prepare();
   const Contents before = scratch.contents();
@@ -101,7 +117,7 @@ Seen killed_at_every_step(const ScratchFolder& scratch, const std::function<void
   const Contents after = scratch.contents();
   EXPECT_NE(before, after);
   EXPECT_EQ(without_temporaries(after), after);
-  for (int stops = 1; stops < 10000; ++stops) {
+  for (int stops = 1; stops < 10000; stops += stride) {
     for (const auto& entry : fs::directory_iterator(scratch.path())) fs::remove_all(entry);
     prepare();
     const std::optional<bool> ended = killed_at(stops, work);
@@ -155,7 +171,7 @@ TEST(KilledWriter, LeavesAFileOldOrNew) {
   EXPECT_GT(seen.with_leftovers, 0);
 }
 
-TEST(KilledWriter, LeavesNoFolderOrAWholeOne) {
+TEST(SlowKilledWriter, LeavesNoFolderOrAWholeOne) {
   const ScratchFolder scratch;
   const fs::path folder = scratch.path() / "r";
   const Seen seen = killed_at_every_step(
@@ -165,7 +181,7 @@ TEST(KilledWriter, LeavesNoFolderOrAWholeOne) {
   EXPECT_GT(seen.new_ones, 0);
 }
 
-TEST(KilledWriter, LeavesAUsedFolderOldOrNew) {
+void expect_used_folder_old_or_new(int stride) {
   const ScratchFolder scratch;
   if (!can_exchange(scratch)) GTEST_SKIP() << "needs a file system that exchanges names";
   const fs::path folder = scratch.path() / "r";
@@ -174,17 +190,25 @@ TEST(KilledWriter, LeavesAUsedFolderOldOrNew) {
     scratch.write("r/truth.csv", "old truth");
     scratch.write("r/notes.txt", "mine");
   };
-  const Seen seen = killed_at_every_step(scratch, prepare,
-                                         [&] { write_files({}, {some_folder(folder, "new")}); });
+  const Seen seen = killed_at_every_step(
+      scratch, prepare, [&] { write_files({}, {some_folder(folder, "new")}); }, stride);
   TRUSSMAP_NEEDS_TRACE(seen);
-  EXPECT_GT(seen.old_ones, 10);
+  EXPECT_GT(seen.old_ones, 3);
   EXPECT_GT(seen.new_ones, 0);
   EXPECT_EQ(scratch.contents().at("r/notes.txt"), "mine");
 }
 
+TEST(KilledWriter, LeavesAUsedFolderOldOrNew) {
+  expect_used_folder_old_or_new(9);
+}
+
+TEST(SlowKilledWriter, LeavesAUsedFolderOldOrNewAtEveryStep) {
+  expect_used_folder_old_or_new(1);
+}
+
 /// A folder that stays the one that it is cannot be old or new as a whole; but it is never taken
 /// for a recording while it is neither.
-TEST(KilledWriter, LeavesNoMixtureThatReadsLikeARecording) {
+TEST(SlowKilledWriter, LeavesNoMixtureThatReadsLikeARecording) {
   const ScratchFolder scratch;
   const fs::path folder = scratch.path() / "r";
   for (int stops = 1; stops < 10000; ++stops) {
@@ -203,6 +227,37 @@ TEST(KilledWriter, LeavesNoMixtureThatReadsLikeARecording) {
   const Contents last = scratch.contents();
   EXPECT_EQ(without_temporaries(last), last);
   EXPECT_EQ(last.size(), 3U);
+}
+
+/// Ctrl-C leaves all that a call writes old, or all of it new, and nothing beside it.
+TEST(SlowKilledWriter, InterruptedLeavesEverythingOldOrEverythingNew) {
+  const ScratchFolder scratch;
+  const bool exchange = can_exchange(scratch);
+  const fs::path folder = scratch.path() / "r";
+  const auto write = [&](const std::string& version) {
+    std::vector<FolderOfFiles> folders;
+    if (exchange) folders.push_back(some_folder(folder, version));
+    write_files({{scratch.path() / "a", "a " + version}, {scratch.path() / "b", "b " + version}},
+                folders);
+  };
+  write("new");
+  const Contents after = scratch.contents();
+  write("old");
+  const Contents before = scratch.contents();
+  int old_ones = 0;
+  for (int stops = 1; stops < 10000; ++stops) {
+    const std::optional<bool> ended = ended_at(stops, SIGINT, [&] { write("new"); });
+    if (!ended) GTEST_SKIP() << "needs a system that lets a process trace its child";
+    const Contents now = scratch.contents();
+    EXPECT_TRUE(now == before || now == after) << "interrupted at step " << stops;
+    for (const auto& entry : fs::directory_iterator(scratch.path())) {
+      EXPECT_FALSE(entry.path().filename().string().ends_with(".trussmap-part")) << entry;
+    }
+    if (*ended) break;
+    old_ones += now == before ? 1 : 0;
+    write("old");
+  }
+  EXPECT_GT(old_ones, 10);
 }
 
 int wanted_kills() {
