@@ -17,8 +17,8 @@ endif()
 function(trussmap_page_script variable)
   set(source ${PROJECT_SOURCE_DIR}/src/report/page)
   set(script ${CMAKE_CURRENT_BINARY_DIR}/page.min.js)
-  foreach(module canvas dataflow encode event-selector expression format functions loader parser
-                 runtime scale scenegraph statistics time transforms util view view-transforms)
+  foreach(module canvas dataflow encode event-selector expression format functions interpreter
+                 loader parser runtime scale scenegraph statistics time transforms util view view-transforms)
     list(APPEND aliases --alias:vega-${module}=${VEGA_DIR}/vega-${module}.min.js)
   endforeach()
   # One module is required by another name than its file's.

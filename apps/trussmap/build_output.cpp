@@ -4,9 +4,12 @@
 
 #include "json_values.hpp"
 #include "terminal.hpp"
+#include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -67,12 +70,13 @@ void print_survey(const MapOnSurvey& on_survey) {
       "\n  These landmarks contradict the survey and do not count above (with them the rms "
       "is {:.3f} m):\n",
       map.rms_all);
-  for (const std::string& name : map.contradicting) fmt::print("    landmark {}\n", name);
+  for (const std::string& name : map.contradicting) 
+    fmt::print("    landmark {}\n", shortened_words(name));
   for (const auto& [a, b] : map.exchanged) {
     fmt::print(
         "    landmarks {} and {} each lie where the survey has the other: are their labels "
         "exchanged?\n",
-        a, b);
+        shortened_words(a), shortened_words(b));
   }
 }
 
@@ -83,7 +87,7 @@ void print_left_out(const BuiltMap& built, bool several) {
     const RejectedSighting& one = built.rejected[k];
     const std::string where = several ? one.recording + ", " : "";
     fmt::print("    {}t = {:.3f} s: landmark {} seen {:.2f} m from where the map has it\n", where,
-               one.t, one.landmark, one.misfit);
+               one.t, shortened_words(one.landmark), one.misfit);
   }
   if (built.rejected.size() > kRejectedShown) {
     fmt::print("    and {} more (--json lists all)\n", built.rejected.size() - kRejectedShown);
@@ -94,7 +98,7 @@ void print_quality(const BuiltMap& built) {
   const MapQuality& quality = built.quality;
   fmt::print("  {:<28} {:>8.3f} m  (median; worst {:.3f} m, landmark {})\n",
              "standard error of landmarks", quality.median_sd, quality.worst_sd,
-             quality.worst_landmark);
+             shortened_words(quality.worst_landmark));
   if (built.method != Method::adjustment) {
     fmt::print("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",
                "off the adjusted map by", quality.from_adjusted);
@@ -175,14 +179,15 @@ void print_built(const BuiltMap& built, const std::string& method, bool several)
   for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
     fmt::print("\n{}", warning_text(built.warnings[k]));
   }
-  for (const std::string& note : built.notes) fmt::print("\nnote: {}\n", note);
+  for (const std::string& note : built.notes) fmt::print("\nnote: {}\n", shortened_words(note));
 }
 
 void print_written(const Files& files) {
-  if (files.empty()) return;
+  const std::vector<std::filesystem::path> paths = files.paths();
+  if (paths.empty()) return;
   fmt::print("\n  written: ");
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    fmt::print("{}{}", k == 0 ? "" : ", ", files[k].first.string());
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    fmt::print("{}{}", k == 0 ? "" : ", ", paths[k].string());
   }
   fmt::print("\n");
 }

@@ -9,7 +9,6 @@
 #include "terminal.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/pose_graph.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -134,7 +133,7 @@ void run_adjust(const AdjustOptions& options) {
     files.emplace_back(options.out, format_g2o(graph));
   }
   if (!options.json.empty()) files.emplace_back(options.json, json(run).dump(2) + "\n");
-  write_files(files);
+  files.write();
   progress.end();
   fmt::print("{}", table(run));
 }

@@ -16,7 +16,6 @@
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -134,7 +133,7 @@ void run_build(const BuildOptions& options) {
     const std::string subject = subject_of(options.recordings, options.model) + ", " + by;
     add_page(files, map_page(built, subject), options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print_built(built, method, options.recordings.size() > 1);
   print_written(files);

@@ -14,7 +14,6 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -259,7 +258,7 @@ void run_calibrate(const CalibrateOptions& options) {
                         subject_of(options.recordings, options.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   fmt::print("{}", text(found, held, test));
 }

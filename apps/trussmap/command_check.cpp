@@ -8,6 +8,7 @@
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/table.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -46,8 +47,9 @@ void run_check(const CheckCommand& options) {
       check_recordings(recordings, model ? &*model : nullptr, options.model);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
   for (const CheckFinding& one : findings) {
-    fmt::print("{}, {}: {}: {}\n    {}\n", one.file, one.column.empty() ? "all" : one.column,
-               one.kind, one.evidence, one.remedy);
+    fmt::print("{}", shortened_words(fmt::format("{}, {}: {}: {}\n    {}\n", one.file,
+                                                 one.column.empty() ? "all" : one.column, one.kind,
+                                                 one.evidence, one.remedy)));
   }
   if (findings.empty()) {
     fmt::print("{}\n", verdict_text(Mood::good, "nothing found: no column contradicts another"));

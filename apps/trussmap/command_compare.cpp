@@ -14,7 +14,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -223,8 +222,8 @@ void print_outliers(const Comparison& result, std::size_t count) {
 }
 
 void print(const Comparison& result, const Noise& noise, const CompareCommand& options) {
-  fmt::print("{}\n",
-             verdict_text(result.consistent() ? Mood::good : Mood::bad, verdict_in_words(result)));
+  const Mood mood = !result.consistent() ? Mood::bad : result.tested() ? Mood::good : Mood::doubt;
+  fmt::print("{}\n", verdict_text(mood, verdict_in_words(result)));
   fmt::print("  {}, p {}; {} legs, {} landmarks\n  {}\n",
              fit_in_words(result.chi2, result.dof, result.coefficients),
              probability_text(result.p_value), result.legs, result.landmarks,
@@ -262,7 +261,7 @@ void run_compare(const CompareCommand& options) {
                              subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print(result, input.model.noise, options);
   print_budget(budget);

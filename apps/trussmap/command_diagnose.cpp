@@ -14,7 +14,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -220,7 +219,7 @@ void run_diagnose(const DiagnoseCommand& options) {
                             subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print(result, options);
   if (result.under) {

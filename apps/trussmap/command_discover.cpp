@@ -15,7 +15,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -184,7 +183,7 @@ void run_discover(const DiscoverCommand& options) {
                             subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   told.end();
   print(result);
   if (result.last.under) {

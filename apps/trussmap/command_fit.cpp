@@ -15,7 +15,6 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -165,7 +164,7 @@ void run_fit(const FitCommand& options) {
     add_page(files, fit_page(evidence, subject_of(options.input.recordings, options.input.model)),
              options.page);
   }
-  write_files(files);
+  files.write();
   progress.end();
   print(result);
   if (noise) {

@@ -15,7 +15,6 @@
 #include "trussmap/test_path.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -29,7 +28,6 @@
 namespace trussmap::app {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 struct NoiseOptions {
@@ -193,9 +191,8 @@ void run_noise(const NoiseOptions& options) {
     files.emplace_back(options.tape.json, json(result, options).dump(2) + "\n");
   }
   if (!options.tape.page.plots.empty()) {
-    files.emplace_back(fs::path(options.tape.page.plots) / "noise.svg",
-                       noise_picture(result.errors, result.estimate));
-    fs::create_directories(options.tape.page.plots);
+    files.add_plot(options.tape.page.plots, "noise.svg",
+                   noise_picture(result.errors, result.estimate));
   }
   if (!options.tape.page.html.empty()) {
     const NoiseCalibration shown{result.errors, result.estimate, result.fit,
@@ -208,7 +205,7 @@ void run_noise(const NoiseOptions& options) {
   if (!options.tape.write.empty()) {
     files.emplace_back(options.tape.write, format_end_errors(result.errors));
   }
-  write_files(files);
+  files.write();
   fmt::print("{}", text(result));
 }
 

@@ -11,7 +11,6 @@
 #include "trussmap/simulation.hpp"
 #include "trussmap/write_files.hpp"
 
-#include <filesystem>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -24,8 +23,6 @@
 
 namespace trussmap::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A recording and what was simulated in it.
 struct Simulated {
@@ -65,15 +62,16 @@ Simulated simulate(const SimulateOptions& options) {
 }
 
 /// An answer of an earlier recording must not stay beside a new one.
-void write_folder(const SimulateOptions& options, const Simulated& simulated) {
-  std::vector<std::pair<std::string, std::string>> beside = {
-      {"model.toml", format_model(nominal_model(options))}};
+FolderOfFiles folder_of(const SimulateOptions& options, const Simulated& simulated) {
+  NamedTexts beside = {{"model.toml", format_model(nominal_model(options))}};
   if (options.hide) {
     beside.emplace_back(kSealedName, sealed({{"seed", options.seed},
                                              {"effects", effects_json(simulated.effects)}}));
   }
-  write_recording(options.out, simulated.drive.recording, "", beside);
-  if (!options.hide) fs::remove(fs::path(options.out) / kSealedName);
+  FolderOfFiles folder =
+      recording_folder(options.out, simulated.drive.recording, "", std::move(beside));
+  if (!options.hide) folder.gone.emplace_back(kSealedName);
+  return folder;
 }
 
 nlohmann::json summary(const SimulateOptions& options, const Simulated& simulated) {
@@ -122,9 +120,10 @@ void print(const nlohmann::json& s) {
 
 void run_simulate(const SimulateOptions& options) {
   const Simulated simulated = simulate(options);
-  write_folder(options, simulated);
   const nlohmann::json results = summary(options, simulated);
-  if (!options.json.empty()) write_file(options.json, results.dump(2) + "\n");
+  NamedContents files;
+  if (!options.json.empty()) files.emplace_back(options.json, results.dump(2) + "\n");
+  write_files(files, {folder_of(options, simulated)});
   print(results);
   if (options.hide) {
     fmt::print("\n  Effects are hidden in it; `trussmap reveal {}` names them.\n", options.out);

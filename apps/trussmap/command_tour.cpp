@@ -7,7 +7,6 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "trussmap/tour_experiment.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -158,7 +157,7 @@ void run_tour(const CommandOptions& options) {
     add_page(files, tour_page(result, options.seeds, world + ", walk " + options.walk),
              options.page);
   }
-  write_files(files);
+  files.write();
   print_result(result, options);
 }
 

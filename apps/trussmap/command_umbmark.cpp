@@ -10,7 +10,6 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/umbmark.hpp"
-#include "trussmap/write_files.hpp"
 #include "umbmark_output.hpp"
 
 #include <filesystem>
@@ -107,9 +106,7 @@ void run_umbmark(const UmbmarkOptions& options) {
     std::vector<SquareRuns> runs;
     runs.reserve(rounds.size());
     for (const SquareRound& round : rounds) runs.push_back(round.runs);
-    files.emplace_back(fs::path(options.tape.page.plots) / "umbmark.svg",
-                       square_picture(runs, options.side));
-    fs::create_directories(options.tape.page.plots);
+    files.add_plot(options.tape.page.plots, "umbmark.svg", square_picture(runs, options.side));
   }
   if (!options.tape.page.html.empty()) {
     add_page(files, page_of(rounds, options), {options.tape.page.html, {}});
@@ -117,7 +114,7 @@ void run_umbmark(const UmbmarkOptions& options) {
   for (std::size_t k = 0; k < rounds.size() && !options.tape.write.empty(); ++k) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }
-  write_files(files);
+  files.write();
   fmt::print("{}", umbmark_text(rounds, method_of(options)));
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "commands.hpp"
 #include "help.hpp"
+#include "read_limits.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/write_files.hpp"
@@ -24,7 +25,8 @@ constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
 int complain(const std::exception& error, int status) {
-  std::fprintf(stderr, "trussmap: %s\n", trussmap::escaped_controls(error.what(), true).c_str());
+  const std::string message = trussmap::escaped_controls(error.what(), true);
+  std::fprintf(stderr, "trussmap: %s\n", trussmap::shortened_words(message).c_str());
   return status;
 }
 
@@ -94,6 +96,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_simulate(commands);
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);
+  trussmap::app::add_read_limits(app);
   trussmap::app::finish_help(app);
   try {
     check_command(app, argc, argv);

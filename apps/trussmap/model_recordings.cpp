@@ -7,6 +7,7 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 
@@ -120,7 +121,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
 }
 
 void print_notes(const ModelRecordings& input) {
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", note);
+  for (const std::string& note : input.notes) fmt::print("note: {}\n", shortened_words(note));
 }
 
 FitOptions fit_options(const ModelRecordingsOptions& options) {

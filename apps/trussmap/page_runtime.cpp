@@ -33,14 +33,27 @@ void add_plots_option(const Command& command, PageOptions& options) {
       .type_name("DIR");
 }
 
+void Files::add_plot(const std::string& folder, const std::string& name, std::string svg) {
+  folders.push_back({folder, {{name, std::move(svg)}}, {}});
+}
+
+std::vector<std::filesystem::path> Files::paths() const {
+  std::vector<std::filesystem::path> all;
+  for (const auto& [path, content] : single) all.push_back(path);
+  for (const FolderOfFiles& folder : folders) {
+    for (const auto& [name, content] : folder.files) all.push_back(folder.folder / name);
+  }
+  return all;
+}
+
 void add_page(Files& files, const Page& page, const PageOptions& options) {
   if (!options.html.empty()) files.emplace_back(options.html, render_page(page, page_runtime()));
   if (options.plots.empty()) return;
+  FolderOfFiles& plots = files.folders.emplace_back();
+  plots.folder = options.plots;
   for (DrawnChart& chart : draw_charts(page)) {
-    files.emplace_back(std::filesystem::path(options.plots) / (chart.id + ".svg"),
-                       std::move(chart.svg));
+    plots.files.emplace_back(chart.id + ".svg", std::move(chart.svg));
   }
-  std::filesystem::create_directories(options.plots);
 }
 
 std::string subject_of(const std::vector<std::string>& recordings, const std::string& model) {

@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <string>
@@ -27,9 +28,22 @@ struct PageOptions {
 void add_html_option(const Command& command, PageOptions& options);
 void add_plots_option(const Command& command, PageOptions& options);
 
-using Files = std::vector<std::pair<std::filesystem::path, std::string>>;
+/// What a command writes, all of it when it is done.
+struct Files {
+  NamedContents single;
+  std::vector<FolderOfFiles> folders;
 
-/// The page, and its charts as pictures, among the files that a command writes. Makes DIR.
+  void emplace_back(const std::filesystem::path& path, std::string content) {
+    single.emplace_back(path, std::move(content));
+  }
+  /// A picture of its own in DIR.
+  void add_plot(const std::string& folder, const std::string& name, std::string svg);
+  /// Of all files, in the order in which they were added.
+  [[nodiscard]] std::vector<std::filesystem::path> paths() const;
+  void write() const { write_files(single, folders); }
+};
+
+/// The page, and its charts as pictures in DIR, among the files that a command writes.
 void add_page(Files& files, const Page& page, const PageOptions& options);
 
 /// "rec1, rec2 (and 3 more), model.toml".

@@ -12,8 +12,8 @@
 #include "trussmap/map_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -97,7 +97,7 @@ void print_session(const Recording& recording, const BuiltMap& built) {
   for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
     fmt::print("  {}", warning_text(built.warnings[k]));
   }
-  for (const std::string& note : built.notes) fmt::print("  note: {}\n", note);
+  for (const std::string& note : built.notes) fmt::print("  note: {}\n", shortened_words(note));
   std::fflush(stdout);  // who reads it may rely on it
 }
 
@@ -143,7 +143,7 @@ void add_sessions(const StoreSessions& options) {
                          {"added", sessions}};
     files.emplace_back(options.json_file, result.dump(2) + "\n");
   }
-  write_files(files);
+  files.write();
   fmt::print(
       "\nmap of {} landmarks and {} routes in {}, method {}: {} sessions, {} arrivals left "
       "out\n",

@@ -33,11 +33,11 @@ bool is_coloured(std::FILE* file) {
   return variable("NO_COLOR").empty() && can_rewrite_lines(file);
 }
 
-std::string verdict_text(Mood mood, std::string_view sentence, bool coloured) {
-  if (!coloured) return std::string(sentence);
+std::string verdict_text(Mood mood, std::string_view said, bool coloured) {
+  const std::string sentence = shortened_words(said);
+  if (!coloured) return sentence;
   const std::size_t word = sentence.find(':');
-  const std::string_view rest =
-      word == std::string_view::npos ? std::string_view() : sentence.substr(word);
+  const std::string rest = word == std::string::npos ? "" : sentence.substr(word);
   return fmt::format("{}{}", fmt::styled(sentence.substr(0, word), style_of(mood)), rest);
 }
 

@@ -125,6 +125,8 @@ struct CompareOptions {
 /// What speaks against a model.
 enum class Objection { none, chi2, trend, effect };
 
+inline constexpr int kFewestTests = 5;  ///< degrees of freedom that make a test
+
 struct Comparison {
   Objection objection = Objection::none;
   std::string missing;  ///< the effect that speaks against it
@@ -146,6 +148,10 @@ struct Comparison {
   std::vector<std::string> warnings;
 
   [[nodiscard]] bool consistent() const { return objection == Objection::none; }
+
+  /// Whether measurements are left over that could contradict a model: without, being consistent
+  /// says nothing.
+  [[nodiscard]] bool tested() const { return dof >= kFewestTests; }
   [[nodiscard]] double misfit() const { return chi2 / (dof > 1 ? dof : 1); }  ///< 1 is right
 };
 

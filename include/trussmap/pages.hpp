@@ -49,7 +49,7 @@ struct PageRuntime {
   std::string_view script;
 };
 
-/// The file.
+/// The file. Its content security policy lets this script run and no other, and loads nothing.
 [[nodiscard]] std::string render_page(const Page& page, const PageRuntime& runtime);
 
 struct DrawnChart {

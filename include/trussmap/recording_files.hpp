@@ -10,6 +10,7 @@
 #include "trussmap/recording.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <filesystem>
 #include <string>
@@ -22,13 +23,21 @@ namespace trussmap {
 /// guessed. sightings.csv may be absent only where there is a truth.csv.
 [[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
 
-/// Writes the streams that the recording has (a drive always; sightings unless there is truth and
-/// no sighting) and removes the others that an earlier recording left in the folder. `comment`, if
-/// any, becomes # lines at the top of drive.csv; `beside` are further files, by name and content,
-/// written with them. The folder is made where it is missing. Numbers read back exactly.
+/// Texts by the names of their files.
+using NamedTexts = std::vector<std::pair<std::string, std::string>>;
+
+/// The streams that the recording has (a drive always; sightings unless there is truth and no
+/// sighting), in place of all that an earlier recording left in the folder. `comment`, if any,
+/// becomes # lines at the top of drive.csv; `beside` are further files, by name and content.
+/// Numbers read back exactly.
+[[nodiscard]] FolderOfFiles recording_folder(const std::filesystem::path& folder,
+                                             const Recording& recording,
+                                             const std::string& comment = "",
+                                             NamedTexts beside = {});
+
+/// Writes that folder, whole or not at all, as write_files() does.
 void write_recording(const std::filesystem::path& folder, const Recording& recording,
-                     const std::string& comment = "",
-                     const std::vector<std::pair<std::string, std::string>>& beside = {});
+                     const std::string& comment = "", const NamedTexts& beside = {});
 
 // ----------------------------------------
 // The UTIAS multi-robot data sets (MRCLAM: Leung, Halpern, Barfoot & Liu, 2011) as recordings.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace trussmap {
@@ -19,11 +20,15 @@ struct TextTable {
 };
 
 /// One line per row, columns two spaces apart, nothing trailing. UTF-8: widths are counted in
-/// characters. A row may have fewer cells than there are columns.
+/// characters, after shortened_words(). A row may have fewer cells than there are columns.
 [[nodiscard]] std::string format_table(const TextTable& table);
 
 /// No more characters than `width`: a longer text ends in "...".
 [[nodiscard]] std::string shortened(const std::string& text, std::size_t width);
+
+/// A message with its long words, and long texts in "...", shortened in the middle, and each of its
+/// lines to a length that can be read: who writes a name of 10 000 letters gets its ends shown.
+[[nodiscard]] std::string shortened_words(std::string_view message);
 
 /// A value and its standard error to the same decimal, that of the error's second digit:
 /// "0.3362" and "0.0015". Without an error (0 or not finite) the value has six digits and the

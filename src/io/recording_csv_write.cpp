@@ -72,30 +72,31 @@ std::string truth_text(const std::vector<TruthRow>& truth) {
 
 }  // namespace
 
-void write_recording(const fs::path& folder, const Recording& recording, const std::string& comment,
-                     const std::vector<std::pair<std::string, std::string>>& beside) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) throw InputError(folder.string(), 0, "cannot be made: " + failed.message());
-  std::vector<std::pair<fs::path, std::string>> files;
-  files.emplace_back(folder / "drive.csv", drive_text(recording.drive, comment));
+FolderOfFiles recording_folder(const fs::path& folder, const Recording& recording,
+                               const std::string& comment, NamedTexts beside) {
+  FolderOfFiles whole;
+  whole.folder = folder;
+  whole.files.emplace_back("drive.csv", drive_text(recording.drive, comment));
   if (!recording.sightings.empty() || recording.truth.empty()) {
-    files.emplace_back(folder / "sightings.csv", sightings_text(recording.sightings));
+    whole.files.emplace_back("sightings.csv", sightings_text(recording.sightings));
   }
   if (!recording.survey.empty()) {
-    files.emplace_back(folder / "survey.csv", survey_text(recording.survey));
+    whole.files.emplace_back("survey.csv", survey_text(recording.survey));
   }
-  if (!recording.truth.empty()) {
-    files.emplace_back(folder / "truth.csv", truth_text(recording.truth));
-  }
-  for (const auto& [name, content] : beside) files.emplace_back(folder / name, content);
-  write_files(files);
+  if (!recording.truth.empty()) whole.files.emplace_back("truth.csv", truth_text(recording.truth));
+  for (auto& file : beside) whole.files.push_back(std::move(file));
   // An earlier recording's stream in the same folder would be taken for this one's.
   for (const char* name : {"sightings.csv", "survey.csv", "truth.csv"}) {
-    const bool written = std::any_of(files.begin(), files.end(),
-                                     [&](const auto& file) { return file.first == folder / name; });
-    if (!written) fs::remove(folder / name, failed);
+    const bool written = std::any_of(whole.files.begin(), whole.files.end(),
+                                     [name](const auto& file) { return file.first == name; });
+    if (!written) whole.gone.emplace_back(name);
   }
+  return whole;
+}
+
+void write_recording(const fs::path& folder, const Recording& recording, const std::string& comment,
+                     const NamedTexts& beside) {
+  write_files({}, {recording_folder(folder, recording, comment, beside)});
 }
 
 }  // namespace trussmap

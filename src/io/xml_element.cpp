@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "io/xml_element.hpp"
 
+#include "io/read_limits.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <expat.h>
 #include <memory>
@@ -14,10 +15,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kDeepest = 100;  // elements
-// What a document may grow to by what it declares as defaults: so much, or so many times its size.
-constexpr std::size_t kGrowth = 10;
-constexpr std::size_t kGrownBytes = std::size_t{16} << 20U;
+// What a document may grow to by what it declares as defaults.
+constexpr Growth kByDefaults{16, 10};
 constexpr std::string_view kSpace = " \t\r\n";
 // Expat counts in int.
 constexpr std::size_t kPortion = std::size_t{1} << 20U;  // bytes
@@ -33,6 +32,7 @@ struct Builder {
   XML_Parser parser = nullptr;
   XmlElement document;  // its child is the root
   std::vector<XmlElement*> open{&document};
+  std::size_t deepest = 0;
   bool too_deep = false;
   std::size_t most = 0;   // bytes that names, values and texts may come to
   std::size_t grown = 0;  // and have
@@ -45,7 +45,7 @@ struct Builder {
   }
 
   void begin(const char* name, const char** attributes) {
-    if (open.size() > kDeepest) {
+    if (open.size() > deepest) {
       too_deep = true;
       XML_StopParser(parser, XML_FALSE);
       return;
@@ -95,7 +95,8 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
   if (!parser) throw std::bad_alloc();
   Builder tree;
   tree.parser = parser.get();
-  tree.most = std::max(kGrownBytes, kGrowth * document.size());
+  tree.most = most_grown(kByDefaults, document.size());
+  tree.deepest = static_cast<std::size_t>(read_limits().nesting);
   XML_SetUserData(parser.get(), &tree);
   XML_SetElementHandler(
       parser.get(),
@@ -118,14 +119,12 @@ XmlElement parse_xml(const std::string& document, const std::string& file) {
         XML_Parse(parser.get(), portion.data(), static_cast<int>(portion.size()), last ? 1 : 0);
     const auto line = static_cast<int>(XML_GetCurrentLineNumber(parser.get()));
     if (tree.grown > tree.most) {
-      throw InputError(file, line,
-                       "elements and defaults grow beyond " + std::to_string(tree.most) +
-                           " bytes, expected a map");
+      throw InputError(file, line, "elements and defaults grow to " + more_than(kByDefaults));
     }
     if (tree.too_deep) {
-      throw InputError(
-          file, line,
-          "elements are nested more than " + std::to_string(kDeepest) + " deep, expected a map");
+      throw InputError(file, line,
+                       "elements are nested more than " + std::to_string(tree.deepest) +
+                           " deep, expected a map; allow more with --max-nesting");
     }
     if (status != XML_STATUS_OK) {
       throw InputError(file, line,

@@ -57,6 +57,9 @@ std::string page_verdict(const Comparison& result) {
   const bool legs = !result.held_out.legs.empty();
   const std::string held =
       legs ? fmt::format("{:.0f} mm", 1000.0 * result.held_out.arrival_rms) : "";
+  if (result.consistent() && !result.tested()) {
+    return "Nothing contradicts the model, " + objection_in_words(result) + ".";
+  }
   if (result.consistent()) {
     return "The model explains these measurements" +
            (legs ? ": legs that it has not seen end " + held + " off, as its noise lets one expect."
@@ -142,7 +145,7 @@ Page comparison_page(const ComparisonEvidence& evidence, const std::string& subj
   PageContent page;
   page.command = "compare";
   page.subject = subject;
-  page.tone = result.consistent() ? Tone::good : Tone::bad;
+  page.tone = !result.consistent() ? Tone::bad : result.tested() ? Tone::good : Tone::neutral;
   page.verdict = page_verdict(result);
   page.facts = facts_on(result, page.tone);
   page.answers = answers_on(result);

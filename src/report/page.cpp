@@ -3,9 +3,11 @@
 #include "report/page.hpp"
 
 #include "plot/chart_svg.hpp"
+#include "report/content_hash.hpp"
 #include "text/xml_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -23,16 +25,31 @@ std::string element(const char* name, const std::string& text) {
   return fmt::format("<{0}>{1}</{0}>\n", name, xml_escaped(text));
 }
 
+long pixels_of(const Chart& chart) {
+  return std::lround(chart.height);
+}
+
+/// Room for the charts before they are drawn; attributes may hold no style.
+std::string heights(const PageContent& page) {
+  std::set<long> heights;
+  for (const Chart* chart : charts_of(page)) heights.insert(pixels_of(*chart));
+  std::string text;
+  for (const long height : heights) {
+    text += fmt::format(".tall-{0} {{ min-height: {0}px; }}\n", height);
+  }
+  return text;
+}
+
 /// A figure of a chart: its caption and data are in the page, the script draws it.
 std::string html(const Chart& chart) {
   return fmt::format(
       "<figure class=\"chart\" id=\"{0}\">\n"
       "<h3>{1}</h3>\n"
-      "<div class=\"picture\" style=\"min-height:{2:g}px\"></div>\n"
+      "<div class=\"picture tall-{2}\"></div>\n"
       "<figcaption>{3}</figcaption>\n"
       "<script type=\"application/json\">{4}</script>\n"
       "</figure>\n",
-      xml_escaped(chart.id), xml_escaped(chart.title), chart.height, xml_escaped(chart.caption),
+      xml_escaped(chart.id), xml_escaped(chart.title), pixels_of(chart), xml_escaped(chart.caption),
       chart_json(chart));
 }
 
@@ -102,6 +119,15 @@ std::string first_screen(const PageContent& page) {
   return text + "</header>\n";
 }
 
+/// What the page may do, whatever comes into it: its own script runs, and no other; nothing is
+/// loaded, sent or embedded.
+std::string policy(std::string_view script, const std::string& style) {
+  return fmt::format(
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "script-src '{}'; style-src '{}'; base-uri 'none'; form-action 'none'\">\n",
+      content_hash(script), content_hash(style));
+}
+
 std::string contents(const PageContent& page) {
   std::string text = "<nav aria-label=\"Sections\"><ul>\n";
   for (std::size_t k = 0; k < page.sections.size(); ++k) {
@@ -136,8 +162,10 @@ std::string render_page(const PageContent& page, const PageRuntime& runtime) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n";
+  const std::string style = fmt::format("\n{}{}", runtime.style, heights(page));
+  text += policy(runtime.script, style);
   text += element("title", "trussmap " + page.command + ": " + page.verdict);
-  text += fmt::format("<style>\n{}</style>\n</head>\n<body>\n<main>\n", runtime.style);
+  text += fmt::format("<style>{}</style>\n</head>\n<body>\n<main>\n", style);
   text += first_screen(page);
   if (page.sections.size() > 1) text += contents(page);
   for (std::size_t k = 0; k < page.sections.size(); ++k) {

@@ -4,6 +4,7 @@
 
 #include "trussmap/table.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include <fmt/format.h>
@@ -44,7 +45,71 @@ bool is_command(std::uint32_t c) {
          c == 0xFEFFU || c == 0xFFFEU || c == 0xFFFFU;
 }
 
+/// The text's beginning and end, whole characters.
+std::string middle_left_out(std::string_view text, std::size_t before, std::size_t after) {
+  const auto within = [text](std::size_t k) {
+    return (static_cast<unsigned char>(text[k]) & 0xC0U) == 0x80U;
+  };
+  std::size_t end = text.size() - after;
+  while (before > 0 && within(before)) --before;
+  while (end < text.size() && within(end)) ++end;
+  return std::string(text.substr(0, before)) + "..." + std::string(text.substr(end));
+}
+
+// Of a word's bytes; a path has a folder of many words, and some paths are long.
+constexpr std::size_t kLongestWord = 300;
+constexpr std::size_t kWordBegin = 60;
+constexpr std::size_t kWordEnd = 40;
+constexpr std::size_t kLongestLine = 3000;
+constexpr std::size_t kLineBegin = 600;
+constexpr std::size_t kLineEnd = 400;
+
+std::string shortened_word(std::string_view word) {
+  return word.size() > kLongestWord ? middle_left_out(word, kWordBegin, kWordEnd)
+                                    : std::string(word);
+}
+
+/// Where a text in quotes that begins at `open` ends, npos if it does not.
+std::size_t closing_quote(std::string_view line, std::size_t open) {
+  for (std::size_t k = line.find('"', open + 1); k != std::string_view::npos;
+       k = line.find('"', k + 1)) {
+    if (k + 1 == line.size() ||
+        std::string_view(" ,.;:)").find(line[k + 1]) != std::string_view::npos) {
+      return k;
+    }
+  }
+  return std::string_view::npos;
+}
+
+std::string shortened_line(std::string_view line) {
+  std::string result;
+  for (std::size_t k = 0; k < line.size();) {
+    if (line[k] == ' ') {
+      result += line[k++];
+      continue;
+    }
+    const bool quoted = line[k] == '"';
+    const std::size_t closing = quoted ? closing_quote(line, k) : std::string_view::npos;
+    const std::size_t end =
+        closing != std::string_view::npos ? closing + 1 : std::min(line.find(' ', k), line.size());
+    result += shortened_word(line.substr(k, end - k));
+    k = end;
+  }
+  return result.size() > kLongestLine ? middle_left_out(result, kLineBegin, kLineEnd) : result;
+}
+
 }  // namespace
+
+std::string shortened_words(std::string_view message) {
+  std::string result;
+  for (std::size_t at = 0; at <= message.size();) {
+    const std::size_t end = std::min(message.find('\n', at), message.size());
+    result += shortened_line(message.substr(at, end - at));
+    if (end < message.size()) result += '\n';
+    at = end + 1;
+  }
+  return result;
+}
 
 std::string escaped_controls(std::string_view text, bool lines) {
   std::string result;

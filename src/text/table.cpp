@@ -30,16 +30,20 @@ std::string without_trailing_space(std::string line) {
 }  // namespace
 
 std::string format_table(const TextTable& table) {
+  std::vector<std::vector<std::string>> rows = table.rows;
+  for (auto& row : rows) {
+    for (std::string& cell : row) cell = shortened_words(cell);
+  }
   std::vector<std::size_t> widths(table.columns.size(), 0);
-  for (const auto& row : table.rows) {
+  for (const auto& row : rows) {
     for (std::size_t k = 0; k < std::min(row.size(), widths.size()); ++k) {
       widths[k] = std::max(widths[k], width(row[k]));
     }
   }
   const std::string indent(static_cast<std::size_t>(std::max(table.indent, 0)), ' ');
   std::string text;
-  for (std::size_t number = 0; number < table.rows.size(); ++number) {
-    const auto& row = table.rows[number];
+  for (std::size_t number = 0; number < rows.size(); ++number) {
+    const auto& row = rows[number];
     std::string line = indent;
     for (std::size_t k = 0; k < std::min(row.size(), widths.size()); ++k) {
       line += (k == 0 ? "" : "  ") + padded(row[k], widths[k], table.columns[k]);

@@ -76,6 +76,12 @@ std::string_view verdict_of(const Discovery& result) {
 std::string objection_in_words(const Comparison& result) {
   switch (result.objection) {
     case Objection::none:
+      if (!result.tested()) {
+        return fmt::format(
+            "but hardly tested: {} degrees of freedom say nothing for a model; drive routes again, "
+            "or survey landmarks",
+            result.dof);
+      }
       return "the model explains these measurements to within its noise";
     case Objection::chi2:
       return beyond_noise(result.chi2, result.dof);
@@ -91,7 +97,8 @@ std::string objection_in_words(const Comparison& result) {
 }
 
 std::string verdict_in_words(const Comparison& result) {
-  return fmt::format("{}: {}", verdict_of(result), objection_in_words(result));
+  const bool hardly = result.consistent() && !result.tested();
+  return fmt::format("{}{} {}", verdict_of(result), hardly ? "," : ":", objection_in_words(result));
 }
 
 std::string verdict_in_words(const Diagnosis& result) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "policy/source_files.hpp"
+#include "report/content_hash.hpp"
 
 #include <array>
 #include <cstdio>
@@ -60,18 +61,27 @@ inline std::string dom_of(const std::filesystem::path& page, bool patient) {
       page.string() + " 2>/dev/null");
 }
 
-/// Inserts a script that notes errors before everything, and `last` after everything.
+/// Inserts a script that notes errors before everything, and `last` after everything. The page's
+/// policy allows these two besides its own.
 inline std::filesystem::path instrumented(const std::filesystem::path& page,
                                           const std::string& last) {
   std::string html = text_in(page);
-  const std::string head = "<head>\n";
-  html.insert(html.find(head) + head.size(),
-              "<script>window.pageErrors = [];\n"
-              "addEventListener('error', e => pageErrors.push(e.message));\n"
-              "addEventListener('unhandledrejection', e => pageErrors.push(String(e.reason)));\n"
-              "for (const kind of ['error', 'warn']) {\n"
-              "  console[kind] = (...what) => pageErrors.push(what.map(String).join(' '));\n"
-              "}</script>\n");
+  const std::string first =
+      "window.pageErrors = [];\n"
+      "addEventListener('error', e => pageErrors.push(e.message));\n"
+      "addEventListener('securitypolicyviolation', e =>\n"
+      "  pageErrors.push(e.violatedDirective + ' ' + e.blockedURI + ' ' + e.sample));\n"
+      "addEventListener('unhandledrejection', e => pageErrors.push(String(e.reason)));\n"
+      "for (const kind of ['error', 'warn']) {\n"
+      "  console[kind] = (...what) => pageErrors.push(what.map(String).join(' '));\n"
+      "}";
+  const std::string scripts = "script-src ";
+  const std::size_t allowed = html.find(scripts);
+  if (allowed == std::string::npos) throw std::runtime_error("the page has no policy");
+  html.insert(allowed + scripts.size(),
+              "'" + content_hash(first) + "' '" + content_hash(last) + "' ");
+  const std::size_t after = html.find("Content-Security-Policy");
+  html.insert(html.find('\n', after) + 1, "<script>" + first + "</script>\n");
   html.insert(html.rfind("</body>"), "<script>" + last + "</script>");
   const std::filesystem::path copy = page.parent_path() / ("checked_" + page.filename().string());
   std::ofstream(copy, std::ios::binary) << html;

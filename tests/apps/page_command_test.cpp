@@ -271,5 +271,33 @@ TEST(PageInBrowser, HostileNamesStayText) {
   EXPECT_NE(found["charts"][0]["hover"].get<std::string>().find("</script>"), std::string::npos);
 }
 
+/// A script that came into the file later, and one in an attribute, do not run; the page's own
+/// does.
+TEST(PageInBrowser, RunsNoScriptButItsOwn) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  PageContent page;
+  page.command = "compare";
+  page.verdict = "nothing ran";
+  page.sections = {{"charts", {testing::charts_of_every_kind("A")}}};
+  const std::string script = testing::text_in(TRUSSMAP_PAGE_SCRIPT);
+  std::string html = render_page(page, {"", script});
+  html.insert(
+      html.find("<main>"),
+      "<script>document.title = 'a script ran'</script>"
+      "<img src=\"x\" onerror=\"document.title = 'a handler ran'\">"
+      "<script src=\"other.js\"></script>"
+      "<iframe srcdoc=\"<script>parent.document.title = 'a frame ran'</script>\"></iframe>");
+  scratch.write("other.js", "document.title = 'a file ran'");
+  const std::string dom = testing::dom_of(scratch.write("page.html", html), true);
+  EXPECT_NE(dom.find("<title>trussmap compare: nothing ran</title>"), std::string::npos);
+  EXPECT_NE(dom.find("data-charts="), std::string::npos);
+  // The same file without its policy shows that the attempts are real.
+  const std::size_t policy = html.find("<meta http-equiv=\"Content-Security-Policy\"");
+  html.erase(policy, html.find('\n', policy) - policy);
+  const std::string open = testing::dom_of(scratch.write("open.html", html), true);
+  EXPECT_EQ(open.find("<title>trussmap compare: nothing ran</title>"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace trussmap

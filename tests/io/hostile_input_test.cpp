@@ -11,6 +11,7 @@
 #include "trussmap/write_files.hpp"
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -82,13 +83,57 @@ TEST(HostileInput, ACovarianceWithoutAnEnd) {
   EXPECT_TRUE(holds(said, "landmark A: has no c_yy")) << said;
 }
 
+/// Limits that go when the test does.
+class Limits {
+ public:
+  explicit Limits(const ReadLimits& limits) : before_(read_limits()) { set_read_limits(limits); }
+  ~Limits() { set_read_limits(before_); }
+  Limits(const Limits&) = delete;
+  Limits& operator=(const Limits&) = delete;
+
+ private:
+  ReadLimits before_;
+};
+
+std::string nested(int depth) {
+  std::string text;
+  for (int k = 0; k < depth; ++k) text += "<desc>";
+  for (int k = 0; k < depth; ++k) text += "</desc>";
+  return text;
+}
+
+TEST(HostileInput, ElementsWithinElements) {
+  const std::string said = graphml_refusal(nested(200));
+  EXPECT_TRUE(holds(said, "nested more than 100 deep")) << said;
+  EXPECT_TRUE(holds(said, "--max-nesting")) << said;
+  const Limits more({0, 300});
+  EXPECT_FALSE(holds(graphml_refusal(nested(200)), "nested"));
+  EXPECT_TRUE(holds(graphml_refusal(nested(300)), "nested more than 300 deep"));
+  EXPECT_THROW(set_read_limits({0, 0}), std::invalid_argument);
+  EXPECT_EQ(read_limits().nesting, 300);
+}
+
+TEST(HostileInput, AFileThatIsTooLargeAsItIs) {
+  const ScratchFolder scratch;
+  const auto file = scratch.write("f", std::string((std::size_t{1} << 20U) + 1, 'a'));
+  EXPECT_EQ(read_file(file).size(), (std::size_t{1} << 20U) + 1);
+  const Limits one({std::size_t{1} << 20U, 100});
+  const std::string said = refusal([&] { static_cast<void>(read_file(file)); });
+  EXPECT_TRUE(holds(said, "is more than 1 MiB; allow more with --max-input-mib")) << said;
+  scratch.write("f", std::string(std::size_t{1} << 20U, 'a'));
+  EXPECT_EQ(read_file(file).size(), std::size_t{1} << 20U);
+}
+
 TEST(HostileInput, DefaultsThatMultiply) {
   std::string nodes;
   for (int k = 0; k < 2000; ++k) nodes += "<node/>";
   const std::string head =
       "<!DOCTYPE graphml [<!ATTLIST node kind CDATA \"" + std::string(20000, 'a') + "\">]>\n";
   const std::string said = graphml_refusal(nodes, head);
-  EXPECT_TRUE(holds(said, "grow beyond 16777216 bytes")) << said;
+  EXPECT_TRUE(holds(said,
+                    "grow to more than 16 MiB and 10 times their size; allow more with "
+                    "--max-input-mib"))
+      << said;
 }
 
 TEST(HostileInput, AnXzFileThatGrows) {
@@ -103,7 +148,18 @@ TEST(HostileInput, AnXzFileThatGrows) {
   scratch.write("runs.csv.xz", std::string(bytes.begin(), bytes.begin() + static_cast<long>(size)));
   const std::string said =
       refusal([&] { static_cast<void>(read_file(scratch.path() / "runs.csv.xz")); });
-  EXPECT_TRUE(holds(said, "grow to more than 64 MiB")) << said;
+  EXPECT_TRUE(holds(said,
+                    "grow to more than 64 MiB and 200 times their size; allow more with "
+                    "--max-input-mib"))
+      << said;
+  {
+    const Limits enough({std::size_t{80} << 20U, 100});
+    EXPECT_EQ(read_file(scratch.path() / "runs.csv.xz"), zeros);
+  }
+  const Limits less({std::size_t{79} << 20U, 100});
+  const std::string again =
+      refusal([&] { static_cast<void>(read_file(scratch.path() / "runs.csv.xz")); });
+  EXPECT_TRUE(holds(again, "grow to more than 79 MiB; allow")) << again;
 }
 
 TEST(HostileInput, NamesThatCommandATerminal) {

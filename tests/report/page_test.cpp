@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/page.hpp"
 
+#include "report/content_hash.hpp"
 #include "report/large_pages.hpp"
 #include "report/some_charts.hpp"
 
@@ -61,6 +62,27 @@ TEST(Page, LoadsNothing) {
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_EQ(html.find("http:"), std::string::npos);
   EXPECT_EQ(html.find("https:"), std::string::npos);
+}
+
+/// What stands between the last `open` and the next `close`.
+std::string last_between(const std::string& text, const std::string& open,
+                         const std::string& close) {
+  const std::size_t at = text.rfind(open) + open.size();
+  return text.substr(at, text.find(close, at) - at);
+}
+
+TEST(Page, AllowsItsOwnScriptAndStyleAlone) {
+  const std::string html = render_page(hostile_page(), kRuntime);
+  const std::string policy = last_between(html, "Policy\" content=\"", "\"");
+  EXPECT_TRUE(policy.starts_with("default-src 'none'; ")) << policy;
+  EXPECT_EQ(policy.find("unsafe"), std::string::npos) << policy;
+  const std::string script = content_hash(last_between(html, "<script>", "</script>"));
+  const std::string style = content_hash(last_between(html, "<style>", "</style>"));
+  EXPECT_NE(policy.find("script-src '" + script + "';"), std::string::npos) << policy;
+  EXPECT_NE(policy.find("style-src '" + style + "';"), std::string::npos) << policy;
+  EXPECT_LT(html.find("Content-Security-Policy"), html.find("<title>"));
+  const std::string plain = render_page(page_with("A"), kRuntime);
+  EXPECT_FALSE(std::regex_search(plain, std::regex("<[a-z]+[^<>]* (style|on[a-z]+)=")));
 }
 
 TEST(Page, IsTheSameForTheSameInput) {

@@ -49,5 +49,42 @@ TEST(ProbabilityText, SmallOnesAreShownAsSmall) {
   EXPECT_EQ(probability_text(std::nan("")), "-");
 }
 
+TEST(ShortenedWords, LeavesMessagesThatCanBeReadAsTheyAre) {
+  for (const std::string text :
+       {"", "a", "rec/drive.csv:2: column left is \"x\", expected a number", "two\nlines\n",
+        "  blanks  stay ", "\" one quote", "a \"b\" \"c d\""}) {
+    EXPECT_EQ(shortened_words(text), text);
+  }
+  const std::string path = "/" + std::string(290, 'd') + "/f:1: wrong";
+  EXPECT_EQ(shortened_words(path), path);
+}
+
+TEST(ShortenedWords, ShowsTheEndsOfALongWordAndTheRestOfTheLine) {
+  const std::string word = "begin" + std::string(10000, 'x') + "end";
+  const std::string said = shortened_words("f:3: \"" + word + "\", expected a number");
+  EXPECT_LT(said.size(), 200U);
+  EXPECT_TRUE(said.starts_with("f:3: \"beginxxx")) << said;
+  EXPECT_TRUE(said.ends_with("xxxend\", expected a number")) << said;
+  EXPECT_NE(said.find("x...x"), std::string::npos) << said;
+}
+
+TEST(ShortenedWords, ShortensQuotedBlanksAndEndlessLists) {
+  std::string blanks;
+  for (int k = 0; k < 5000; ++k) blanks += "a ";
+  EXPECT_LT(shortened_words("shape \"" + blanks + "\" is wrong").size(), 200U);
+  EXPECT_LT(shortened_words(blanks).size(), 1100U);
+  EXPECT_TRUE(shortened_words(blanks + "expected a").ends_with("expected a"));
+}
+
+TEST(ShortenedWords, CutsNoCharacterInTwo) {
+  for (std::size_t shift = 0; shift < 4; ++shift) {
+    std::string word(shift, 'a');
+    for (int k = 0; k < 1000; ++k) word += "\u2713";
+    const std::string said = shortened_words(word);
+    EXPECT_EQ(escaped_controls(said), said);
+    EXPECT_LT(said.size(), 120U);
+  }
+}
+
 }  // namespace
 }  // namespace trussmap

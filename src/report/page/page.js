@@ -4,7 +4,7 @@
 // Draws the charts of a page, one after the other, and makes them answer: hover, arrow keys, saving.
 import {notice} from './notice.js';
 import {rowsOf, specOf} from './spec.js';
-import {parse, View} from './vega.js';
+import {viewOf} from './vega.js';
 import {addZoom} from './zoom.js';
 
 const MOST_TABLE_ROWS = 500;
@@ -138,7 +138,7 @@ function draw(entry) {
   entry.at = undefined;
   entry.view?.finalize();
   entry.picture.replaceChildren();
-  entry.view = new View(parse(specOf(entry.chart, width)), {
+  entry.view = viewOf(specOf(entry.chart, width), {
     renderer: 'svg', container: entry.picture, hover: true,
     tooltip: (_, event, item, value) => onTooltip(entry.chart, event, item, value)});
   entry.view.run();
