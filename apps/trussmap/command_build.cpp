@@ -79,6 +79,13 @@ void check_usage(const BuildOptions& options) {
         "--store goes with --out, --csv and --json alone; a picture is drawn without it, or of a "
         "converted map");
   }
+  for (const std::string& file : {options.out, options.csv, options.json_file}) {
+    std::error_code ignored;
+    if (!options.store.empty() && !file.empty() &&
+        fs::weakly_canonical(file, ignored) == fs::weakly_canonical(options.store, ignored)) {
+      throw UsageError(file + " is the store, expected another file to write");
+    }
+  }
   if (!options.out.empty() && !is_map_file(options.out)) {
     throw UsageError("cannot write " + options.out + ": expected .graphml, .g2o, .geojson or .dot");
   }

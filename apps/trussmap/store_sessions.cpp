@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -41,22 +40,20 @@ MapStore opened(const StoreSessions& options) {
   if (!is_map_store(options.store)) {
     throw UsageError(options.store + " is no name of a store, expected one that ends in .db");
   }
-  std::error_code ignored;
-  if (!std::filesystem::exists(options.store, ignored)) {
-    MapBuilderOptions fresh;
-    fresh.method = options.method.value_or(Method::gauss_markov);
-    fresh.eta = options.build.eta;
-    return MapStore(options.store, fresh);
+  MapBuilderOptions fresh;
+  fresh.method = options.method.value_or(Method::gauss_markov);
+  fresh.eta = options.build.eta;
+  std::optional<MapBuilderOptions> given;
+  if (options.method || options.eta) given = fresh;
+  try {
+    return MapStore(options.store, given, fresh);
+  } catch (const std::invalid_argument&) {
+    throw UsageError(
+        fmt::format("{} keeps the method and the kind of eta that it was made with: "
+                    "{}, expected --method {} or none",
+                    options.store, option_of(read_map_store(options.store).method),
+                    option_of(read_map_store(options.store).method)));
   }
-  MapStore store(options.store);
-  const MapBuilderOptions& kept = store.builder().options();
-  const bool other_eta =
-      options.eta && (options.eta->kind != kept.eta.kind || options.eta->count != kept.eta.count);
-  if (other_eta || options.method.value_or(kept.method) != kept.method) {
-    throw UsageError(fmt::format("{} keeps the method and the eta that it was made with, {}",
-                                 options.store, option_of(kept.method)));
-  }
-  return store;
 }
 
 /// The first session says whose axes the map has.

@@ -95,7 +95,9 @@ struct BuiltMap {
   Method method = Method::adjustment;
   bool extended = false;  ///< the map was there before, with other recordings' landmarks
   int legs = 0;
-  int new_landmarks = 0;   ///< of the map's, those that these recordings brought
+  int new_landmarks = 0;  ///< of the map's, those that these recordings brought
+  /// Landmarks at arrivals that the builder left out, for they contradict the map; of extend_map.
+  std::vector<std::string> off_map;
   int first_sight = 0;     ///< loops closed
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there

@@ -122,10 +122,10 @@ struct CompareOptions {
   double level = kSignificance;  ///< chance of a false "misfit", see above
 };
 
+inline constexpr int kFewestTests = 5;  ///< degrees of freedom that make a test
+
 /// What speaks against a model.
 enum class Objection { none, chi2, trend, effect };
-
-inline constexpr int kFewestTests = 5;  ///< degrees of freedom that make a test
 
 struct Comparison {
   Objection objection = Objection::none;

@@ -83,7 +83,8 @@ struct Arrival {
     first_sight,   ///< a loop closed: the chain of fresh routes was corrected
     new_route,     ///< between two settled landmarks: nothing moved, its averages began
     refinement,    ///< a known route was driven again
-    left_out,      ///< contradicts the map (MapBuilderOptions::gate): nothing moved
+    left_out,      ///< contradicts the map (MapBuilderOptions::gate), or leads from such a place
+                   ///< back to where the map still has the robot: nothing moved
   };
   Kind kind = Kind::new_landmark;
   int landmark = -1;                 ///< where the robot is now, or was said to be

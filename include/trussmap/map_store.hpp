@@ -14,13 +14,14 @@
 // landmarks and routes are read, legs are not.
 //
 // The file is an SQLite database (write-ahead log, synchronous in full), and no program but one
-// writes it at a time; others may read meanwhile. Its tables:
+// writes it at a time, which holds a lock on the file NAME-lock; others may read meanwhile. Who
+// reads needs the right to write in its folder, unless the store was closed in peace. Its tables:
 //
 //   map        landmark, x, y                                     where the landmarks are now, m
 //   routes     source, target (numbers of landmarks), traversals, stretch, orientation, dx, dy,
 //              c_xx, c_xy, c_yy                                   as landmark_map.hpp has them
 //   legs       number, session, kind (0 start, 1 arrive, 2 observe, 3 settle, 4 rest), source,
-//              target, dx, dy, c_xx, c_xy, c_yy, gain             every call, in order; m, m^2
+//              target, dx, dy, c_xx, c_xy, c_yy, gain, outcome    every call, in order; m, m^2
 //   sessions   number, key, name, first_leg, legs                 those that append() took in
 //   landmarks, chain, misfits, left_out, state, facts             what else the builder remembers
 //
@@ -44,11 +45,14 @@ namespace trussmap {
 struct StoredLeg {
   enum class Kind { start, arrive, observe, settle, rest };
   Kind kind = Kind::start;
-  std::string from;
+  std::string from;  ///< where the robot said that it was, be that left out of the map or not
   std::string to;
   Traversal leg;      ///< of start its position alone
   double gain = 0.0;  ///< of settle
-  int session = -1;   ///< its place in sessions(), -1: none
+  /// Of arrive and observe: what it did to the map then (what was left out may have come back
+  /// since).
+  std::optional<Arrival::Kind> outcome = {};
+  int session = -1;  ///< its place in sessions(), -1: none
 };
 
 /// Many calls that were taken in as one.
@@ -66,11 +70,13 @@ struct StoredSession {
 /// const calls included.
 class MapStore {
  public:
-  /// Goes on with the store, or makes one where there is no file. A store keeps its method and its
-  /// kind of eta (std::invalid_argument for others); its other options are the given ones from now
-  /// on, or where none are given those it had.
+  /// Goes on with the store, or makes one where there is no file or an empty one. A store with
+  /// landmarks keeps its method and its kind of eta (std::invalid_argument for others); its other
+  /// options are the given ones from now on, or where none are given those it had: a new one's are
+  /// then `if_new`.
   explicit MapStore(const std::filesystem::path& file,
-                    const std::optional<MapBuilderOptions>& options = {});
+                    const std::optional<MapBuilderOptions>& options = {},
+                    const MapBuilderOptions& if_new = {});
   ~MapStore();
   MapStore(MapStore&&) noexcept;
   MapStore& operator=(MapStore&&) noexcept;
@@ -88,8 +94,9 @@ class MapStore {
   double rest();
 
   /// Many calls as one: what `drive` does to the builder is kept as a whole or, where it throws,
-  /// not at all. `key` tells the session from others; throws std::invalid_argument if it is empty
-  /// or there already.
+  /// not at all. It calls the builder, which stays the store's, and not the store
+  /// (std::logic_error; neither does a visitor of legs). `key` tells the session from others;
+  /// throws std::invalid_argument if it is empty or there already.
   void append(const std::string& key, const std::string& name,
               const std::function<void(MapBuilder&)>& drive);
 

@@ -10,6 +10,8 @@
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -92,23 +94,56 @@ BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& cl
   return built;
 }
 
-/// Angle that turns the adjusted landmarks into the map's axes, rad.
-double turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
-                 const std::string& recording) {
-  std::vector<Vector2> here;
-  std::vector<Vector2> there;
+/// How an adjusted recording is turned into a map's axes.
+struct Turn {
+  double angle = 0.0;                  ///< rad
+  std::vector<std::string> elsewhere;  ///< landmarks that lie so differently that they have no say
+};
+
+/// By the landmarks that both have.
+Turn turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
+               const std::string& recording) {
+  LandmarkPositions here;
+  std::vector<SurveyPoint> there;
+  std::vector<Vector2> from;
+  std::vector<Vector2> to;
+  double variance = 0.0;  // of a coordinate, m^2
   for (int k = 0; k < adjusted.landmarks(); ++k) {
-    const std::optional<int> known = builder.find(adjusted.landmark(k).name);
+    const Landmark& landmark = adjusted.landmark(k);
+    const std::optional<int> known = builder.find(landmark.name);
     if (!known) continue;
-    here.push_back(adjusted.landmark(k).position);
-    there.push_back(builder.position(*known));
+    const Vector2 place = builder.position(*known);
+    here[landmark.name] = landmark.position;
+    there.push_back({landmark.name, place.x(), place.y()});
+    from.push_back(landmark.position);
+    to.push_back(place);
+    variance = std::max(variance, 0.5 * landmark.covariance->trace());
   }
-  if (here.size() < 2) {
-    throw SolveError(joined(recording, " shares ", here.size(),
-                            " landmarks with the map, expected two at least to turn it by: one of "
-                            "the two has no compass"));
+  if (from.size() < 2) {
+    throw SolveError(joined(recording, " shares too few landmarks with the map (", from.size(),
+                            "), expected two at least to turn it by: it has not the map's axes, "
+                            "which a compass in both would give"));
   }
-  return align_rigidly(here, there).angle;
+  Turn turn;
+  Alignment laid = align_rigidly(from, to);
+  if (from.size() > 2) {
+    const SurveyComparison agreed = compare_with_survey(here, there);
+    laid = agreed.rigid;
+    turn.elsewhere = agreed.contradicting;
+  }
+  turn.angle = laid.angle;
+  Vector2 middle = Vector2::Zero();
+  for (const Vector2& one : to) middle += one / static_cast<double>(to.size());
+  double spread = 0.0;
+  for (const Vector2& one : to) spread += (one - middle).squaredNorm();
+  constexpr double kMostUncertain = 0.05;  // rad
+  const double sd = std::sqrt(std::max(variance, laid.rms * laid.rms) / spread);
+  if (!(sd < kMostUncertain)) {
+    throw SolveError(joined(recording, " shares ", from.size(),
+                            " landmarks with the map that lie too close together to turn it by, "
+                            "expected some farther apart, or a compass in both"));
+  }
+  return turn;
 }
 
 /// What the fit says of the map, and what speaks against it.
@@ -152,11 +187,18 @@ BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model
   const bool extended = builder.landmarks() > 0;
   LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
   how.build.method = builder.options().method;
+  Turn turn;
   if (extended && (axes == MapAxes::landmarks || !recording.drive.has_compass())) {
-    how.to_map = rotation(turn_onto(landmarks, builder, recording.name));
+    turn = turn_onto(landmarks, builder, recording.name);
+    how.to_map = rotation(turn.angle);
   }
   BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
   built.extended = extended;
+  if (!turn.elsewhere.empty()) {
+    built.warnings.push_back(
+        "the recording and the map have these landmarks at different places: " +
+        listed(turn.elsewhere) + "; have they moved, or were labels misread?");
+  }
   return judged(std::move(built), best, recordings, model, sessions_of(believed, model, guides));
 }
 

@@ -153,15 +153,6 @@ Supports supports_of(const FitState& fit) {
   return result;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kNamed = 5;
-  std::string result;
-  for (std::size_t k = 0; k < std::min(names.size(), kNamed); ++k) {
-    result += (k == 0 ? "" : ", ") + names[k];
-  }
-  return names.size() > kNamed ? joined(result, " and ", names.size() - kNamed, " more") : result;
-}
-
 void doubt_fit(BuiltMap& built, const MapFitState& best) {
   constexpr double kManyOut = 0.08;
   constexpr double kSurelyFreed = 1e-3;
@@ -215,6 +206,12 @@ void doubt_against_survey(BuiltMap& built) {
                                   exchanged ? ": exchanged labels" : ""));
 }
 
+std::vector<std::string> unique(std::vector<std::string> names) {
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 void doubt_shape(BuiltMap& built, const MapFitState& best) {
   constexpr double kTorn = 20.0;      // standard deviations
   constexpr double kMuchWorse = 3.0;  // times the adjusted map's standard error
@@ -228,6 +225,13 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
   if (built.method != Method::adjustment) {
     const double off = built.quality.from_adjusted;
     const bool apart = off > kMuchWorse * built.quality.median_sd && off > kLoose * extent;
+    if (!built.off_map.empty()) {
+      warnings.push_back(joined(built.off_map.size(),
+                                " arrivals contradict the map and were left "
+                                "out of it, at: ") +
+                         listed(unique(built.off_map)) +
+                         "; have these landmarks moved, or were labels misread?");
+    }
     if (apart && built.extended) {
       warnings.push_back("adjusted by itself, the recording puts its landmarks " +
                          fixed_text(off, 2) +
@@ -273,6 +277,15 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
 }
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 5;
+  std::string result;
+  for (std::size_t k = 0; k < std::min(names.size(), kNamed); ++k) {
+    result += (k == 0 ? "" : ", ") + names[k];
+  }
+  return names.size() > kNamed ? joined(result, " and ", names.size() - kNamed, " more") : result;
+}
 
 MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const ReckonedMap& reckoned) {
   const RecordingAdjustment& fit = best.fit.adjustment;

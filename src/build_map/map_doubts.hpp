@@ -8,6 +8,7 @@
 #include "build_map/reckoned_map.hpp"
 #include "trussmap/build_map.hpp"
 
+#include <string>
 #include <vector>
 
 namespace trussmap {
@@ -15,6 +16,9 @@ namespace trussmap {
 /// Figures of the built map, which has its positions. `best` is the fit that it rests on.
 [[nodiscard]] MapQuality quality_of(const BuiltMap& built, const MapFitState& best,
                                     const ReckonedMap& reckoned);
+
+/// "a, b, c and 4 more".
+[[nodiscard]] std::string listed(const std::vector<std::string>& names);
 
 /// Fills in the warnings and notes; the map has its quality.
 void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording>& recordings,

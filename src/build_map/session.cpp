@@ -91,6 +91,7 @@ void Session::arrive(const Stop& stop, const Accepted& at) {
   ++result_.legs;
   if (arrival.kind == Arrival::Kind::first_sight) ++result_.first_sight;
   if (arrival.kind == Arrival::Kind::refinement) ++result_.refinements;
+  if (arrival.kind == Arrival::Kind::left_out) result_.off_map.push_back(at.sighting->landmark);
   settle(stop, at, heading);
 }
 

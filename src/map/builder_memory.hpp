@@ -28,16 +28,18 @@ struct BuilderMemory {
   std::vector<LeftOutArrival> left_out;
   std::optional<Traversal> carried;  ///< driven since `here`, by legs whose ends were left out
   int here = -1;
+  int said = -1;  ///< where the robot said it was: `here`, or an arrival that was left out
 };
 
 /// A call of a builder that changed it.
 struct BuilderCall {
   enum class Kind { start, arrive, observe, settle, rest };
   Kind kind = Kind::start;
-  int from = -1;       ///< landmark; -1: none
+  int from = -1;       ///< landmark where the robot said it was; -1: none
   int to = -1;         ///< landmark; -1: none
   Traversal leg = {};  ///< of arrive and observe, as given; of start the displacement: its position
   double gain = 0.0;   ///< of settle
+  std::optional<Arrival::Kind> outcome = {};  ///< of arrive and observe
 };
 
 class BuilderAccess {
@@ -50,6 +52,8 @@ class BuilderAccess {
   /// From now on every call that succeeds is put into `journal`, which outlives the builder; null:
   /// no longer.
   static void keep_journal(MapBuilder& builder, std::vector<BuilderCall>* journal);
+  [[nodiscard]] static bool has_journal(const MapBuilder& builder,
+                                        const std::vector<BuilderCall>* journal);
 };
 
 }  // namespace trussmap

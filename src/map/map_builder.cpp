@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -73,7 +74,13 @@ BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& optio
     bars.push_back({route.source, route.target, route.traversals * route.covariance.inverse()});
   }
   check_tied(map);
-  memory.graph = map;
+  for (int k = 0; k < map.landmarks(); ++k) {  // without covariances, which would soon be wrong
+    memory.graph.add_landmark(map.landmark(k).name, map.landmark(k).position);
+  }
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    memory.graph.set_route(memory.graph.add_route(route.source, route.target), route);
+  }
   memory.chain.reserve(map.landmarks());
   if (options.method == Method::gauss_markov) {
     memory.increments = ExactIncrements(std::max(map.landmarks(), 1), std::move(bars));
@@ -135,7 +142,7 @@ class MapBuilder::State {
       m_.graph.add_landmark(landmark, position);
       if (indexed()) nearest_.insert(0, position);
     }
-    m_.here = known.value_or(0);
+    m_.here = m_.said = known.value_or(0);
     m_.chain.restart(m_.here);
     m_.carried.reset();
   }
@@ -145,7 +152,9 @@ class MapBuilder::State {
     const Traversal whole = m_.carried ? Traversal{m_.carried->displacement + leg.displacement,
                                                    m_.carried->covariance + leg.covariance}
                                        : leg;
+    if (m_.carried && m_.graph.find(landmark) == m_.here) return back_here();
     Arrival arrival = travel(landmark, whole);
+    m_.said = arrival.landmark;
     if (arrival.kind == Arrival::Kind::left_out) {
       m_.carried = whole;
     } else {
@@ -157,8 +166,23 @@ class MapBuilder::State {
 
   Arrival observe(const std::string& landmark, const Traversal& from_here) {
     if (!m_.carried) return travel(landmark, from_here);
+    if (m_.graph.find(landmark) == m_.here) return nothing_moved(m_.here);
     return travel(landmark, {m_.carried->displacement + from_here.displacement,
                              m_.carried->covariance + from_here.covariance});
+  }
+
+  /// From where the map does not have it to where it still has it.
+  Arrival back_here() {
+    m_.carried.reset();
+    m_.said = m_.here;
+    return nothing_moved(m_.here);
+  }
+
+  static Arrival nothing_moved(int landmark) {
+    Arrival arrival;
+    arrival.kind = Arrival::Kind::left_out;
+    arrival.landmark = landmark;
+    return arrival;
   }
 
   [[nodiscard]] const std::vector<LeftOutArrival>& left_out() const { return m_.left_out; }
@@ -280,7 +304,8 @@ class MapBuilder::State {
   Arrival increment_gated(Arrival arrival, const Traversal& leg) {
     if (std::isinf(options_.gate)) return increment(m_.here, arrival, leg);
     m_.left_out.reserve(m_.left_out.size() + 1);
-    const double misfit = squared_misfit(m_.here, arrival.landmark, leg);
+    const double misfit = std::min(squared_misfit(m_.here, arrival.landmark, leg),
+                                   std::numeric_limits<double>::max());
     ArrivalGate gate = m_.gate;
     gate.remember(misfit);
     if (gate.lets_in(misfit)) {
@@ -423,6 +448,11 @@ const BuilderMemory& BuilderAccess::memory(const MapBuilder& builder) {
   return builder.state_->memory();
 }
 
+bool BuilderAccess::has_journal(const MapBuilder& builder,
+                                const std::vector<BuilderCall>* journal) {
+  return builder.state_ && builder.state_->journal == journal;
+}
+
 void BuilderAccess::keep_journal(MapBuilder& builder, std::vector<BuilderCall>* journal) {
   builder.state_->journal = journal;
 }
@@ -437,20 +467,24 @@ void MapBuilder::start(const std::string& landmark, const Vector2& position) {
 
 Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& given) {
   const Traversal leg = checked(given);
-  return state_->journaled({BuilderCall::Kind::arrive, here(), -1, leg}, [&](BuilderCall& entry) {
-    const Arrival arrival = state_->arrive(landmark, leg);
-    entry.to = arrival.landmark;
-    return arrival;
-  });
+  return state_->journaled({BuilderCall::Kind::arrive, state_->memory().said, -1, leg},
+                           [&](BuilderCall& entry) {
+                             const Arrival arrival = state_->arrive(landmark, leg);
+                             entry.to = arrival.landmark;
+                             entry.outcome = arrival.kind;
+                             return arrival;
+                           });
 }
 
 Arrival MapBuilder::observe(const std::string& landmark, const Traversal& given) {
   const Traversal leg = checked(given);
-  return state_->journaled({BuilderCall::Kind::observe, here(), -1, leg}, [&](BuilderCall& entry) {
-    const Arrival arrival = state_->observe(landmark, leg);
-    entry.to = arrival.landmark;
-    return arrival;
-  });
+  return state_->journaled({BuilderCall::Kind::observe, state_->memory().said, -1, leg},
+                           [&](BuilderCall& entry) {
+                             const Arrival arrival = state_->observe(landmark, leg);
+                             entry.to = arrival.landmark;
+                             entry.outcome = arrival.kind;
+                             return arrival;
+                           });
 }
 
 double MapBuilder::settle(double gain_limit) {

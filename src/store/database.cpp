@@ -2,12 +2,30 @@
 // SPDX-License-Identifier: MIT
 #include "store/database.hpp"
 
+#include <cctype>
 #include <sqlite3.h>
+#include <system_error>
+#include <unistd.h>
 
 namespace trussmap {
 namespace {
 
 constexpr int kPatience = 1000;  // ms that another program may take to get out of the way
+
+/// A name with which SQLite asks for no locks.
+std::string immutable(const std::filesystem::path& file) {
+  std::string uri = "file:";
+  for (const char c : file.string()) {
+    constexpr const char* kDigits = "0123456789ABCDEF";
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || c == '/' || c == '.' || c == '_' || c == '-') {
+      uri += c;
+    } else {
+      uri += {'%', kDigits[byte >> 4U], kDigits[byte & 15U]};
+    }
+  }
+  return uri + "?immutable=1";
+}
 
 }  // namespace
 
@@ -92,10 +110,22 @@ bool Statement::is_null(int column) const {
 }
 
 Database::Database(const std::filesystem::path& file, Access access) {
+  // A log in the folder needs a file more to be read; without one nothing changes that is read.
+  std::error_code ignored;
+  std::filesystem::path log = file;
+  log += "-wal";
+  const bool no_log =
+      !std::filesystem::exists(log, ignored) || std::filesystem::is_empty(log, ignored);
+  if (access == Access::read && no_log && ::access(file.parent_path().c_str(), W_OK) != 0) {
+    if (const int code = open(immutable(file), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI)) {
+      throw DatabaseError(code, "unable to open database file");
+    }
+    return;
+  }
   // A reader that may write leaves no files of its own behind.
   const int write = SQLITE_OPEN_READWRITE | (access == Access::write ? SQLITE_OPEN_CREATE : 0);
-  int code = open(file, write);
-  if (code != SQLITE_OK && access == Access::read) code = open(file, SQLITE_OPEN_READONLY);
+  int code = open(file.string(), write);
+  if (code != SQLITE_OK && access == Access::read) code = open(file.string(), SQLITE_OPEN_READONLY);
   if (code != SQLITE_OK) {
     throw DatabaseError(code, handle() != nullptr ? sqlite3_errmsg(handle()) : "out of memory");
   }
@@ -104,7 +134,7 @@ Database::Database(const std::filesystem::path& file, Access access) {
   if (access == Access::read) run("PRAGMA query_only = ON");
 }
 
-int Database::open(const std::filesystem::path& file, int flags) {
+int Database::open(const std::string& file, int flags) {
   sqlite3* database = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &database, flags, nullptr);
   database_.reset(database);

@@ -75,7 +75,7 @@ class Database {
   [[nodiscard]] sqlite3* handle() const { return database_.get(); }
 
  private:
-  int open(const std::filesystem::path& file, int flags);
+  int open(const std::string& file, int flags);
 
   struct Close {
     void operator()(sqlite3* database) const noexcept;

@@ -4,6 +4,7 @@
 
 #include "geometry/index.hpp"
 #include "store/database.hpp"
+#include "store/file_lock.hpp"
 #include "store/memory_rows.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
@@ -26,10 +27,10 @@ constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::
 constexpr std::array kEtas{Eta::Kind::all, Eta::Kind::fixed, Eta::Kind::estimated};
 constexpr int kCallKinds = 5;
 
+constexpr const char* kTaken = "is being written by another program, expected one at a time";
+
 InputError said(const fs::path& file, const DatabaseError& error) {
-  if (error.busy()) {
-    return {file.string(), 0, "is being written by another program, expected one at a time"};
-  }
+  if (error.busy()) return {file.string(), 0, kTaken};
   if (error.no_database()) return {file.string(), 0, "is no map store"};
   return {file.string(), 0, std::string("cannot be read or written: ") + error.what()};
 }
@@ -44,13 +45,29 @@ auto naming(const fs::path& file, const Call& call) {
   }
 }
 
-/// With a folder in front: SQLite gives a meaning of its own to some names.
+/// With a folder in front: SQLite gives a meaning of its own to some names, and takes a byte for
+/// nothing.
 fs::path place_of(const fs::path& file) {
-  std::error_code ignored;
-  if (file.empty() || fs::is_directory(file, ignored)) {
+  if (file.empty()) throw InputError("map store", 0, "has no name, expected a file");
+  std::error_code failed;
+  const fs::path place = fs::absolute(file, failed);
+  if (failed) throw InputError(file.string(), 0, "cannot be found: " + failed.message());
+  if (fs::is_directory(place, failed)) {
     throw InputError(file.string(), 0, "is a folder, expected a map store");
   }
-  return fs::absolute(file);
+  constexpr std::uintmax_t kHeader = 100;  // bytes of the smallest database
+  const std::uintmax_t size = fs::file_size(place, failed);
+  if (!failed && size > 0 && size < kHeader) throw InputError(file.string(), 0, "is no map store");
+  return place;
+}
+
+/// Links followed, so that two names of one store are one lock.
+fs::path lock_of(const fs::path& place) {
+  std::error_code ignored;
+  fs::path followed = fs::weakly_canonical(place, ignored);
+  if (ignored) followed = place;
+  followed += "-lock";
+  return followed;
 }
 
 std::string eta_name(Eta::Kind kind) {
@@ -143,7 +160,7 @@ void make(const Database& database, const MapBuilderOptions& options) {
                           name TEXT NOT NULL, first_leg INTEGER NOT NULL, legs INTEGER NOT NULL);
     CREATE TABLE legs(number INTEGER PRIMARY KEY, session INTEGER, kind INTEGER NOT NULL,
                       source INTEGER, target INTEGER, dx REAL, dy REAL, c_xx REAL, c_xy REAL,
-                      c_yy REAL, gain REAL);
+                      c_yy REAL, gain REAL, outcome INTEGER);
   )sql");
   create_memory_tables(database);
   Facts facts(database);
@@ -182,26 +199,24 @@ bool is_map_store(const fs::path& file) {
 
 class MapStore::Impl {
  public:
-  /// `first`: what a new store begins with; null: nothing, or go on.
+  /// `first`: what a new store begins with; null: with nothing, or go on.
   Impl(const fs::path& file, const std::optional<MapBuilderOptions>& options,
-       const MapBuilder* first)
-      : file_(file), database_(open()) {
-    if (options) MapBuilder{*options};  // refuses those out of range
+       const MapBuilderOptions& if_new, const MapBuilder* first)
+      : file_(file),
+        if_new_(checked(options.value_or(if_new))),
+        lock_(place_of(file), file),
+        database_(open(first != nullptr)) {
     database_.run("BEGIN IMMEDIATE");
-    const bool made = is_made(file_, database_);
-    if (made && first != nullptr) {
-      throw InputError(file_.string(), 0, "is there already, expected a new file");
-    }
-    if (!made) {
-      make(database_, options.value_or(MapBuilderOptions{}));
+    if (!is_made(file_, database_)) {
+      make(database_, if_new_);
       if (first != nullptr) {
         MemoryRows(database_).save(BuilderAccess::memory(*first), first->options());
       }
-      database_.run("COMMIT; BEGIN IMMEDIATE");
     }
+    database_.run("COMMIT");
     rows_.emplace(database_);
     facts_.emplace(database_);
-    put_leg_.emplace(database_, "INSERT INTO legs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    put_leg_.emplace(database_, "INSERT INTO legs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     version_ = database_.number("PRAGMA data_version");
     load();
     if (options) take(*options);
@@ -216,13 +231,14 @@ class MapStore::Impl {
   template <typename Call>
   std::invoke_result_t<Call> keep_as(const StoredSession* session, const Call& call) {
     return naming(file_, [&] {
+      const Busy busy(busy_);
       begin();
       journal_.clear();
       if constexpr (std::is_void_v<std::invoke_result_t<Call>>) {
-        attempt(call);
+        attempt(call, session);
         commit(session);
       } else {
-        auto result = attempt(call);
+        auto result = attempt(call, session);
         commit(session);
         return result;
       }
@@ -254,9 +270,10 @@ class MapStore::Impl {
 
   void for_each_leg(const std::function<void(const StoredLeg&)>& visit) {
     naming(file_, [&] {
+      const Busy busy(busy_);
       Statement rows(database_,
-                     "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session "
-                     "FROM legs ORDER BY number");
+                     "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session, "
+                     "outcome FROM legs ORDER BY number");
       const LandmarkGraph& graph = BuilderAccess::memory(builder()).graph;
       const auto name = [&](int column) {
         const std::int64_t number = rows.is_null(column) ? -1 : rows.integer(column);
@@ -278,6 +295,7 @@ class MapStore::Impl {
         one.leg.covariance << rows.real(5), rows.real(6), rows.real(6), rows.real(7);
         one.gain = rows.real(8);
         one.session = rows.is_null(9) ? -1 : static_cast<int>(rows.integer(9));
+        if (!rows.is_null(10)) one.outcome = outcome_of(rows.integer(10));
         visit(one);
       }
     });
@@ -292,9 +310,58 @@ class MapStore::Impl {
   }
 
  private:
-  Database open() {
+  /// No call of the store within another one: it would keep half of that.
+  class Busy {
+   public:
+    explicit Busy(bool& busy) : busy_(busy) {
+      if (busy) throw std::logic_error("a map store is used within a call of its own");
+      busy = true;
+    }
+    ~Busy() { busy_ = false; }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+
+   private:
+    bool& busy_;
+  };
+
+  /// For the life of the store.
+  class WriterLock {
+   public:
+    WriterLock(const fs::path& place, const fs::path& named) {
+      try {
+        lock_.emplace(lock_of(place));
+      } catch (const std::system_error& error) {
+        const bool taken = error.code() == std::errc::operation_would_block;
+        throw InputError(named.string(), 0,
+                         taken ? kTaken : "cannot be locked: " + error.code().message());
+      }
+    }
+
+   private:
+    std::optional<FileLock> lock_;
+  };
+
+  static const MapBuilderOptions& checked(const MapBuilderOptions& options) {
+    MapBuilder{options};  // refuses those out of range
+    return options;
+  }
+
+  [[nodiscard]] Arrival::Kind outcome_of(std::int64_t number) const {
+    if (number < 0 || number > static_cast<std::int64_t>(Arrival::Kind::left_out)) {
+      throw InputError(file_.string(), 0, "is damaged: it has a leg of no outcome");
+    }
+    return static_cast<Arrival::Kind>(number);
+  }
+
+  Database open(bool must_be_new) {
     return naming(file_, [&] {
-      Database database(place_of(file_), Database::Access::write);
+      const fs::path place = place_of(file_);
+      std::error_code ignored;
+      if (must_be_new && fs::exists(place, ignored)) {
+        throw InputError(file_.string(), 0, "is there already, expected a new file");
+      }
+      Database database(place, Database::Access::write);
       is_made(file_, database);  // before anything is changed
       database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON");
       Statement wal(database, "PRAGMA journal_mode = WAL");
@@ -316,29 +383,52 @@ class MapStore::Impl {
     legs_ = legs_in(database_);
   }
 
+  /// A map without landmarks may still change its method.
   void take(const MapBuilderOptions& options) {
-    builder().set_options(options);
+    const bool empty = builder().landmarks() == 0;
+    if (!empty) builder().set_options(options);
     keep([&] { put_options(*facts_, options); });
+    if (empty) load();
   }
 
-  /// No other program writes from here on. One that did so since the last call has left a map that
+  /// A program without our lock (SQLite's own, say) may have written since the last call: that map
   /// this builder does not know.
   void begin() {
     static_cast<void>(builder());
-    if (!database_.in_transaction()) database_.run("BEGIN IMMEDIATE");
+    database_.run("BEGIN IMMEDIATE");
     if (database_.number("PRAGMA data_version") == version_) return;
+    database_.run("ROLLBACK");
     throw InputError(file_.string(), 0,
                      "was written by another program meanwhile, expected to be opened anew");
   }
 
-  /// A single call that throws leaves the builder as it was; those before it must be undone.
+  /// A single call that throws leaves the builder as it was; a session must be undone.
   template <typename Call>
-  std::invoke_result_t<Call> attempt(const Call& call) {
+  std::invoke_result_t<Call> attempt(const Call& call, const StoredSession* session) {
     try {
-      return call();
+      if constexpr (std::is_void_v<std::invoke_result_t<Call>>) {
+        call();
+        check_same_builder();
+      } else {
+        auto result = call();
+        check_same_builder();
+        return result;
+      }
     } catch (...) {
-      if (!journal_.empty()) go_back();
+      if (session != nullptr || !journal_.empty()) {
+        go_back();
+      } else {
+        database_.run("ROLLBACK");
+      }
       throw;
+    }
+  }
+
+  /// A session may have put another builder in the place of this one.
+  void check_same_builder() {
+    if (!BuilderAccess::has_journal(builder(), &journal_)) {
+      go_back();
+      throw std::logic_error("a session drives the store's builder on, and keeps it");
     }
   }
 
@@ -353,11 +443,6 @@ class MapStore::Impl {
       throw;
     }
     legs_ += static_cast<std::int64_t>(journal_.size());
-    try {
-      database_.run("BEGIN IMMEDIATE");  // others are kept out between two calls, too
-    } catch (const DatabaseError&) {
-      // The next call says so, if it is still true then.
-    }
   }
 
   void put_session(const StoredSession& session) {
@@ -381,6 +466,7 @@ class MapStore::Impl {
       put.bind(7, C(0, 0)).bind(8, 0.5 * (C(0, 1) + C(1, 0))).bind(9, C(1, 1));
     }
     if (call.kind == BuilderCall::Kind::settle) put.bind(10, call.gain);
+    if (call.outcome) put.bind(11, static_cast<int>(*call.outcome));
     put.run();
   }
 
@@ -391,6 +477,7 @@ class MapStore::Impl {
       if (database_.in_transaction()) database_.run("ROLLBACK");
       database_.run("BEGIN");
       load();
+      version_ = database_.number("PRAGMA data_version");  // a failed write may change it, too
       database_.run("COMMIT");
     } catch (...) {
       builder_.reset();
@@ -398,19 +485,23 @@ class MapStore::Impl {
   }
 
   fs::path file_;
+  MapBuilderOptions if_new_;
+  WriterLock lock_;
   Database database_;
   std::optional<MemoryRows> rows_;
   std::optional<Facts> facts_;
   std::optional<Statement> put_leg_;
   std::optional<MapBuilder> builder_;
   std::vector<BuilderCall> journal_;  // of the present call
+  bool busy_ = false;                 // a call is under way
   std::int64_t legs_ = 0;
   std::int64_t session_ = 0;
   std::int64_t version_ = 0;  // changes when another program has written
 };
 
-MapStore::MapStore(const fs::path& file, const std::optional<MapBuilderOptions>& options)
-    : impl_(naming(file, [&] { return std::make_unique<Impl>(file, options, nullptr); })) {}
+MapStore::MapStore(const fs::path& file, const std::optional<MapBuilderOptions>& options,
+                   const MapBuilderOptions& if_new)
+    : impl_(naming(file, [&] { return std::make_unique<Impl>(file, options, if_new, nullptr); })) {}
 MapStore::MapStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MapStore::~MapStore() = default;
 MapStore::MapStore(MapStore&&) noexcept = default;
@@ -419,7 +510,8 @@ MapStore& MapStore::operator=(MapStore&&) noexcept = default;
 MapStore MapStore::create(const fs::path& file, const LandmarkGraph& map,
                           const MapBuilderOptions& options) {
   const MapBuilder first(map, options);
-  return MapStore(naming(file, [&] { return std::make_unique<Impl>(file, options, &first); }));
+  return MapStore(
+      naming(file, [&] { return std::make_unique<Impl>(file, options, options, &first); }));
 }
 
 void MapStore::start(const std::string& landmark, const Vector2& position) {
@@ -481,8 +573,12 @@ void MapStore::set_note(const std::string& name, const std::string& text) {
 
 StoredMap read_map_store(const fs::path& file) {
   return naming(file, [&] {
-    if (!fs::exists(file))
-      throw InputError(file.string(), 0, "cannot be opened, expected a map store");
+    std::error_code failed;
+    if (!fs::exists(file, failed)) {
+      throw InputError(
+          file.string(), 0,
+          "cannot be opened" + (failed ? ": " + failed.message() : "") + ", expected a map store");
+    }
     const Database database(place_of(file), Database::Access::read);
     database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; BEGIN");
     if (!is_made(file, database))

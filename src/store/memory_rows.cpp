@@ -92,9 +92,10 @@ void create_memory_tables(const Database& database) {
                           c_xx REAL NOT NULL, c_xy REAL NOT NULL, c_yy REAL NOT NULL,
                           sds REAL NOT NULL);
     CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), here INTEGER NOT NULL,
+                       said INTEGER NOT NULL,
                        offset_x REAL NOT NULL, offset_y REAL NOT NULL, carried_dx REAL,
                        carried_dy REAL, carried_c_xx REAL, carried_c_xy REAL, carried_c_yy REAL);
-    INSERT INTO state(one, here, offset_x, offset_y) VALUES (1, -1, 0, 0);
+    INSERT INTO state(one, here, said, offset_x, offset_y) VALUES (1, -1, -1, 0, 0);
     CREATE VIEW map AS SELECT name AS landmark, x + offset_x AS x, y + offset_y AS y
                        FROM landmarks, state ORDER BY number;
   )sql");
@@ -111,7 +112,8 @@ MemoryRows::MemoryRows(const Database& database)
       put_left_out_(database, "INSERT INTO left_out VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       put_state_(database,
                  "UPDATE state SET here = ?, offset_x = ?, offset_y = ?, carried_dx = ?, "
-                 "carried_dy = ?, carried_c_xx = ?, carried_c_xy = ?, carried_c_yy = ?") {}
+                 "carried_dy = ?, carried_c_xx = ?, carried_c_xy = ?, carried_c_yy = ?, said = ?") {
+}
 
 BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
   written_ = {};
@@ -184,9 +186,10 @@ void MemoryRows::load_rest(BuilderMemory& memory) {
   memory.left_out = written_.left_out;
   Statement state(database_,
                   "SELECT here, offset_x, offset_y, carried_dx, carried_dy, carried_c_xx, "
-                  "carried_c_xy, carried_c_yy FROM state");
+                  "carried_c_xy, carried_c_yy, said FROM state");
   if (!state.step()) refuse("no state");
   memory.here = number_at(state, 0, -1, count, "a state");
+  memory.said = number_at(state, 8, -1, count, "a state");
   memory.offset = vector_at(state, 1, "a state");
   if (!state.is_null(3)) {
     memory.carried = Traversal{vector_at(state, 3, "a leg"), matrix_at(state, 5, "a leg")};
@@ -276,7 +279,7 @@ void MemoryRows::save_gate(const BuilderMemory& memory) {
 }
 
 void MemoryRows::save_state(const BuilderMemory& memory) {
-  put_state_.bind(0, memory.here);
+  put_state_.bind(0, memory.here).bind(8, memory.said);
   bind_vector(put_state_, 1, memory.offset);
   if (memory.carried) {
     bind_vector(put_state_, 3, memory.carried->displacement);

@@ -66,8 +66,9 @@ TEST(StoreCommand, AddsSessionsOnceAndKeepsThem) {
   ASSERT_EQ(json["added"].size(), 1U);
   EXPECT_EQ(json["added"][0]["recording"], at + "s2");
 
-  for (const std::string wrong :
-       {" --method elastic", " --method adjustment", " --eta 7", " --svg map.svg"}) {
+  for (const std::string& wrong :
+       {std::string(" --method elastic"), std::string(" --method adjustment"),
+        std::string(" --svg map.svg"), " --json " + at + "map.db"}) {
     const testing::Ran ran = run_trussmap("build " + at + "s0" + model + store + wrong);
     EXPECT_EQ(ran.status, 2) << wrong << ran.output;
   }

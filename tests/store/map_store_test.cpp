@@ -20,6 +20,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <sys/resource.h>
 #include <thread>
 #include <vector>
 
@@ -228,6 +229,10 @@ TEST_F(MapStoreTest, OneWriterAtATimeAndReadersMeanwhile) {
   EXPECT_EQ(read.legs, 2);
   store.arrive("stairs", {{0.0, 3.0}, 0.01 * Matrix2::Identity()});
   EXPECT_EQ(read_map_store(file_).map.landmarks(), 3);
+  store = MapStore(scratch_.path() / "other.db");
+  EXPECT_FALSE(fs::exists(file_.string() + "-wal"));
+  EXPECT_FALSE(fs::exists(file_.string() + "-lock"));
+  EXPECT_EQ(MapStore(file_).legs(), 3);
 }
 
 TEST_F(MapStoreTest, AMapGoesInAndOut) {
@@ -298,9 +303,111 @@ TEST_F(MapStoreTest, OtherFilesAreRefusedAndLeftAsTheyAre) {
   };
   EXPECT_EQ(refusal("t,left,right\n0.1,0.2,0.3\n" + std::string(5000, 'x')), ": is no map store");
   EXPECT_EQ(refusal("<graphml/>"), ": is no map store");
+  EXPECT_EQ(refusal("x"), ": is no map store");
   EXPECT_THROW(MapStore(scratch_.path()), InputError);
   EXPECT_THROW(static_cast<void>(read_map_store(scratch_.path() / "none.db")), InputError);
   EXPECT_FALSE(fs::exists(scratch_.path() / "none.db"));
+}
+
+TEST_F(MapStoreTest, NothingIsLeftOfACallWithinACall) {
+  const Traversal leg{{1.0, 0.0}, 0.01 * Matrix2::Identity()};
+  MapStore store(file_);
+  store.start("A");
+  store.arrive("B", leg);
+  const auto within = [&](MapBuilder& builder) {
+    builder.arrive("C", leg);
+    EXPECT_THROW(store.set_note("x", "y"), std::logic_error);
+    EXPECT_THROW(store.arrive("D", leg), std::logic_error);
+    throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(store.append("s", "s", within), std::runtime_error);
+  EXPECT_THROW(store.for_each_leg([&](const StoredLeg&) { store.arrive("D", leg); }),
+               std::logic_error);
+  const auto exchanged = [&](MapBuilder& builder) {
+    builder = MapBuilder(builder.options());
+    builder.start("Z");
+  };
+  EXPECT_THROW(store.append("s", "s", exchanged), std::logic_error);
+  const auto set = [](MapBuilder& builder) {
+    MapBuilderOptions options = builder.options();
+    options.gain_limit = 0.1;
+    builder.set_options(options);
+    throw std::runtime_error("enough");
+  };
+  EXPECT_THROW(store.append("s", "s", set), std::runtime_error);
+  EXPECT_EQ(store.builder().options().gain_limit, MapBuilderOptions().gain_limit);
+  EXPECT_EQ(store.builder().landmarks(), 2);
+  store.arrive("C", leg);
+  EXPECT_EQ(store.legs(), 3);
+  EXPECT_TRUE(store.sessions().empty());
+}
+
+/// A landmark that has moved, and back from there; as absurd as numbers get.
+TEST_F(MapStoreTest, WhatIsLeftOutIsKeptAsItWasSaid) {
+  const MapBuilderOptions options{.method = Method::gauss_markov};
+  const auto leg = [](double x, double y) { return Traversal{{x, y}, 1e-4 * Matrix2::Identity()}; };
+  std::vector<StoredLeg> legs;
+  {
+    MapStore store(file_, options);
+    store.start("A");
+    for (int lap = 0; lap < 3; ++lap) {
+      store.arrive("B", leg(10.0, 0.0));
+      store.arrive("A", leg(-10.0, 0.0));
+    }
+    EXPECT_EQ(store.arrive("B", leg(1.0, 30.0)).kind, Arrival::Kind::left_out);
+    EXPECT_EQ(store.observe("A", leg(-1.0, -30.0)).kind, Arrival::Kind::left_out);
+    EXPECT_EQ(store.arrive("C", leg(0.0, -29.0)).kind, Arrival::Kind::new_landmark);
+    EXPECT_EQ(store.arrive("B", leg(1.0, 30.0)).kind, Arrival::Kind::left_out);
+    EXPECT_EQ(store.arrive("C", leg(-1.0, -30.0)).kind, Arrival::Kind::left_out);  // back
+    store.arrive("A", leg(-1.0, -1.0));
+    EXPECT_EQ(store.arrive("B", leg(1e153, 0.0)).kind, Arrival::Kind::left_out);
+    store.for_each_leg([&](const StoredLeg& one) { legs.push_back(one); });
+  }
+  ASSERT_EQ(legs.size(), 14U);
+  EXPECT_EQ(legs[9].from, "B");  // to C, from where it said it was
+  EXPECT_EQ(legs[9].outcome, Arrival::Kind::new_landmark);
+  EXPECT_EQ(legs[7].outcome, Arrival::Kind::left_out);
+  EXPECT_EQ(legs[12].from, "C");
+  EXPECT_FALSE(legs[0].outcome);
+  const MapStore again(file_);
+  const Vector2 c = again.builder().position(*again.builder().find("C"));
+  EXPECT_LE((c - Vector2(1.0, 1.0)).norm(), 0.1);
+}
+
+/// A write that fails when much has been written already, as on a disk that is full.
+TEST_F(MapStoreTest, AFullDiskIsSurvived) {
+  MapStore store(file_);
+  store.start(name(0));
+  const std::vector<Step> steps = walk(300, 30000, 15);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1'000'000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(store.append("s", "s",
+                            [&](MapBuilder& builder) {
+                              for (const Step& step : steps) take(builder, step);
+                            }),
+               InputError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(store.builder().landmarks(), 1);
+  for (std::size_t k = 0; k < 50; ++k) take(store, steps[k]);
+  EXPECT_EQ(store.legs(), 51);
+  EXPECT_TRUE(store.sessions().empty());
+}
+
+TEST_F(MapStoreTest, AStoreWithoutLandmarksMayStillChangeItsMethod) {
+  write_file(file_, "");  // as mktemp makes it
+  { const MapStore store(file_); }
+  const MapStore store(file_, MapBuilderOptions{.method = Method::gauss_markov});
+  EXPECT_EQ(store.builder().options().method, Method::gauss_markov);
+  const fs::path other = scratch_.path() / "other.db";
+  EXPECT_THROW(MapStore(other, MapBuilderOptions{.method = Method::adjustment}),
+               std::invalid_argument);
+  EXPECT_FALSE(fs::exists(other));
+  EXPECT_EQ(MapStore(other, {}, {.method = Method::gauss_markov}).builder().options().method,
+            Method::gauss_markov);
 }
 
 /// Bytes changed at random (seed): refused in words, or read as something else, but never worse.

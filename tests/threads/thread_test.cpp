@@ -62,8 +62,14 @@ struct World {
       testing::simulate_recording({.range_sensor = true, .tours = 1}, 5).recording;
   Model model = [] {
     Model result;
-    result.effects = {{.name = "of this robot", .channel = Channel::turn, .shape = "speed > 0.2"},
-                      {.name = "of another", .channel = Channel::compass, .shape = "sin(heading)"}};
+    for (const auto& [channel, shape] :
+         {std::pair{Channel::turn, "speed"}, std::pair{Channel::compass, "sin(heading)"}}) {
+      Effect effect;
+      effect.name = shape;
+      effect.channel = channel;
+      effect.shape = {shape};
+      result.effects.push_back(effect);
+    }
     return result;
   }();
 };
@@ -137,7 +143,7 @@ TEST(Threads, ReadAndUseOneShape) {
     const Shape own("sin(heading) + 1");
     std::string text = own.text();
     for (const Effect& one : world.model.effects) {
-      const Shape copy = one.shape;
+      const Shape copy = one.shape.front();
       text += copy.text() + std::to_string(copy.speaks_of("speed"));
     }
     return text;
