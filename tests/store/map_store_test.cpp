@@ -269,6 +269,7 @@ TEST_F(MapStoreTest, OptionsAreKeptOrTaken) {
   {
     MapStore store(file_, MapBuilderOptions{.eta = {Eta::Kind::fixed, 7}, .gain_limit = 0.3});
     store.set_note("axes", "compass");
+    store.start("A");
   }
   {
     MapStore store(file_);
