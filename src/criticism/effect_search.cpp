@@ -146,9 +146,7 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
                                                         const Eigen::MatrixXd& nuisance) const {
   if (best_of(still, options_.level) == nullptr) return std::nullopt;
   double p = 1.0;
-  for (const Tested& one : still) {
-    if (one.score.dof > 0) p = std::min(p, one.p_adjusted);
-  }
+  for (const Tested& one : still) p = std::min(p, one.p_adjusted);
   std::vector<TestedEvent> events = test_events(ground, left, nuisance);
   const auto event = std::find_if(events.begin(), events.end(), [](const TestedEvent& one) {
     return one.kind != EventKind::session && one.projected.cols() > 0;
