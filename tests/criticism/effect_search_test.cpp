@@ -4,10 +4,12 @@
 // How many tests count, and who has the better claim.
 #include "criticism/effect_search.hpp"
 
+#include "criticism/known_events.hpp"
 #include "criticism/noisy_recordings.hpp"
 #include "criticism/tested_candidate.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -82,6 +84,18 @@ TEST(EffectSearch, EveryCandidateCountsOnce) {
   EXPECT_EQ(sum, search.tried());
   EXPECT_EQ(sum, static_cast<int>(candidates_for(fit, tests.context()).size()));
   EXPECT_GT(families, 0);
+}
+
+TEST(EffectSearch, AJumpOfOneWheelIsNoEffect) {
+  // Eight standard deviations in one row of one wheel.
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const testing::Bump bump = testing::bumped({true, true, false, 1}, 8.0, seed);
+    const FitState fit = fit_recordings(bump.world.recordings, bump.world.model);
+    const ScoreTest tests(fit);
+    EffectSearch search(fit, tests, {}, nullptr);
+    search.run();
+    EXPECT_TRUE(search.missing().empty()) << seed;
+  }
 }
 
 NoiseTest law(const char* name, double score, double p_adjusted, const char* unit) {
