@@ -70,7 +70,7 @@ def mutable_text(text):
     text = without_comments_and_strings(text)
     for pattern in (r"^[ ]*#(?:[^\n]*\\\n)*[^\n]*",  # preprocessor
                     r"\bthrow\b[^;]*;", r"\bstatic_assert\b[^;]*;", r"\bassert\([^;]*;",
-                    r"^[^\n]*\breserve\([^\n]*", r"\boperator\S+\(", r"\) (?:const )?= 0;"):
+                    r"^[^\n]*\breserve\([^\n]*", r"^ *\w+ \w+(?:\[\w+\])+ = \{\};", r"\boperator\S+\(", r"\) (?:const )?= 0;"):
         for match in list(re.finditer(pattern, text, re.MULTILINE)):
             text = hide(text, match.start(), match.end())
     for match in re.finditer(r"\w<(?![<=])", text):
@@ -81,15 +81,18 @@ def mutable_text(text):
 
 
 def changed_number(digits):
-    """Another number, or None where a change is one of rounding alone."""
+    """Another number, or None where it only bounds rounding, or what a machine can hold."""
     plain = digits.replace("'", "")
-    if not re.search(r"[.eE]", plain):
-        return None if plain.startswith("0") and plain != "0" else str(int(plain) + 1)
+    whole = not re.search(r"[.eE]", plain)
+    if whole and plain.startswith("0") and plain != "0":
+        return None
     value = float(plain)
     if value == 0.0:
-        return "1.0"
+        return "1" if whole else "1.0"
     if not 1e-6 < value < 1e6:
         return None
+    if whole:
+        return str(int(plain) + 1)
     changed = f"{0.82 * value:.6g}"
     return changed if re.search(r"[.e]", changed) else changed + ".0"
 
