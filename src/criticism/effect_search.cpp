@@ -125,11 +125,11 @@ void EffectSearch::refine(Tested& tested) {
   tested.share_found = std::min(1.0, found / std::max(tested.score.score, 1e-300));
 }
 
-/// The law of noise that explains more than any effect does, if there is one.
-const NoiseTest* EffectSearch::leading_law(const std::vector<NoiseTest>& laws) const {
+const NoiseTest* leading_law(const std::vector<NoiseTest>& laws, const std::vector<Tested>& tested,
+                             double level) {
   double most = 0.0;
-  for (const Tested& one : tested_) {
-    if (one.p_adjusted < options_.level) most = std::max(most, one.score.score);
+  for (const Tested& one : tested) {
+    if (one.p_adjusted < level) most = std::max(most, one.score.score);
   }
   for (const NoiseTest& law : laws) {
     if (law.unit.empty() || law.p_adjusted >= kLawLevel) continue;  // a shape, or chance
@@ -146,9 +146,7 @@ std::optional<TestedEvent> EffectSearch::claiming_event(const FitState& ground,
                                                         const Eigen::MatrixXd& nuisance) const {
   if (best_of(still, options_.level) == nullptr) return std::nullopt;
   double p = 1.0;
-  for (const Tested& one : still) {
-    if (one.score.dof > 0) p = std::min(p, one.p_adjusted);
-  }
+  for (const Tested& one : still) p = std::min(p, one.p_adjusted);
   std::vector<TestedEvent> events = test_events(ground, left, nuisance);
   const auto event = std::find_if(events.begin(), events.end(), [](const TestedEvent& one) {
     return one.kind != EventKind::session && one.projected.cols() > 0;
@@ -191,7 +189,7 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
 void EffectSearch::find_missing() {
   if (best_of(tested_, options_.level) == nullptr) return;
   const std::vector<NoiseTest> laws = test_noise_laws(fit_, tests_);
-  const NoiseTest* law = leading_law(laws);
+  const NoiseTest* law = leading_law(laws, tested_, options_.level);
   const std::optional<FitState> noisier =
       law != nullptr ? std::optional(with_noise(fit_, tests_, *law)) : std::nullopt;
   const FitState& ground = noisier ? *noisier : fit_;

@@ -34,6 +34,11 @@ struct MissingEffect {
   Score joint;             ///< with all that is missing added at once; without columns
 };
 
+/// The first law of noise, an amount and not a shape, that is beyond chance (p < 0.01), if it
+/// explains more than any effect that is significant at this level; nullptr if not.
+[[nodiscard]] const NoiseTest* leading_law(const std::vector<NoiseTest>& laws,
+                                           const std::vector<Tested>& tested, double level);
+
 class EffectSearch {
  public:
   /// Keeps references. `legs`, which may be nullptr: whose slopes the tests are to have.
@@ -62,7 +67,6 @@ class EffectSearch {
                                                           const ScoreTest& left,
                                                           const std::vector<Tested>& still,
                                                           const Eigen::MatrixXd& nuisance) const;
-  [[nodiscard]] const NoiseTest* leading_law(const std::vector<NoiseTest>& laws) const;
   void estimate_jointly();
   void eliminate_backward();
 

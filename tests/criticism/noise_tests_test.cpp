@@ -5,10 +5,14 @@
 // is known.
 #include "criticism/noise_tests.hpp"
 
+#include "criticism/noise_laws.hpp"
 #include "criticism/noisy_recordings.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -104,6 +108,61 @@ TEST(NoiseTests, TheScoreIsTheFallOfTheRestrictedLikelihood) {
   // And that is the best, to some 10 % of the variance.
   EXPECT_LT(deviance(variance), deviance(1.2 * variance));
   EXPECT_LT(deviance(variance), deviance(variance / 1.2));
+}
+
+TEST(NoiseTests, RarerLawsHaveToExplainMore) {
+  NoisyDrive world = simulate_world({true, true, true, 1}, 2);
+  const FitState fit = fit_recordings(world.recordings, world.model);
+  const ScoreTest tests(fit);
+  const std::map<std::string, double> documented = {{"per metre", 0.0},
+                                                    {"per metre, left wheel", 3.0},
+                                                    {"per metre, right wheel", 3.0},
+                                                    {"per second", 1.0},
+                                                    {"per second, heading", 6.0},
+                                                    {"per second, travel", 6.0},
+                                                    {"per radian turned", 6.0},
+                                                    {"per start", 0.0},
+                                                    {"per spin", 0.0},
+                                                    {"compass", 2.0},
+                                                    {"sighting", 2.0},
+                                                    {"range", 2.0},
+                                                    {"bearing", 2.0}};
+  std::map<std::string, double> margins;
+  for (const NoiseLaw& law : noise_laws(fit, tests.context())) margins[law.name] = law.margin;
+  EXPECT_EQ(margins, documented);
+  double before = std::numeric_limits<double>::infinity();
+  for (const NoiseTest& one : test_noise_laws(fit, tests)) {
+    const auto law = documented.find(one.law);  // not found: a shape of noise
+    const double claim = one.score - (law == documented.end() ? 0.0 : law->second);
+    EXPECT_LE(claim, before) << one.law;
+    before = claim;
+  }
+}
+
+TEST(NoiseTests, TheLikelihoodIsAskedFromAPValueOfAHundredthOn) {
+  // The less noise is stated, the smaller the p-value. Above 0.01 the score is z^2, below it is the
+  // fall of the likelihood, which is another number: z^2 holds for small noise alone.
+  NoisyDrive world = simulate_world({true, true, false, 1}, 7);
+  const double stated = world.model.noise.sighting;
+  const auto test_at = [&](double factor) {
+    world.model.noise.sighting = factor * stated;
+    return find(noise_of(world), "sighting");
+  };
+  double low = 0.4;
+  double high = 1.2;
+  const NoiseTest most = test_at(low);
+  const NoiseTest least = test_at(high);
+  ASSERT_LT(most.p_value, 0.01);
+  ASSERT_GT(least.p_value, 0.01);
+  NoiseTest below = most;
+  NoiseTest above = least;
+  while (above.p_value - below.p_value > 0.001) {
+    const double middle = 0.5 * (low + high);
+    const NoiseTest one = test_at(middle);
+    (one.p_value < 0.01 ? low : high) = middle;
+    (one.p_value < 0.01 ? below : above) = one;
+  }
+  EXPECT_GT(std::abs(above.score - below.score), 0.1 * above.score);
 }
 
 TEST(NoiseTests, WheelsWithTwiceTheNoiseAreRecognisedInSize) {

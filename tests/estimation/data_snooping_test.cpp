@@ -113,6 +113,27 @@ TEST(DataSnooping, TheStatisticIsWhatLeavingTheMeasurementOutTakesOffChi2) {
               0.02 * checked[some].statistic + 0.02);
 }
 
+TEST(DataSnooping, TheSmallestDetectableOutlierIsSeenInFourOfFiveCases) {
+  // Baarda: at 0.1 % either way (3.2905 standard deviations) with a power of 80 %. The outlier
+  // moves the standardised residual, whose spread stays 1.
+  const SimulatedRecording one = simulate_recording({true, false, true, 1}, 5);
+  const RecordingProblem problem = make_problem({one.recording}, one.model);
+  const std::vector<CheckedMeasurement> before = snoop(problem, {}, adjust(problem));
+  int asked = 0;
+  for (std::size_t k = 0; k < problem.measurements.size() && asked < 5; k += 7) {
+    if (problem.measurements[k].kind != MeasurementKind::view) continue;
+    ++asked;
+    const Eigen::Index value = asked % 2;  // bearing, range, ...
+    RecordingProblem spoilt = problem;
+    spoilt.measurements[k].value[value] += before[k].minimal_detectable[value];
+    const CheckedMeasurement after = snoop(spoilt, {}, adjust(spoilt))[k];
+    const double moved = std::abs(after.standardised[value] - before[k].standardised[value]);
+    const double power = 0.5 * std::erfc((3.2905 - moved) / std::sqrt(2.0));
+    EXPECT_NEAR(power, 0.80, 0.03) << k << ", value " << value;
+  }
+  EXPECT_EQ(asked, 5);
+}
+
 TEST(DataSnooping, AWrongSightingIsTheFirstOfTheOutliers) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Spoilt one = spoil_one_sighting(seed);

@@ -3,7 +3,10 @@
 #include "estimation/student_tails.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "estimation/recording_system.hpp"
 #include "fit/fit_state.hpp"
+#include "fit/noise_fit.hpp"
+#include "fit/noise_reml.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/noise_fit.hpp"
@@ -200,6 +203,26 @@ TEST(StudentTails, AGateLeavesOutHardlyAny) {
   const ModelFit tails = fit_model({recording}, with_noise(kTails), options);
   EXPECT_GT(normal.state->adjustment.left_out.size(), tails.state->adjustment.left_out.size());
   EXPECT_LE(tails.state->adjustment.left_out.size(), 1U);
+}
+
+// An effect's columns are the same whether sightings have tails, and weigh by what these tell, or
+// count by their variance, as for the size of the noise.
+TEST(StudentTails, ColumnsBesideTheNoiseAreWhitenedByItsVariance) {
+  const Recording recording = with_tails(76, 0.05);
+  const ModelFit fitted = fit_model({recording}, with_range_bias(with_noise(kTails)));
+  const FitState& fit = *fitted.state;
+  const auto columns_under = [&fit](const RecordingProblem& problem) {
+    RecordingSystem system(problem, fit.columns.border);
+    system.linearise(fit.adjustment.state, fit.adjustment.coefficients);
+    return Eigen::MatrixXd(system.border());
+  };
+  NoiseReml reml(fit, fit.model.noise);
+  (void)minus_two_log_under(reml, fit.model.noise, columns_under(fit.problem));
+  const Eigen::MatrixXd expected = columns_under(reml.problem());
+  const Eigen::Index rows = std::min(expected.rows(), reml.nuisance().rows());
+  const auto sightings = expected.topRows(rows);
+  ASSERT_GT(sightings.norm(), 1.0);
+  EXPECT_LT((reml.nuisance().topRows(rows) - sightings).norm(), 1e-6 * sightings.norm());
 }
 
 TEST(StudentTails, TheirSizeIsEstimatedWithThem) {

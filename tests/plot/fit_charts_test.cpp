@@ -33,6 +33,17 @@ TEST(QuantileChart, NormalErrorsLieOnALineWhoseSlopeIsTheirSpread) {
   }
 }
 
+TEST(QuantileChart, EveryErrorStandsInTheMiddleOfItsShare) {
+  // Of five errors each is a fifth: 0.1, 0.3, 0.5, 0.7, 0.9, with the quantiles of a printed table.
+  const Chart chart = quantile_chart("q", "Q", {{"range", {-2.0, -1.0, 0.0, 1.0, 2.0}}});
+  const std::vector<double>& expected = chart.layers.at(1).columns[0].numbers;
+  const std::vector<double> table = {-1.281552, -0.524401, 0.0, 0.524401, 1.281552};
+  ASSERT_EQ(expected.size(), table.size());
+  for (std::size_t k = 0; k < table.size(); ++k) EXPECT_NEAR(expected[k], table[k], 1e-6);
+  // The line reaches as far as the farthest.
+  EXPECT_NEAR(chart.layers[0].columns[0].numbers.back(), 1.281552, 1e-6);
+}
+
 TEST(QuantileChart, DrawsFewPointsAndBothEnds) {
   const SourceResiduals sample = normal_sample("compass", 40000, 1.0);
   const Chart chart = quantile_chart("q", "Q", {sample});

@@ -9,6 +9,7 @@
 // Statistics may be off by four of their standard deviations.
 #include "simulation/rough_noise.hpp"
 
+#include "criticism/noisy_recordings.hpp"
 #include "geometry/index.hpp"
 #include "simulation/wheeled_robot.hpp"
 #include "trussmap/catalogue.hpp"
@@ -491,6 +492,24 @@ TEST(RoughNoise, ComesBesidePhysicalEffects) {
   for (std::size_t sensor = 0; sensor < 3; ++sensor) {
     expect_near_all(with.each()[sensor], without.each()[sensor]);
   }
+}
+
+TEST(RoughNoise, EveryRowIsMisreadAsItsLegIs) {
+  const testing::NoisyDrive world = testing::simulate_world({true, true, false, 1}, 1);
+  const TrueMotion& motion = world.motions.front();
+  RoughNoise rough;
+  rough.floor = true;
+  const std::vector<LegMisreading> misreadings = leg_misreadings(motion, rough, 1);
+  ASSERT_EQ(misreadings.size(), motion.rows.size());
+  std::size_t changes = 0;
+  for (std::size_t row = 1; row < misreadings.size(); ++row) {
+    if (misreadings[row].travel == misreadings[row - 1].travel) continue;
+    ++changes;
+    EXPECT_TRUE(std::any_of(motion.stops.begin(), motion.stops.end(), [row](const auto& stop) {
+      return stop.rows == row;
+    })) << row;
+  }
+  EXPECT_GT(changes, 10U);
 }
 
 }  // namespace
