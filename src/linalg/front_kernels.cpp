@@ -21,8 +21,8 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
             const double* beta, double* c, const int* ldc);
 }
 
-// One version per instruction set, chosen when the program starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// One version per instruction set, chosen when the program starts; too early for ThreadSanitizer.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define TRUSSMAP_VERSIONS __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define TRUSSMAP_VERSIONS
