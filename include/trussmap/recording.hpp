@@ -51,9 +51,11 @@ struct Sighting {
   double t = 0.0;  ///< s
   std::string landmark;
   double range = kAbsent;    ///< m; NaN: the robot stands on the landmark
-  double bearing = kAbsent;  ///< rad, from the robot's forward axis
+  double bearing = kAbsent;  ///< rad, from the robot's forward axis; NaN beside a range: a beacon's
 
   [[nodiscard]] bool standing() const { return range != range; }
+  /// Whether it says where the landmark is from the robot: a range alone does not.
+  [[nodiscard]] bool locates() const { return standing() || bearing == bearing; }
 };
 
 struct SurveyPoint {

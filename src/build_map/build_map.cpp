@@ -48,6 +48,12 @@ std::vector<SightedDrive> sessions_of(const std::vector<ClearedRecording>& clear
   return sessions;
 }
 
+bool has_stops(const ClearedRecording& clear) {
+  const std::vector<Sighting>& sightings = clear.recording.sightings;
+  return std::any_of(sightings.begin(), sightings.end(),
+                     [](const Sighting& one) { return one.locates(); });
+}
+
 std::set<std::string> landmarks_stood_on(const std::vector<ClearedRecording>& clear,
                                          const std::vector<SessionGuide>& guides) {
   std::set<std::string> names;
@@ -87,8 +93,16 @@ BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& cl
   const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
   LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
   if (options.method == Method::adjustment) how.build.method = Method::gauss_markov;
-  MapBuilder builder = builder_for(how.build);
-  BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
+  const bool ranges_alone = std::none_of(clear.begin(), clear.end(), has_stops);
+  if (ranges_alone && options.method != Method::adjustment) {
+    throw InputError(clear.front().recording.name, 0,
+                     "has ranges alone, which make no legs, expected the method adjustment");
+  }
+  BuiltMap built;
+  if (!ranges_alone) {
+    MapBuilder builder = builder_for(how.build);
+    built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
+  }
   built.method = options.method;
   if (options.method == Method::adjustment) place_as(landmarks, built.map);
   return built;

@@ -27,6 +27,7 @@ class Reckoning {
 
   void run() {
     const std::vector<Stop> stops = stops_of(session_.recording().sightings);
+    if (stops.empty()) return;
     double time = stops.front().t;
     const InitialHeading first = session_.heading_at(time);
     PoseEstimate pose;
@@ -36,7 +37,8 @@ class Reckoning {
       pose = session_.reckon(pose, time, stop.t, first.reading_time);
       time = stop.t;
       for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
-        see(session_.recording().sightings[k], pose);
+        if (session_.recording().sightings[k].locates())
+          see(session_.recording().sightings[k], pose);
       }
     }
     for (const auto& [name, seen] : seen_) result_.places.try_emplace(name, seen.sum / seen.count);

@@ -65,7 +65,8 @@ std::vector<Session::Accepted> Session::accepted_at(const Stop& stop) const {
   std::vector<Accepted> accepted;
   for (std::size_t k = stop.first; k < stop.first + stop.count; ++k) {
     const Sighting& sighting = recording_.sightings[k];
-    if (!drive_.is_left_out(sighting)) accepted.push_back({&sighting, drive_.offset_of(sighting)});
+    if (sighting.locates() && !drive_.is_left_out(sighting))
+      accepted.push_back({&sighting, drive_.offset_of(sighting)});
   }
   std::stable_sort(accepted.begin(), accepted.end(), [](const Accepted& a, const Accepted& b) {
     return a.offset.offset_robot.norm() < b.offset.offset_robot.norm();

@@ -108,7 +108,7 @@ void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correc
     }
   }
   for (const Measurement* one : seen) {
-    if (!is_sighting(one->kind)) continue;
+    if (!locates(*one)) continue;
     std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
     if (!landmark) landmark = sighted(*one);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_adjustment.hpp"
 
+#include "estimation/multilateration.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
 #include "estimation/recording_start.hpp"
@@ -119,6 +120,34 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
   return look_again(system, problem, std::move(before));
 }
 
+/// Landmarks of which there are ranges alone, all from about one line: they may as well lie at
+/// their mirror images.
+void warn_of_mirrors(const RecordingProblem& problem, RecordingAdjustment& result) {
+  std::vector<std::vector<RangeReading>> readings(problem.landmarks.size());
+  std::vector<bool> told(problem.landmarks.size(), false);
+  const std::vector<double> weights = weights_without(result.left_out, problem.measurements.size());
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (one.kind == MeasurementKind::survey) told[idx(one.from)] = true;
+    if (!is_sighting(one.kind) || weights[k] == 0.0) continue;
+    if (locates(one)) told[idx(one.to)] = true;
+    const Pose& pose = result.state.poses[idx(one.from - problem.landmark_count())];
+    readings[idx(one.to)].push_back({pose.position(), one.value[0], 1.0 / one.whitener(0, 0)});
+  }
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    if (told[k]) continue;
+    const std::optional<Multilateration> found = multilaterate(readings[k]);
+    if (!found || !found->mirror) continue;
+    const bool first = (found->place - result.state.landmarks[k]).norm() <
+                       (*found->mirror - result.state.landmarks[k]).norm();
+    const Vector2 other = first ? *found->mirror : found->place;
+    result.warnings.push_back(joined(
+        "landmark ", problem.landmarks[k],
+        " has ranges from about one line alone: it may as well lie at (", fixed_text(other.x(), 2),
+        ", ", fixed_text(other.y(), 2), ") m; drive to another side of it"));
+  }
+}
+
 void add_warnings(RecordingAdjustment& result) {
   constexpr double kImplausible = 1e-6;
   if (!result.converged) {
@@ -192,6 +221,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   if (options.landmark_uncertainties) take_uncertainties(system, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
   add_warnings(result);
+  warn_of_mirrors(problem, result);
   return result;
 }
 

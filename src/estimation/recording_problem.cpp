@@ -296,4 +296,8 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
   return "measurement";
 }
 
+bool locates(const Measurement& one) {
+  return is_sighting(one.kind) && !(one.kind == MeasurementKind::view && one.rows == 1);
+}
+
 }  // namespace trussmap

@@ -43,6 +43,11 @@ enum class MeasurementKind { segment, standing, view, cartesian_view, survey, tr
          kind == MeasurementKind::cartesian_view;
 }
 
+struct Measurement;
+
+/// Whether a sighting says where its landmark is from the robot: a range alone does not.
+[[nodiscard]] bool locates(const Measurement& one);
+
 struct Measurement {
   MeasurementKind kind = MeasurementKind::segment;
   int from = -1;                    ///< node

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_start.hpp"
 
+#include "estimation/multilateration.hpp"
 #include "estimation/pose_reckoner.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace trussmap {
 namespace {
@@ -70,9 +72,29 @@ class Layer {
       const Pose motion{segment.value[0], segment.value[1], segment.value[2]};
       poses_[idx(k)] = compose(poses_[idx(k + 1)], inverse(motion));
       for (const Measurement* one : seen_at(k)) {
-        if (!is_sighting(one->kind) || landmarks_[idx(one->to)]) continue;
+        if (!locates(*one) || landmarks_[idx(one->to)]) continue;
         const Pose& pose = poses_[idx(k)];
         landmarks_[idx(one->to)] = pose.position() + rotation(pose.heading) * offset_of(*one);
+      }
+    }
+  }
+
+  /// Landmarks of which the first `count` poses have ranges alone: those that these tell, or at
+  /// last all that have some.
+  void place_by_ranges(int count, bool at_last) {
+    std::map<int, std::vector<RangeReading>> readings;
+    for (int k = 0; k < count; ++k) {
+      for (const Measurement* one : seen_at(k)) {
+        if (!is_sighting(one->kind) || locates(*one) || landmarks_[idx(one->to)]) continue;
+        const double sd = std::hypot(std::sqrt(covariance_of(*one)(0, 0)), options_.map_sd);
+        readings[one->to].push_back({poses_[idx(k)].position(), one->value[0], sd});
+      }
+    }
+    for (const auto& [landmark, of_it] : readings) {
+      if (const std::optional<Multilateration> found = multilaterate(of_it)) {
+        if (found->certain || at_last) landmarks_[idx(landmark)] = found->place;
+      } else if (at_last) {
+        landmarks_[idx(landmark)] = of_it.front().from + Vector2(of_it.front().range, 0.0);
       }
     }
   }
@@ -144,7 +166,8 @@ bool has_compass(const RecordingProblem& problem) {
 /// share of the sightings that are beyond the gate then.
 double adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
                       Layer& layer) {
-  const ProblemPart part = part_of(session, 0, count);
+  const ProblemPart part = part_of(session, 0, count, &layer.landmarks());
+  if (part.landmarks.empty()) return 0.0;
   RecordingDescent fit;
   for (const int landmark : part.landmarks) {
     fit.state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
@@ -195,6 +218,7 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
       const Pose pose{truth->value[0], truth->value[1], truth->value[2]};
       layer.lay(k, poses - 1, pose, covariance_of(*truth), true);
       layer.lay_backwards(k);
+      layer.place_by_ranges(poses, true);
       return;
     }
   }
@@ -203,6 +227,7 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
   const Matrix3 adjusted = Eigen::Vector3d(1e-2, 1e-2, 1e-3).asDiagonal();
   int laid = std::min(poses, options.first_stretch);
   layer.lay(0, laid - 1, layer.first_pose(), unknown_heading, true);
+  layer.place_by_ranges(laid, laid == poses);
   if (laid < poses) adjust_stretch(session, options, laid, layer);
   int longest = poses;
   while (laid < poses) {
@@ -210,6 +235,7 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
     const int stretch = std::min(longest, std::max(2 * options.first_stretch / 3, laid / 3));
     const int next = std::min(poses, laid + stretch);
     layer.lay(laid - 1, next - 1, layer.poses()[idx(laid - 1)], adjusted, true);
+    layer.place_by_ranges(next, next == poses);
     if (next == poses && !options.careful) return;
     const double lost = adjust_stretch(session, options, next, layer);
     if (options.careful && lost > kLost && stretch > kShortestStretch) {
@@ -281,7 +307,8 @@ PlacedLandmarks surveyed(const RecordingProblem& problem) {
 
 }  // namespace
 
-ProblemPart part_of(const RecordingProblem& problem, int first, int count) {
+ProblemPart part_of(const RecordingProblem& problem, int first, int count,
+                    const PlacedLandmarks* placed) {
   ProblemPart part;
   part.first_pose = first;
   std::vector<int> place(problem.landmarks.size(), -1);
@@ -291,6 +318,7 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count) {
   for (const Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth) continue;
     if (!inside(one.from) || (one.kind == MeasurementKind::segment && !inside(one.to))) continue;
+    if (placed != nullptr && is_sighting(one.kind) && !(*placed)[idx(one.to)]) continue;
     kept.push_back(&one);
     if (one.kind == MeasurementKind::segment || place[idx(one.to)] >= 0) continue;
     place[idx(one.to)] = static_cast<int>(part.landmarks.size());
@@ -372,7 +400,7 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
       const Pose& pose = layer.poses()[idx(k)];
       state.poses[idx(first + k)] = pose;
       for (const Measurement* one : layer.seen_at(k)) {
-        if (!is_sighting(one->kind)) continue;
+        if (!locates(*one)) continue;
         const std::size_t landmark = idx(part.landmarks[idx(one->to)]);
         sums[landmark] += pose.position() + rotation(pose.heading) * offset_of(*one);
         counts[landmark] += 1.0;

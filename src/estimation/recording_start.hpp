@@ -17,6 +17,9 @@
 // A careful start looks whether a stretch leaves many sightings beyond the gate: the robot was lost
 // on it then; it is taken back, and a shorter one is laid. That costs much more.
 //
+// A landmark of which there are ranges alone is placed when the path so far tells where it is
+// (multilateration.hpp), at the session's end where they have it most likely.
+//
 // At last the session is laid over the landmarks that are known by then (survey, other sessions):
 // shifted, and without a compass turned.
 #pragma once
@@ -25,6 +28,8 @@
 #include "estimation/recording_problem.hpp"
 
 #include <limits>
+#include <optional>
+#include <vector>
 
 namespace trussmap {
 
@@ -58,6 +63,8 @@ struct ProblemPart {
   std::vector<int> landmarks;  ///< of the whole problem, in the part's order
   int first_pose = 0;
 };
-[[nodiscard]] ProblemPart part_of(const RecordingProblem& problem, int first, int count);
+/// With `placed`, sightings of landmarks that have no place there are left out, too.
+[[nodiscard]] ProblemPart part_of(const RecordingProblem& problem, int first, int count,
+                                  const std::vector<std::optional<Vector2>>* placed = nullptr);
 
 }  // namespace trussmap

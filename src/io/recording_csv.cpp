@@ -130,9 +130,8 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   const int range = csv.find("range");
   const int bearing = csv.find("bearing");
   refuse_other_columns(csv, {"t", "landmark", "range", "bearing"});
-  if ((range < 0) != (bearing < 0)) {
-    csv.fail(std::string("column \"") + (range < 0 ? "bearing" : "range") + "\" without \"" +
-             (range < 0 ? "range" : "bearing") + "\", expected both or neither");
+  if (range < 0 && bearing >= 0) {
+    csv.fail("column \"bearing\" without \"range\", expected a range");
   }
   const double slack = clock_slack(drive);
   std::vector<Sighting> sightings;
@@ -142,11 +141,10 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
     sighting.landmark = landmark_name(csv, landmark);
     if (range >= 0) {
       sighting.range = csv.number_or_absent(range, kLargestRange);
-      sighting.bearing = csv.number_or_absent(bearing, kLargestAngle);
     }
-    if (std::isnan(sighting.range) != std::isnan(sighting.bearing)) {
-      csv.fail(std::isnan(sighting.range) ? "a bearing without a range, expected both or neither"
-                                          : "a range without a bearing, expected both or neither");
+    if (bearing >= 0) sighting.bearing = csv.number_or_absent(bearing, kLargestAngle);
+    if (std::isnan(sighting.range) && !std::isnan(sighting.bearing)) {
+      csv.fail("a bearing without a range, expected a range");
     }
     if (sighting.range < 0.0) csv.fail("the range is negative, expected 0 or more");
     if (sighting.t < drive.start() - slack || sighting.t > drive.t.back() + slack) {

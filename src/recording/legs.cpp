@@ -17,11 +17,12 @@ double distance_of(const Sighting& sighting) {
 std::vector<Stop> stops_of(const std::vector<Sighting>& sightings) {
   std::vector<Stop> stops;
   for (std::size_t k = 0; k < sightings.size(); ++k) {
+    if (!sightings[k].locates()) continue;
     if (stops.empty() || stops.back().t != sightings[k].t) {
       stops.push_back({sightings[k].t, k, 0, k});
     }
     Stop& stop = stops.back();
-    ++stop.count;
+    stop.count = k + 1 - stop.first;
     const Sighting& best = sightings[stop.reference];
     const bool stands_first = sightings[k].standing() && !best.standing();
     if (stands_first || distance_of(sightings[k]) < distance_of(best)) stop.reference = k;

@@ -3,7 +3,8 @@
 //
 // Stops and legs: how a recording falls into drives between landmarks.
 //
-//   stop   the sightings that share a time; its reference is the landmark the robot stands on,
+//   stop   the sightings that share a time, ranges alone apart; its reference is the landmark the
+//   robot stands on,
 //          else the nearest one it sees
 //   leg    the drive between two stops with different references that are at least `min_drive` of
 //          driven path apart: from each leg's end, the first stop that qualifies ends the next
@@ -20,7 +21,7 @@ namespace trussmap {
 
 struct Stop {
   double t = 0.0;         ///< s
-  std::size_t first = 0;  ///< its sightings are first ... first + count - 1
+  std::size_t first = 0;  ///< its sightings are first ... first + count - 1, and ranges among them
   std::size_t count = 0;
   std::size_t reference = 0;  ///< the reference landmark's sighting
 };

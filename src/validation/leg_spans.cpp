@@ -62,7 +62,7 @@ std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
   std::vector<LegSpan> legs;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const int session = static_cast<int>(s);
-    if (recordings[s].sightings.empty()) {
+    if (stops_of(recordings[s].sightings).empty()) {
       add_truth_legs(recordings[s], session, problem, options, legs);
     } else {
       add_sighted_legs(recordings[s], session, problem, options, legs);
