@@ -8,6 +8,7 @@
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
@@ -26,7 +27,7 @@ json survey_json(const MapOnSurvey& on_survey) {
   for (const auto& [a, b] : map.exchanged) exchanged.push_back({a, b});
   return {{"landmarks", map.landmarks},
           {"rms_m", map.rigid.rms},
-          {"rms_dead_reckoning_m", on_survey.rms_dead_reckoning},
+          {"rms_dead_reckoning_m", number_or_null(on_survey.rms_dead_reckoning)},
           {"rms_similarity_m", map.similarity.rms},
           {"scale", map.similarity.scale},
           {"rms_with_contradicting_m", map.rms_all},
@@ -62,7 +63,9 @@ void print_survey(const MapOnSurvey& on_survey) {
   fmt::print("\n  against the survey of {} landmarks, after rotation and translation:\n",
              map.landmarks);
   fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the map", map.rigid.rms);
-  fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
+  if (!std::isnan(on_survey.rms_dead_reckoning)) {
+    fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
+  }
   fmt::print("  {:<28} {:>8.3f} m  ({})\n", "rms with a scale as well", map.similarity.rms,
              map_scale_in_words(map.similarity.scale));
   if (map.contradicting.empty()) return;
@@ -70,7 +73,7 @@ void print_survey(const MapOnSurvey& on_survey) {
       "\n  These landmarks contradict the survey and do not count above (with them the rms "
       "is {:.3f} m):\n",
       map.rms_all);
-  for (const std::string& name : map.contradicting) 
+  for (const std::string& name : map.contradicting)
     fmt::print("    landmark {}\n", shortened_words(name));
   for (const auto& [a, b] : map.exchanged) {
     fmt::print(

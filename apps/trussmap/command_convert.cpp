@@ -59,6 +59,20 @@ void convert_optiodom(const fs::path& in, const fs::path& out) {
   fmt::print("  {:>7.4f} mm a tick\n", 1000.0 * foreign.metre_per_tick);
 }
 
+void convert_radio_ranges(const fs::path& in, const fs::path& out) {
+  const RangeRecording foreign = read_radio_ranges(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("t = 0 is {:.0f} s", foreign.epoch),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: ranges to radio beacons {} to the recording {}\n\n", in.string(),
+             out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
+  count(static_cast<int>(recording.sightings.size()), "ranges");
+  count(static_cast<int>(recording.truth.size()), "truth rows");
+  count(foreign.outside_drive, "ranges outside of the drive dropped");
+  count(foreign.unordered_ranges, "ranges were out of order in time");
+}
+
 /// A recording is a folder; a map's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
@@ -69,7 +83,7 @@ void check_folder(const fs::path& out) {
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
-  if (is_mrclam(in) || is_optiodom(in)) check_folder(out);
+  if (is_mrclam(in) || is_optiodom(in) || is_radio_ranges(in)) check_folder(out);
   if (is_mrclam(in)) {
     convert_mrclam(in, out);
     return;
@@ -78,10 +92,16 @@ void run_convert(const ConvertOptions& options) {
     convert_optiodom(in, out);
     return;
   }
+  if (is_radio_ranges(in)) {
+    convert_radio_ranges(in, out);
+    return;
+  }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
-    throw UsageError("cannot tell what " + in.string() +
-                     " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
-                     "or an OptiOdom run (..._run-NN.csv, plain or .xz)");
+    throw UsageError(
+        "cannot tell what " + in.string() +
+        " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
+        "an OptiOdom run (..._run-NN.csv, plain or .xz), or DIR/NAME of ranges to radio "
+        "beacons (NAME_DR.txt, NAME_TD.txt)");
   }
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
   if (is_map_store(out)) {
@@ -100,10 +120,9 @@ void setup_convert(const Command& app) {
   const Command command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      .add_option(
-          "IN", options->in,
-          "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, or an OptiOdom run "
-          "..._run-NN.csv (plain or .xz files)")
+      .add_option("IN", options->in,
+                  "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
+                  "..._run-NN.csv, or DIR/NAME of ranges to radio beacons (plain or .xz files)")
       .required()
       .type_name("FILE");
   command

@@ -87,7 +87,8 @@ struct MapQuality {
 struct MapOnSurvey {
   std::vector<SurveyPoint> points;  ///< of all sessions, each landmark once, by name
   SurveyComparison comparison;
-  double rms_dead_reckoning = 0.0;  ///< m, rigid, over the same landmarks
+  /// m, rigid, over the same landmarks; NaN: they are not reckoned, of ranges alone.
+  double rms_dead_reckoning = kAbsent;
 };
 
 struct BuiltMap {

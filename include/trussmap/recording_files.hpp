@@ -95,6 +95,31 @@ struct OptiOdomRecording {
 /// Throws InputError with file and line; a run of another robot than the differential one is named.
 [[nodiscard]] OptiOdomRecording read_optiodom(const std::filesystem::path& file);
 
+// ----------------------------------------
+// Ranges to radio beacons along a drive (Djugash, Hamner & Roth, 2009; "Plaza1") as a recording.
+//
+//   PREFIX_DR.txt   time [s], distance [m] and turn [rad] since the row before
+//   PREFIX_TD.txt   time [s], antenna, beacon, range [m]
+//   PREFIX_GT.csv   time [s], x, y [m], heading [rad]; may be absent
+//
+// Plain or .xz. Of the wheels nothing is stated: they are those of a robot with a wheelbase of 1 m
+// that drives and turns so. Ranges are sorted by time, those outside of the drive are dropped.
+
+struct RangeRecording {
+  Recording recording;
+  Model model;  ///< that wheelbase, and noise that suits such radios
+
+  double epoch = 0.0;        ///< s, time of t = 0
+  int outside_drive = 0;     ///< ranges before or after the odometry, dropped
+  int unordered_ranges = 0;  ///< ranges earlier than the one before, sorted in
+};
+
+/// True if `prefix` (DIR/NAME) names such files, complete or not.
+[[nodiscard]] bool is_radio_ranges(const std::filesystem::path& prefix);
+
+/// Throws InputError, with the line where there is one.
+[[nodiscard]] RangeRecording read_radio_ranges(const std::filesystem::path& prefix);
+
 /// 16 hexadecimal digits that two recordings share only if their wheels, compass and sightings are
 /// the same, to the last bit: whatever the folders are called.
 [[nodiscard]] std::string fingerprint(const Recording& recording);

@@ -83,8 +83,10 @@ std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
   result.points = survey_of(recordings);
   result.comparison = compare_with_survey(positions_of(built.map), result.points);
   if (result.comparison.landmarks < kFewestSurveyed) return std::nullopt;
-  result.rms_dead_reckoning =
-      survey_rms(built.dead_reckoned, result.points, result.comparison.contradicting);
+  if (!built.dead_reckoned.empty()) {
+    result.rms_dead_reckoning =
+        survey_rms(built.dead_reckoned, result.points, result.comparison.contradicting);
+  }
   return result;
 }
 

@@ -244,8 +244,10 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;
     page.facts.push_back({fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)"});
-    page.facts.push_back({fmt::format("{:.3f} m", built.on_survey->rms_dead_reckoning),
-                          "dead reckoning off the survey (rms)"});
+    if (!std::isnan(built.on_survey->rms_dead_reckoning)) {
+      page.facts.push_back({fmt::format("{:.3f} m", built.on_survey->rms_dead_reckoning),
+                            "dead reckoning off the survey (rms)"});
+    }
     page.facts.push_back({fmt::format("{:.3f} m", survey.similarity.rms),
                           "with a scale as well: " + map_scale_in_words(survey.similarity.scale)});
   }

@@ -375,29 +375,6 @@ TEST_F(MapStoreTest, WhatIsLeftOutIsKeptAsItWasSaid) {
   EXPECT_LE((c - Vector2(1.0, 1.0)).norm(), 0.1);
 }
 
-/// A write that fails when much has been written already, as on a disk that is full.
-TEST_F(MapStoreTest, AFullDiskIsSurvived) {
-  MapStore store(file_);
-  store.start(name(0));
-  const std::vector<Step> steps = walk(300, 30000, 15);
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{1'000'000, before.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  EXPECT_THROW(store.append("s", "s",
-                            [&](MapBuilder& builder) {
-                              for (const Step& step : steps) take(builder, step);
-                            }),
-               InputError);
-  ::setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_EQ(store.builder().landmarks(), 1);
-  for (std::size_t k = 0; k < 50; ++k) take(store, steps[k]);
-  EXPECT_EQ(store.legs(), 51);
-  EXPECT_TRUE(store.sessions().empty());
-}
-
 TEST_F(MapStoreTest, AStoreWithoutLandmarksMayStillChangeItsMethod) {
   write_file(file_, "");  // as mktemp makes it
   { const MapStore store(file_); }
@@ -442,6 +419,30 @@ TEST_F(MapStoreTest, DamagedFilesAreRefused) {
     fs::remove(file_.string() + "-shm");
   }
   EXPECT_GT(refused, 10);
+}
+
+/// A write that fails when much has been written already, as on a disk that is full.
+TEST(SlowMapStore, AFullDiskIsSurvived) {
+  const testing::ScratchFolder scratch;
+  MapStore store(scratch.path() / "map.db");
+  store.start(name(0));
+  const std::vector<Step> steps = walk(300, 30000, 15);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1'000'000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(store.append("s", "s",
+                            [&](MapBuilder& builder) {
+                              for (const Step& step : steps) take(builder, step);
+                            }),
+               InputError);
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(store.builder().landmarks(), 1);
+  for (std::size_t k = 0; k < 50; ++k) take(store, steps[k]);
+  EXPECT_EQ(store.legs(), 51);
+  EXPECT_TRUE(store.sessions().empty());
 }
 
 /// A child adds legs as fast as it can, and counts those that have returned where its parent sees
