@@ -89,7 +89,7 @@ std::optional<Multilateration> multilaterate(const std::vector<RangeReading>& al
     middle += one.range / static_cast<double>(readings.size());
   std::vector<Minimum> minima;
   for (int k = 0; k < kDirections; ++k) {
-    const double way = 2.0 * std::numbers::pi * k / kDirections;
+    const double way = 0.1 + 2.0 * std::numbers::pi * k / kDirections;  // along no axis
     minima.push_back(
         descend(readings, nearest.from + std::max(nearest.range, 1e-3) * rotation(way).col(0)));
   }

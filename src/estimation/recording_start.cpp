@@ -94,7 +94,8 @@ class Layer {
       if (const std::optional<Multilateration> found = multilaterate(of_it)) {
         if (found->certain || at_last) landmarks_[idx(landmark)] = found->place;
       } else if (at_last) {
-        landmarks_[idx(landmark)] = of_it.front().from + Vector2(of_it.front().range, 0.0);
+        // Anywhere but along an axis, so that rounding shows which unknown is free.
+        landmarks_[idx(landmark)] = of_it.front().from + of_it.front().range * rotation(1.0).col(0);
       }
     }
   }

@@ -34,7 +34,8 @@ std::vector<Vector2> line(const Vector2& from, const Vector2& to, int count) {
   return path;
 }
 
-/// Least squares by looking everywhere, 2 cm apart round the truth.
+/// The least sum, of squares up to two standard deviations and linear from there, by looking
+/// everywhere, 2 cm apart round the truth.
 Vector2 by_grid(const std::vector<RangeReading>& readings, const Vector2& middle) {
   Vector2 best = middle;
   double least = 1e300;
@@ -43,7 +44,8 @@ Vector2 by_grid(const std::vector<RangeReading>& readings, const Vector2& middle
       const Vector2 p = middle + 0.02 * Vector2(i, j);
       double sum = 0.0;
       for (const RangeReading& one : readings) {
-        sum += std::pow(((p - one.from).norm() - one.range) / one.sd, 2);
+        const double z = std::abs((p - one.from).norm() - one.range) / one.sd;
+        sum += z <= 2.0 ? z * z : 4.0 * z - 4.0;
       }
       if (sum < least) {
         least = sum;

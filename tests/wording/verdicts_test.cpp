@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Verdicts in words.
-#include "trussmap/wording.hpp"
-
 #include "trussmap/compare.hpp"
+#include "trussmap/wording.hpp"
 
 #include <gtest/gtest.h>
 
