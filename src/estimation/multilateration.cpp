@@ -37,7 +37,7 @@ double cost_at(const std::vector<RangeReading>& readings, const Vector2& place) 
 }
 
 /// Gauss-Newton with damping from there.
-Minimum descend(const std::vector<RangeReading>& readings, Vector2 place) {
+Minimum descend(const std::vector<RangeReading>& readings, const Vector2& place) {
   constexpr int kMostSteps = 60;
   double damping = 1e-3;
   Minimum result{place, cost_at(readings, place)};

@@ -51,6 +51,7 @@ Traversal checked(const Traversal& leg) {
 
 void check_tied(const LandmarkGraph& map) {
   std::vector<NodePair> ties;
+  ties.reserve(idx(map.routes()));
   for (int number = 0; number < map.routes(); ++number) {
     ties.push_back({map.route(number).source, map.route(number).target});
   }
@@ -67,6 +68,7 @@ void check_tied(const LandmarkGraph& map) {
 BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& options) {
   BuilderMemory memory(options.gate);
   std::vector<Bar> bars;
+  bars.reserve(idx(map.routes()));
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
     check({route.displacement, route.covariance});
@@ -246,7 +248,7 @@ class MapBuilder::State {
   template <typename Call>
   auto journaled(BuilderCall entry, const Call& call) {
     if (journal != nullptr) make_room(*journal);
-    const auto result = call(entry);
+    auto result = call(entry);
     if (journal != nullptr) journal->push_back(entry);
     return result;
   }
@@ -469,7 +471,7 @@ Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& given) 
   const Traversal leg = checked(given);
   return state_->journaled({BuilderCall::Kind::arrive, state_->memory().said, -1, leg},
                            [&](BuilderCall& entry) {
-                             const Arrival arrival = state_->arrive(landmark, leg);
+                             Arrival arrival = state_->arrive(landmark, leg);
                              entry.to = arrival.landmark;
                              entry.outcome = arrival.kind;
                              return arrival;
@@ -480,7 +482,7 @@ Arrival MapBuilder::observe(const std::string& landmark, const Traversal& given)
   const Traversal leg = checked(given);
   return state_->journaled({BuilderCall::Kind::observe, state_->memory().said, -1, leg},
                            [&](BuilderCall& entry) {
-                             const Arrival arrival = state_->observe(landmark, leg);
+                             Arrival arrival = state_->observe(landmark, leg);
                              entry.to = arrival.landmark;
                              entry.outcome = arrival.kind;
                              return arrival;

@@ -50,7 +50,7 @@ auto naming(const fs::path& file, const Call& call) {
 fs::path place_of(const fs::path& file) {
   if (file.empty()) throw InputError("map store", 0, "has no name, expected a file");
   std::error_code failed;
-  const fs::path place = fs::absolute(file, failed);
+  fs::path place = fs::absolute(file, failed);
   if (failed) throw InputError(file.string(), 0, "cannot be found: " + failed.message());
   if (fs::is_directory(place, failed)) {
     throw InputError(file.string(), 0, "is a folder, expected a map store");
@@ -83,7 +83,7 @@ class Facts {
 
   std::string text(const std::string& name) {
     get_.bind(0, name);
-    const std::string value = get_.step() ? get_.text(0) : std::string();
+    std::string value = get_.step() ? get_.text(0) : std::string();
     get_.reset();
     return value;
   }
@@ -343,7 +343,7 @@ class MapStore::Impl {
   };
 
   static const MapBuilderOptions& checked(const MapBuilderOptions& options) {
-    MapBuilder{options};  // refuses those out of range
+    const MapBuilder refuses_what_is_out_of_range(options);
     return options;
   }
 
