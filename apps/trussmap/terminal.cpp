@@ -34,7 +34,7 @@ bool is_coloured(std::FILE* file) {
 }
 
 std::string verdict_text(Mood mood, std::string_view said, bool coloured) {
-  const std::string sentence = shortened_words(said);
+  std::string sentence = shortened_words(said);
   if (!coloured) return sentence;
   const std::size_t word = sentence.find(':');
   const std::string rest = word == std::string::npos ? "" : sentence.substr(word);
