@@ -49,10 +49,9 @@ MapStore opened(const StoreSessions& options) {
     return MapStore(options.store, given, fresh);
   } catch (const std::invalid_argument&) {
     throw UsageError(
-        fmt::format("{} keeps the method and the kind of eta that it was made with: "
-                    "{}, expected --method {} or none",
-                    options.store, option_of(read_map_store(options.store).method),
-                    option_of(read_map_store(options.store).method)));
+        fmt::format("{0} keeps the method and the kind of eta that it was made with: "
+                    "{1}, expected --method {1} or none",
+                    options.store, option_of(read_map_store(options.store).method)));
   }
 }
 
@@ -122,6 +121,7 @@ void add_sessions(const StoreSessions& options) {
   const MapBuilder& builder = store.builder();
   const LandmarkGraph map = builder.map();
   const std::string method = option_of(builder.options().method);
+  const std::size_t count = store.sessions().size();
   Files files;
   if (!options.out.empty()) {
     files.emplace_back(options.out, format_map(map, options.out,
@@ -133,7 +133,7 @@ void add_sessions(const StoreSessions& options) {
                          {"method", method},
                          {"landmarks", map.landmarks()},
                          {"routes", map.routes()},
-                         {"sessions", store.sessions().size()},
+                         {"sessions", count},
                          {"legs", store.legs()},
                          {"left_out", builder.left_out().size()},
                          {"positions", positions_json(map)},
@@ -144,8 +144,7 @@ void add_sessions(const StoreSessions& options) {
   fmt::print(
       "\nmap of {} landmarks and {} routes in {}, method {}: {} sessions, {} arrivals left "
       "out\n",
-      map.landmarks(), map.routes(), options.store, method, store.sessions().size(),
-      builder.left_out().size());
+      map.landmarks(), map.routes(), options.store, method, count, builder.left_out().size());
   print_written(files);
 }
 

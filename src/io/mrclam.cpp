@@ -22,35 +22,18 @@ constexpr int kLastRobot = 5;               // subjects up to here are robots
 
 using Row = std::vector<double>;
 
-fs::path beside(const fs::path& prefix, const char* ending) {
-  fs::path path = prefix;
-  path += ending;
-  return path;
-}
-
 std::vector<Row> read_rows(const fs::path& file, std::size_t columns) {
   return read_number_rows(file, columns, kWhiteSpace);
 }
 
-fs::path require_file(const fs::path& path) {
-  fs::path file = plain_or_xz(path);
-  if (file.empty()) throw InputError(path.string(), 0, "is missing, plain or as .xz");
-  return file;
-}
-
 std::vector<Row> require_rows(const fs::path& path, std::size_t columns) {
-  return read_rows(require_file(path), columns);
+  return read_rows(require_plain_or_xz(path), columns);
 }
 
 /// A subject or barcode; what is no small whole number belongs to nothing.
 int number_of(double value) {
   constexpr double kLargest = 1e6;
   return std::abs(value) <= kLargest && value == std::floor(value) ? static_cast<int>(value) : -1;
-}
-
-/// Milliseconds survive: the files' times have three decimals.
-double since(double epoch, double time) {
-  return std::round((time - epoch) * 1e6) / 1e6;
 }
 
 void read_drive(const fs::path& prefix, MrclamRecording& result) {
@@ -85,7 +68,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   for (const Row& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
     subjects[number_of(row[1])] = number_of(row[0]);
   }
-  const fs::path file = require_file(beside(prefix, "_Measurement.dat"));
+  const fs::path file = require_plain_or_xz(beside(prefix, "_Measurement.dat"));
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
   double before = -std::numeric_limits<double>::infinity();

@@ -59,4 +59,20 @@ std::filesystem::path plain_or_xz(const std::filesystem::path& path) {
   return {};
 }
 
+std::filesystem::path require_plain_or_xz(const std::filesystem::path& path) {
+  std::filesystem::path file = plain_or_xz(path);
+  if (file.empty()) throw InputError(path.string(), 0, "is missing, plain or as .xz");
+  return file;
+}
+
+std::filesystem::path beside(const std::filesystem::path& prefix, const char* ending) {
+  std::filesystem::path path = prefix;
+  path += ending;
+  return path;
+}
+
+double since(double epoch, double time) {
+  return std::round((time - epoch) * 1e6) / 1e6;
+}
+
 }  // namespace trussmap

@@ -22,4 +22,13 @@ inline constexpr std::string_view kCommas = ", \t\r";
 /// The file, plain or with .xz appended; empty if there is neither.
 [[nodiscard]] std::filesystem::path plain_or_xz(const std::filesystem::path& path);
 
+/// The same; throws InputError where neither is there.
+[[nodiscard]] std::filesystem::path require_plain_or_xz(const std::filesystem::path& path);
+
+/// The file of a data set whose names begin alike.
+[[nodiscard]] std::filesystem::path beside(const std::filesystem::path& prefix, const char* ending);
+
+/// A time counted from an epoch, s: to microseconds, which is more than such files have.
+[[nodiscard]] double since(double epoch, double time);
+
 }  // namespace trussmap

@@ -17,22 +17,10 @@ namespace fs = std::filesystem;
 
 constexpr double kNominalWheelbase = 1.0;  // m: the data state none
 
-fs::path beside(const fs::path& prefix, const char* ending) {
-  fs::path path = prefix;
-  path += ending;
-  return path;
-}
-
 using Row = std::vector<double>;
 
 std::vector<Row> required(const fs::path& path, std::size_t columns) {
-  const fs::path file = plain_or_xz(path);
-  if (file.empty()) throw InputError(path.string(), 0, "is missing, plain or as .xz");
-  return read_number_rows(file, columns, kCommas);
-}
-
-double since(double epoch, double time) {
-  return std::round((time - epoch) * 1e6) / 1e6;
+  return read_number_rows(require_plain_or_xz(path), columns, kCommas);
 }
 
 void read_drive(const fs::path& prefix, RangeRecording& result) {

@@ -253,6 +253,18 @@ class MapBuilder::State {
     return result;
   }
 
+  /// An arrival or an observation, journaled.
+  Arrival measured(BuilderCall::Kind kind, const std::string& landmark, const Traversal& given) {
+    const Traversal leg = checked(given);
+    return journaled({kind, m_.said, -1, leg}, [&](BuilderCall& entry) {
+      Arrival arrival =
+          kind == BuilderCall::Kind::arrive ? arrive(landmark, leg) : observe(landmark, leg);
+      entry.to = arrival.landmark;
+      entry.outcome = arrival.kind;
+      return arrival;
+    });
+  }
+
   std::vector<BuilderCall>* journal = nullptr;
 
  private:
@@ -467,26 +479,12 @@ void MapBuilder::start(const std::string& landmark, const Vector2& position) {
                     });
 }
 
-Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& given) {
-  const Traversal leg = checked(given);
-  return state_->journaled({BuilderCall::Kind::arrive, state_->memory().said, -1, leg},
-                           [&](BuilderCall& entry) {
-                             Arrival arrival = state_->arrive(landmark, leg);
-                             entry.to = arrival.landmark;
-                             entry.outcome = arrival.kind;
-                             return arrival;
-                           });
+Arrival MapBuilder::arrive(const std::string& landmark, const Traversal& leg) {
+  return state_->measured(BuilderCall::Kind::arrive, landmark, leg);
 }
 
-Arrival MapBuilder::observe(const std::string& landmark, const Traversal& given) {
-  const Traversal leg = checked(given);
-  return state_->journaled({BuilderCall::Kind::observe, state_->memory().said, -1, leg},
-                           [&](BuilderCall& entry) {
-                             Arrival arrival = state_->observe(landmark, leg);
-                             entry.to = arrival.landmark;
-                             entry.outcome = arrival.kind;
-                             return arrival;
-                           });
+Arrival MapBuilder::observe(const std::string& landmark, const Traversal& from_here) {
+  return state_->measured(BuilderCall::Kind::observe, landmark, from_here);
 }
 
 double MapBuilder::settle(double gain_limit) {

@@ -70,6 +70,14 @@ Statement& Statement::bind(int place, const std::string& text) {
   return *this;
 }
 
+Statement& Statement::bind(int place, const Vector2& vector) {
+  return bind(place, vector.x()).bind(place + 1, vector.y());
+}
+
+Statement& Statement::bind(int place, const Matrix2& C) {
+  return bind(place, C(0, 0)).bind(place + 1, 0.5 * (C(0, 1) + C(1, 0))).bind(place + 2, C(1, 1));
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) {

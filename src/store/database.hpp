@@ -4,6 +4,8 @@
 // SQLite, as far as a store needs it: a connection, and statements that are prepared once.
 #pragma once
 
+#include "trussmap/planar.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -36,6 +38,8 @@ class Statement {
   Statement& bind(int place, std::int64_t value);
   Statement& bind(int place, int value) { return bind(place, std::int64_t{value}); }
   Statement& bind(int place, const std::string& text);
+  Statement& bind(int place, const Vector2& vector);  ///< two places: x, y
+  Statement& bind(int place, const Matrix2& C);       ///< three, of a symmetric one: xx, xy, yy
 
   /// The next row; false: there is none.
   bool step();

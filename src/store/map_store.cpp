@@ -13,7 +13,6 @@
 #include <array>
 #include <stdexcept>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 
 namespace trussmap {
@@ -190,6 +189,17 @@ auto undamaged(const fs::path& file, const Call& call) {
   }
 }
 
+/// For as long as it is held nobody else writes.
+std::unique_ptr<FileLock> locked(const fs::path& file) {
+  try {
+    return std::make_unique<FileLock>(lock_of(place_of(file)));
+  } catch (const std::system_error& error) {
+    const bool taken = error.code() == std::errc::operation_would_block;
+    throw InputError(file.string(), 0,
+                     taken ? kTaken : "cannot be locked: " + error.code().message());
+  }
+}
+
 }  // namespace
 
 bool is_map_store(const fs::path& file) {
@@ -202,13 +212,10 @@ class MapStore::Impl {
   /// `first`: what a new store begins with; null: with nothing, or go on.
   Impl(const fs::path& file, const std::optional<MapBuilderOptions>& options,
        const MapBuilderOptions& if_new, const MapBuilder* first)
-      : file_(file),
-        if_new_(checked(options.value_or(if_new))),
-        lock_(place_of(file), file),
-        database_(open(first != nullptr)) {
+      : file_(file), lock_(locked(file)), database_(open(first != nullptr)) {
     database_.run("BEGIN IMMEDIATE");
     if (!is_made(file_, database_)) {
-      make(database_, if_new_);
+      make(database_, options.value_or(if_new));
       if (first != nullptr) {
         MemoryRows(database_).save(BuilderAccess::memory(*first), first->options());
       }
@@ -223,25 +230,13 @@ class MapStore::Impl {
   }
 
   /// Makes calls of the builder; they are kept, or the builder is as it was.
-  template <typename Call>
-  std::invoke_result_t<Call> keep(const Call& call) {
-    return keep_as(nullptr, call);
-  }
-
-  template <typename Call>
-  std::invoke_result_t<Call> keep_as(const StoredSession* session, const Call& call) {
-    return naming(file_, [&] {
+  void keep(const std::function<void()>& call, const StoredSession* session = nullptr) {
+    naming(file_, [&] {
       const Busy busy(busy_);
       begin();
       journal_.clear();
-      if constexpr (std::is_void_v<std::invoke_result_t<Call>>) {
-        attempt(call, session);
-        commit(session);
-      } else {
-        auto result = attempt(call, session);
-        commit(session);
-        return result;
-      }
+      attempt(call, session);
+      commit(session);
     });
   }
 
@@ -325,28 +320,6 @@ class MapStore::Impl {
     bool& busy_;
   };
 
-  /// For the life of the store.
-  class WriterLock {
-   public:
-    WriterLock(const fs::path& place, const fs::path& named) {
-      try {
-        lock_.emplace(lock_of(place));
-      } catch (const std::system_error& error) {
-        const bool taken = error.code() == std::errc::operation_would_block;
-        throw InputError(named.string(), 0,
-                         taken ? kTaken : "cannot be locked: " + error.code().message());
-      }
-    }
-
-   private:
-    std::optional<FileLock> lock_;
-  };
-
-  static const MapBuilderOptions& checked(const MapBuilderOptions& options) {
-    const MapBuilder refuses_what_is_out_of_range(options);
-    return options;
-  }
-
   [[nodiscard]] Arrival::Kind outcome_of(std::int64_t number) const {
     if (number < 0 || number > static_cast<std::int64_t>(Arrival::Kind::left_out)) {
       throw InputError(file_.string(), 0, "is damaged: it has a leg of no outcome");
@@ -403,17 +376,10 @@ class MapStore::Impl {
   }
 
   /// A single call that throws leaves the builder as it was; a session must be undone.
-  template <typename Call>
-  std::invoke_result_t<Call> attempt(const Call& call, const StoredSession* session) {
+  void attempt(const std::function<void()>& call, const StoredSession* session) {
     try {
-      if constexpr (std::is_void_v<std::invoke_result_t<Call>>) {
-        call();
-        check_same_builder();
-      } else {
-        auto result = call();
-        check_same_builder();
-        return result;
-      }
+      call();
+      check_same_builder();
     } catch (...) {
       if (session != nullptr || !journal_.empty()) {
         go_back();
@@ -426,10 +392,8 @@ class MapStore::Impl {
 
   /// A session may have put another builder in the place of this one.
   void check_same_builder() {
-    if (!BuilderAccess::has_journal(builder(), &journal_)) {
-      go_back();
-      throw std::logic_error("a session drives the store's builder on, and keeps it");
-    }
+    if (BuilderAccess::has_journal(builder(), &journal_)) return;
+    throw std::logic_error("a session drives the store's builder on, and keeps it");
   }
 
   void commit(const StoredSession* session) {
@@ -461,9 +425,7 @@ class MapStore::Impl {
     if (call.from >= 0) put.bind(3, call.from);
     if (call.to >= 0) put.bind(4, call.to);
     if (call.kind <= BuilderCall::Kind::observe) {
-      put.bind(5, call.leg.displacement.x()).bind(6, call.leg.displacement.y());
-      const Matrix2& C = call.leg.covariance;
-      put.bind(7, C(0, 0)).bind(8, 0.5 * (C(0, 1) + C(1, 0))).bind(9, C(1, 1));
+      put.bind(5, call.leg.displacement).bind(7, call.leg.covariance);
     }
     if (call.kind == BuilderCall::Kind::settle) put.bind(10, call.gain);
     if (call.outcome) put.bind(11, static_cast<int>(*call.outcome));
@@ -485,8 +447,7 @@ class MapStore::Impl {
   }
 
   fs::path file_;
-  MapBuilderOptions if_new_;
-  WriterLock lock_;
+  std::unique_ptr<FileLock> lock_;
   Database database_;
   std::optional<MemoryRows> rows_;
   std::optional<Facts> facts_;
@@ -501,7 +462,11 @@ class MapStore::Impl {
 
 MapStore::MapStore(const fs::path& file, const std::optional<MapBuilderOptions>& options,
                    const MapBuilderOptions& if_new)
-    : impl_(naming(file, [&] { return std::make_unique<Impl>(file, options, if_new, nullptr); })) {}
+    : impl_(naming(file, [&] {
+        // Refuses options out of range before there is a file.
+        const MapBuilder in_range(options.value_or(if_new));
+        return std::make_unique<Impl>(file, options, if_new, nullptr);
+      })) {}
 MapStore::MapStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 MapStore::~MapStore() = default;
 MapStore::MapStore(MapStore&&) noexcept = default;
@@ -519,19 +484,27 @@ void MapStore::start(const std::string& landmark, const Vector2& position) {
 }
 
 Arrival MapStore::arrive(const std::string& landmark, const Traversal& leg) {
-  return impl_->keep([&] { return impl_->builder().arrive(landmark, leg); });
+  Arrival arrival;
+  impl_->keep([&] { arrival = impl_->builder().arrive(landmark, leg); });
+  return arrival;
 }
 
 Arrival MapStore::observe(const std::string& landmark, const Traversal& from_here) {
-  return impl_->keep([&] { return impl_->builder().observe(landmark, from_here); });
+  Arrival arrival;
+  impl_->keep([&] { arrival = impl_->builder().observe(landmark, from_here); });
+  return arrival;
 }
 
 double MapStore::settle(double gain_limit) {
-  return impl_->keep([&] { return impl_->builder().settle(gain_limit); });
+  double largest_move = 0.0;
+  impl_->keep([&] { largest_move = impl_->builder().settle(gain_limit); });
+  return largest_move;
 }
 
 double MapStore::rest() {
-  return impl_->keep([&] { return impl_->builder().rest(); });
+  double largest_move = 0.0;
+  impl_->keep([&] { largest_move = impl_->builder().rest(); });
+  return largest_move;
 }
 
 void MapStore::append(const std::string& key, const std::string& name,
@@ -540,7 +513,7 @@ void MapStore::append(const std::string& key, const std::string& name,
     throw std::invalid_argument("a session of a store needs a key of its own");
   }
   const StoredSession session{key, name, 0, 0};
-  impl_->keep_as(&session, [&] { drive(impl_->builder()); });
+  impl_->keep([&] { drive(impl_->builder()); }, &session);
 }
 
 const MapBuilder& MapStore::builder() const {

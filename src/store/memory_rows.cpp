@@ -38,14 +38,6 @@ Matrix2 matrix_at(const Statement& row, int column, const char* what) {
   return C;
 }
 
-void bind_vector(Statement& row, int column, const Vector2& vector) {
-  row.bind(column, vector.x()).bind(column + 1, vector.y());
-}
-
-void bind_matrix(Statement& row, int column, const Matrix2& C) {
-  row.bind(column, C(0, 0)).bind(column + 1, 0.5 * (C(0, 1) + C(1, 0))).bind(column + 2, C(1, 1));
-}
-
 /// A number from `lowest` to `count` - 1.
 int number_at(const Statement& row, int column, int lowest, int count, const char* what) {
   const std::int64_t number = row.integer(column);
@@ -230,9 +222,9 @@ void MemoryRows::save_routes(const BuilderMemory& memory, bool with_bars) {
     if (there && written_.traversals[idx(number)] == route.traversals) continue;
     put_route_.bind(0, number).bind(1, route.source).bind(2, route.target);
     put_route_.bind(3, route.traversals).bind(4, route.stretch).bind(5, route.orientation);
-    bind_vector(put_route_, 6, route.displacement);
-    bind_matrix(put_route_, 8, route.covariance);
-    if (with_bars) bind_matrix(put_route_, 11, memory.increments.stiffness(number));
+    put_route_.bind(6, route.displacement);
+    put_route_.bind(8, route.covariance);
+    if (with_bars) put_route_.bind(11, memory.increments.stiffness(number));
     put_route_.run();
     if (!there) written_.traversals.push_back(0);
     written_.traversals[idx(number)] = route.traversals;
@@ -271,8 +263,8 @@ void MemoryRows::save_gate(const BuilderMemory& memory) {
     const LeftOutArrival& one = memory.left_out[k];
     put_left_out_.bind(0, static_cast<std::int64_t>(k));
     put_left_out_.bind(1, *memory.graph.find(one.from)).bind(2, *memory.graph.find(one.to));
-    bind_vector(put_left_out_, 3, one.leg.displacement);
-    bind_matrix(put_left_out_, 5, one.leg.covariance);
+    put_left_out_.bind(3, one.leg.displacement);
+    put_left_out_.bind(5, one.leg.covariance);
     put_left_out_.bind(8, one.sds).run();
   }
   written_.left_out = memory.left_out;
@@ -280,10 +272,10 @@ void MemoryRows::save_gate(const BuilderMemory& memory) {
 
 void MemoryRows::save_state(const BuilderMemory& memory) {
   put_state_.bind(0, memory.here).bind(8, memory.said);
-  bind_vector(put_state_, 1, memory.offset);
+  put_state_.bind(1, memory.offset);
   if (memory.carried) {
-    bind_vector(put_state_, 3, memory.carried->displacement);
-    bind_matrix(put_state_, 5, memory.carried->covariance);
+    put_state_.bind(3, memory.carried->displacement);
+    put_state_.bind(5, memory.carried->covariance);
   }
   put_state_.run();
 }
