@@ -41,9 +41,10 @@ std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand
 /// Processes of the wheels' motion.
 bool motion_noise_lasts(const Noise& noise) {
   return std::any_of(noise.processes.begin(), noise.processes.end(), [](const NoiseProcess& one) {
-    static constexpr std::array kOthers{Channel::lever,       Channel::lever_left,   Channel::range,
-                                        Channel::range_scale, Channel::bearing,      Channel::delay,
-                                        Channel::compass,     Channel::truth_heading};
+    static constexpr std::array kOthers{
+        Channel::lever,   Channel::lever_left, Channel::range,   Channel::range_scale,
+        Channel::bearing, Channel::delay,      Channel::compass, Channel::truth_heading,
+        Channel::gyro,    Channel::gyro_scale};
     return std::find(kOthers.begin(), kOthers.end(), one.channel) == kOthers.end();
   });
 }

@@ -92,6 +92,7 @@ nlohmann::json summary(const SimulateOptions& options, const Simulated& simulate
                             {"length_m", length},
                             {"duration_s", drive.motion.rows.back().t},
                             {"compass", drive.recording.drive.has_compass()},
+                            {"gyro", drive.recording.drive.has_gyro()},
                             {"surveyed", drive.recording.survey.size()},
                             {"rough", rough_names(make_robot(options).rough)}};
   if (!options.hide) results["effects"] = effects_json(simulated.effects);
@@ -111,6 +112,7 @@ void print(const nlohmann::json& s) {
   line("length", fmt::format("{:.1f}", s["length_m"].get<double>()), "m");
   line("duration", fmt::format("{:.1f}", s["duration_s"].get<double>()), "s");
   line("compass", s["compass"].get<bool>() ? "yes" : "no", "");
+  if (s["gyro"].get<bool>()) line("gyro", "yes", "");
   line("surveyed", std::to_string(s["surveyed"].get<std::size_t>()), "");
   const auto rough = s["rough"].get<std::vector<std::string>>();
   if (!rough.empty()) {

@@ -115,6 +115,10 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       .check(rough_kinds())
       .excludes("--noise-free");
   command.add_flag("--no-compass", options.no_compass, "The robot has no compass");
+  command.add_flag("--gyro", options.gyro,
+                   "The robot has a gyro: drive.csv gets a column yaw_rate");
+  add_positive("--gyro-noise", options.gyro_noise,
+               "Angle random walk of the gyro [rad/s^1/2]: how its heading errs after a second");
   command.add_flag(
       "--range-sensor", options.range_sensor,
       "From each stop the robot also sees landmarks in reach (half of them, at random) "
@@ -139,6 +143,8 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   WheeledRobot robot;
   robot.wheelbase = options.wheelbase;
   robot.compass = !options.no_compass;
+  robot.gyro = options.gyro;
+  robot.noise.gyro = options.gyro_noise;
   robot.range_sensor = options.range_sensor;
   robot.reach = options.reach;
   robot.noise.left = options.wheel_noise;
@@ -153,7 +159,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
           "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
     }
   }
-  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   return robot;
 }
 
@@ -185,6 +191,7 @@ Model nominal_model(const SimulateOptions& options) {
   model.noise.range = sensors.range;
   model.noise.bearing = sensors.bearing;
   model.noise.survey = options.survey_noise;
+  if (options.gyro) model.noise.gyro = options.gyro_noise;
   return model;
 }
 

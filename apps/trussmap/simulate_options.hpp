@@ -32,6 +32,8 @@ struct SimulateOptions {
   std::string rough;              // kinds of noise that the model does not state; "" = none
   bool noise_free = false;
   bool no_compass = false;
+  bool gyro = false;
+  double gyro_noise = 0.0005;  // rad/s^1/2
   bool no_survey = false;
   bool range_sensor = false;
   double reach = 8.0;  // m

@@ -10,6 +10,7 @@
 //   compass           reading = heading + g                                 robot
 //   range, bearing    reading + g                     range_scale           range (1 + g)
 //   delay             stamped g late                          truth_heading   truth's heading + g
+//   gyro              yaw rate read = rate + g     gyro_scale             gyro's turn (1 + g)
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.
 #pragma once
@@ -32,6 +33,8 @@ enum class Channel {
   advance,
   rotate,
   creep,
+  gyro,
+  gyro_scale,
   lever,
   lever_left,
   compass,

@@ -42,17 +42,20 @@ namespace trussmap {
 struct OdometryInputs {
   std::vector<std::string> covariates = {};  ///< names, in the order in which rows give the values
   bool compass = false;                      ///< whether there will ever be a reading
+  bool gyro = false;                         ///< likewise
 };
 
 struct WheelRow {
-  double duration = 0.0;     ///< s
-  double left = 0.0;         ///< m, signed travel of the left wheel
-  double right = 0.0;        ///< m
-  double compass = kAbsent;  ///< rad, reading at the row's end; NaN: none
+  double duration = 0.0;      ///< s
+  double left = 0.0;          ///< m, signed travel of the left wheel
+  double right = 0.0;         ///< m
+  double compass = kAbsent;   ///< rad, reading at the row's end; NaN: none
+  double yaw_rate = kAbsent;  ///< rad/s, gyro, mean over the row; NaN: none
 };
 
 struct CorrectedRow {
-  /// By the wheels alone, in the frame of the row's start; covariance of (x, y, heading).
+  /// By the wheels, and the gyro where there is one, in the frame of the row's start; covariance of
+  /// (x, y, heading).
   Motion motion;
   /// At the row's end, in the axes of the robot as it started. With a compass, by its readings too;
   /// the covariance then holds what they leave of the first heading.
@@ -80,8 +83,8 @@ class CorrectedOdometry {
 
   /// The next row. `covariates` are its values, in the order of the names. Throws
   /// std::invalid_argument, and leaves all as it was, on a duration that is not positive, a number
-  /// that is not finite, too few or too many covariates, a reading where there is no compass, and,
-  /// naming the effect, where a shape has no finite value.
+  /// that is not finite, too few or too many covariates, a reading where there is no compass or
+  /// gyro, and, naming the effect, where a shape has no finite value.
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates = {});
 
   /// The pose as the last row left it.

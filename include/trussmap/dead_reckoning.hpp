@@ -39,7 +39,10 @@ struct LandmarkOffset {
   Matrix2 covariance_robot = Matrix2::Zero();  ///< m^2
 };
 
-/// Covariance of one merged arc under all the noise the model knows, in the arc's start frame.
+/// Where the noise of one merged arc comes from: all that the model knows of wheels.
+[[nodiscard]] ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
+                                 const Noise& noise);
+/// Its covariance, in the arc's start frame.
 [[nodiscard]] Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
                                      const Noise& noise);
 
@@ -62,9 +65,10 @@ struct InitialHeading {
 [[nodiscard]] PoseEstimate pose_from_landmark(const HeadingEstimate& heading,
                                               const LandmarkOffset& landmark);
 
-/// The robot drives from time `from` to time `to`. Compass readings up to `readings_used_until`
-/// are passed over: `start` knows them already. `slip`: how far it slips to its left in each row of
-/// the drive beside what its wheels show, m; empty: not at all.
+/// The robot drives from time `from` to time `to`, by its wheels and by its gyro where it has one.
+/// Compass readings up to `readings_used_until` are passed over: `start` knows them already.
+/// `slip`: how far it slips to its left in each row of the drive beside what its wheels show, m;
+/// empty: not at all.
 [[nodiscard]] PoseEstimate dead_reckon(
     const PoseEstimate& start, const Drive& drive, double from, double to, const Robot& robot,
     const Noise& noise, double readings_used_until = -std::numeric_limits<double>::infinity(),

@@ -68,6 +68,7 @@ struct Noise {
   double heading_per_s = 0.0;    ///< rad/s^(1/2)
   double heading_per_rad = 0.0;  ///< rad/rad^(1/2) turned
   double travel_per_s = 0.0;     ///< m/s^(1/2)
+  double gyro = 0.001;           ///< rad/s^(1/2), angle random walk of the gyro
   std::vector<NoiseProcess> processes = {};  ///< besides
 
   friend bool operator==(const Noise& a, const Noise& b) = default;

@@ -9,9 +9,9 @@
 //   survey     independently measured landmark positions
 //   truth      independently measured robot poses
 //
-// Absent values are NaN: a compass reading, a range (the robot stands on the landmark), a survey
-// point's sd (the model's applies). Several recordings together are sessions of the same robot in
-// the same place: landmarks of the same name are the same, poses are not.
+// Absent values are NaN: a compass or gyro reading, a range (the robot stands on the landmark), a
+// survey point's sd (the model's applies). Several recordings together are sessions of the same
+// robot in the same place: landmarks of the same name are the same, poses are not.
 #pragma once
 
 #include <cstddef>
@@ -30,15 +30,38 @@ struct Covariate {
   std::vector<double> values;  ///< one per drive row, in the column's own unit
 };
 
+/// How the gyro's reading of a row was taken into its travels (odometry/wheels_and_gyro.hpp).
+struct GyroShare {
+  double left = 0.0;      ///< m, the wheels' own travels
+  double right = 0.0;     ///< m
+  double excess = 0.0;    ///< rad by which the gyro's turn exceeds the wheels'; 0 without a reading
+  double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
+  double along = 0.0;     ///< m of travel that a radian of excess adds
+  double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
+};
+
 struct Drive {
   std::vector<double> t;        ///< s, strictly increasing; end of the row's interval
   std::vector<double> left;     ///< m, signed travel of the left wheel over the interval
   std::vector<double> right;    ///< m
   std::vector<double> heading;  ///< rad, compass reading at t, NaN = none; empty = no compass
+  /// rad/s, gyro, mean over the interval, NaN = none; empty = no gyro.
+  std::vector<double> yaw_rate = {};
   std::vector<Covariate> covariates;
+  /// Left empty by who makes a drive. Where the gyro was taken in, one per row, and `left` and
+  /// `right` are what wheels and gyro say together.
+  std::vector<GyroShare> gyro = {};
 
   [[nodiscard]] std::size_t rows() const { return t.size(); }
   [[nodiscard]] bool has_compass() const { return !heading.empty(); }
+  [[nodiscard]] bool has_gyro() const { return !yaw_rate.empty(); }
+  /// The wheels' own travels, m.
+  [[nodiscard]] double wheel_left(std::size_t row) const {
+    return gyro.empty() ? left[row] : gyro[row].left;
+  }
+  [[nodiscard]] double wheel_right(std::size_t row) const {
+    return gyro.empty() ? right[row] : gyro[row].right;
+  }
   /// Start of the first interval: it is as long as the second.
   [[nodiscard]] double start() const { return rows() > 1 ? t[0] - (t[1] - t[0]) : t[0]; }
   /// How long a row lasts, s.

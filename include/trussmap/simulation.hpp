@@ -180,12 +180,14 @@ struct TrueMotion {
 /// Standard deviations; the stop's distance from its landmark is part of the path
 /// (DrivingStyle::standing).
 struct SensorNoise {
-  double left = 0.003;    ///< k of the left wheel, m^(1/2)
-  double right = 0.003;   ///< m^(1/2)
-  double compass = 0.02;  ///< rad per reading
-  double range = 0.05;    ///< m
-  double bearing = 0.02;  ///< rad
-  double survey = 0.001;  ///< m per coordinate
+  double left = 0.003;     ///< k of the left wheel, m^(1/2)
+  double right = 0.003;    ///< m^(1/2)
+  double compass = 0.02;   ///< rad per reading
+  double range = 0.05;     ///< m
+  double bearing = 0.02;   ///< rad
+  double survey = 0.001;   ///< m per coordinate
+  double gyro = 0.001;     ///< rad/s^(1/2), angle random walk
+  double gyro_walk = 0.0;  ///< rad/s per s^(1/2): how the bias walks
 };
 
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
@@ -209,6 +211,7 @@ struct RoughNoise {
 struct WheeledRobot {
   double wheelbase = 0.34;  ///< m
   bool compass = true;
+  bool gyro = false;
   bool range_sensor = false;
   double reach = 8.0;        ///< m, range sensor
   double recognition = 0.5;  ///< chance that a landmark in reach is recognised
@@ -271,7 +274,8 @@ enum class Stream : std::uint32_t {
   hidden,
   wheel_tails,
   compass_tails,
-  floor
+  floor,
+  gyro
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

@@ -95,7 +95,8 @@ std::string words_of(const FreedError& one) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   switch (one.effect.channel) {
     case Channel::drift:
-      return "heading drift " + signed_text(60.0 * value / kDegree, 1) + " +- " +
+    case Channel::gyro:
+      return one.effect.name + " " + signed_text(60.0 * value / kDegree, 1) + " +- " +
              fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
     case Channel::compass:
       return "hard iron " +

@@ -29,6 +29,7 @@ Recording cut(const Recording& whole, double from, double to) {
     part.drive.left.push_back(whole.drive.left[row]);
     part.drive.right.push_back(whole.drive.right[row]);
     if (whole.drive.has_compass()) part.drive.heading.push_back(whole.drive.heading[row]);
+    if (whole.drive.has_gyro()) part.drive.yaw_rate.push_back(whole.drive.yaw_rate[row]);
     for (std::size_t k = 0; k < part.drive.covariates.size(); ++k) {
       part.drive.covariates[k].values.push_back(whole.drive.covariates[k].values[row]);
     }

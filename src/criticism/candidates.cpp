@@ -43,6 +43,7 @@ class Gatherer {
       : fit_(fit), context_(context), area_(driven_area(fit)) {
     for (const Measurement& one : fit.problem.measurements) {
       has_compass_ |= one.kind == MeasurementKind::segment && one.rows == 4;
+      has_gyro_ |= one.kind == MeasurementKind::gyro;
       has_views_ |=
           one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
       has_truth_ |= one.kind == MeasurementKind::truth;
@@ -62,8 +63,9 @@ class Gatherer {
     take_catalogue();
     for (const Channel channel :
          {Channel::travel, Channel::turn, Channel::difference, Channel::creep, Channel::compass,
-          Channel::drift, Channel::left, Channel::right, Channel::wheels}) {
-      if (channel == Channel::compass && !has_compass_) continue;
+          Channel::drift, Channel::left, Channel::right, Channel::wheels, Channel::gyro,
+          Channel::gyro_scale}) {
+      if (!is_possible(channel)) continue;
       take_drive_channel(channel);
     }
     for (const Channel channel :
@@ -95,6 +97,7 @@ class Gatherer {
 
   [[nodiscard]] bool is_possible(Channel channel) const {
     if (channel == Channel::compass) return has_compass_;
+    if (channel == Channel::gyro || channel == Channel::gyro_scale) return has_gyro_;
     if (channel == Channel::truth_heading) return has_truth_;
     if (channel == Channel::range || channel == Channel::range_scale ||
         channel == Channel::bearing) {
@@ -322,6 +325,7 @@ class Gatherer {
   const ShapeContext& context_;
   Area area_;
   bool has_compass_ = false;
+  bool has_gyro_ = false;
   bool has_views_ = false;
   bool has_truth_ = false;
   std::vector<Spread> variables_;

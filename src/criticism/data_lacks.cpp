@@ -90,11 +90,12 @@ int driven_sectors(const Contents& contents) {
 
 void add_lacks_of_sensors(const std::vector<Recording>& recordings, bool positions, bool truth,
                           std::vector<DataLack>& lacks) {
-  const bool compass =
-      std::any_of(recordings.begin(), recordings.end(),
-                  [](const Recording& recording) { return recording.drive.has_compass(); });
+  const bool headings =
+      std::any_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
+        return recording.drive.has_compass() || recording.drive.has_gyro();
+      });
   if (!positions) lacks.push_back({Lack::positions});
-  if (!compass && !truth) lacks.push_back({Lack::compass});
+  if (!headings && !truth) lacks.push_back({Lack::compass});
 }
 
 void add_lacks_of_drives(const Contents& contents, std::vector<DataLack>& lacks) {

@@ -4,7 +4,7 @@
 
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_reml.hpp"
-#include "trussmap/dead_reckoning.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
 #include <functional>
@@ -33,9 +33,8 @@ std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& contex
   const auto add = [&](const char* name, const char* unit, double margin, const Noise& noise) {
     laws.push_back({name, unit, margin, [&fit, noise](std::size_t session, const SegmentRow& row) {
                       const Drive& drive = fit.recordings[session].drive;
-                      const WheelTravel travel{row.part * drive.left[row.row],
-                                               row.part * drive.right[row.row]};
-                      return arc_covariance(travel, row.duration, fit.model.robot, noise);
+                      return row_covariance(drive, row.row, row.part, row.duration, fit.model.robot,
+                                            noise);
                     }});
   };
   const double wheels = mean_wheel_noise(fit.model.noise);

@@ -36,6 +36,8 @@ const char* noise_source(MeasurementKind kind, Eigen::Index row) {
   switch (kind) {
     case MeasurementKind::segment:
       return row == 3 ? "compass" : "wheels";
+    case MeasurementKind::gyro:
+      return "gyro";
     case MeasurementKind::standing:
       return "sighting";
     case MeasurementKind::view:

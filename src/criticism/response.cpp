@@ -134,6 +134,8 @@ std::string natural_variable(const Effect& effect) {
     case Channel::turn:
     case Channel::drift:
     case Channel::rotate:
+    case Channel::gyro:
+    case Channel::gyro_scale:
       return "turn_rate";
     case Channel::compass:
       return "heading";

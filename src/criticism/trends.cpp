@@ -129,6 +129,9 @@ std::vector<Kind> kinds_of(const FitState& fit) {
       })) {
     kinds.push_back({"compass", Channel::compass});
   }
+  if (has([](const Measurement& one) { return one.kind == MeasurementKind::gyro; })) {
+    kinds.push_back({"gyro", Channel::gyro});
+  }
   if (has([](const Measurement& one) { return one.kind == MeasurementKind::view; })) {
     kinds.push_back({"sighting range", Channel::range});
     kinds.push_back({"sighting bearing", Channel::bearing});

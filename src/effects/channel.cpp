@@ -20,6 +20,8 @@ const std::vector<ChannelFacts>& channels() {
       {advance, "advance", "m", 0.02, "travel per event"},
       {rotate, "rotate", "rad", 0.05, "rotation per event"},
       {creep, "creep", "", 0.1, "slip to the left, per travel"},
+      {gyro, "gyro", "rad/s", 0.1, "yaw rate that the gyro reads"},
+      {gyro_scale, "gyro_scale", "", 0.1, "turn that the gyro reads, in proportion"},
       {lever, "lever", "m", 0.3, "sensor's place ahead of the axle"},
       {lever_left, "lever_left", "m", 0.3, "sensor's place to the axle's left"},
       {compass, "compass", "rad", 0.5, "compass reading"},

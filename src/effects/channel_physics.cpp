@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
 
+#include <cmath>
+
 namespace trussmap {
 
 ActsOn acts_on(Channel channel) {
@@ -26,12 +28,17 @@ ActsOn acts_on(Channel channel) {
     case Channel::advance:
     case Channel::rotate:
     case Channel::creep:
+    case Channel::gyro:
+    case Channel::gyro_scale:
       break;
   }
   return ActsOn::drives;
 }
 
-DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
+namespace {
+
+/// What g adds to what the wheels say of a row, or to its compass reading.
+DrivePattern wheel_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
   const double path = 0.5 * (row.left + row.right);
   const double turn = (row.right - row.left) / wheelbase;
   switch (channel) {
@@ -64,9 +71,42 @@ DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, doub
     case Channel::bearing:
     case Channel::delay:
     case Channel::truth_heading:
+    case Channel::gyro:
+    case Channel::gyro_scale:
       break;
   }
   return {};
+}
+
+/// rad that g adds to the gyro's turn.
+double gyro_pattern(Channel channel, double g, const RowTravel& row) {
+  if (channel == Channel::gyro) return -g * row.duration;
+  return channel == Channel::gyro_scale ? g * row.gyro_turn : 0.0;
+}
+
+}  // namespace
+
+RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase) {
+  if (!drive.gyro.empty()) return row_travel(drive.gyro[row], drive.duration(row), wheelbase);
+  return {drive.left[row], drive.right[row], drive.duration(row)};
+}
+
+RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase) {
+  RowTravel travel{gyro.left, gyro.right, duration};
+  travel.gyro_turn = (gyro.right - gyro.left) / wheelbase + gyro.excess;
+  travel.gyro_along = gyro.along;
+  travel.gyro_share = gyro.turn;
+  travel.gyro_reads = std::isfinite(gyro.variance);
+  return travel;
+}
+
+DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
+  DrivePattern pattern = wheel_pattern(channel, g, row, wheelbase);
+  if (!row.gyro_reads) return pattern;
+  pattern.excess = gyro_pattern(channel, g, row) - pattern.turn;
+  pattern.advance += row.gyro_along * pattern.excess;
+  pattern.turn += row.gyro_share * pattern.excess;
+  return pattern;
 }
 
 ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate) {
@@ -113,6 +153,11 @@ RowTravel without(Channel channel, double g, const RowTravel& row, double wheelb
   const DrivePattern more = drive_pattern(channel, g, row, wheelbase);
   return {row.left + more.advance - 0.5 * wheelbase * more.turn,
           row.right + more.advance + 0.5 * wheelbase * more.turn, row.duration};
+}
+
+double yaw_rate_without(Channel channel, double g, double yaw_rate) {
+  if (channel == Channel::gyro) return yaw_rate - g;
+  return channel == Channel::gyro_scale ? yaw_rate * (1.0 + g) : yaw_rate;
 }
 
 Sighting without(Channel channel, double g, const Sighting& sighting) {

@@ -15,6 +15,8 @@
 //   advance             f (path)                              middle
 //   creep               path f, to the left                   middle
 //   compass             f                                     the reading's instant
+//   gyro, gyro_scale    -duration f, gyro's turn f (of what   middle
+//                       the gyro says)
 //   ... per sighting and truth row
 //   lever, lever_left   f ahead, to the left                  its instant
 //   range, range_scale, bearing   f (sightings only)          its instant
@@ -35,12 +37,20 @@ namespace trussmap {
 enum class ActsOn { drives, readings, views };
 [[nodiscard]] ActsOn acts_on(Channel channel);
 
-/// What the wheels show over one row.
+/// What the wheels show over one row, and the gyro beside them.
 struct RowTravel {
-  double left = 0.0;      ///< m, signed travel
-  double right = 0.0;     ///< m
-  double duration = 0.0;  ///< s
+  double left = 0.0;        ///< m, signed travel
+  double right = 0.0;       ///< m
+  double duration = 0.0;    ///< s
+  double gyro_turn = 0.0;   ///< rad
+  double gyro_along = 0.0;  ///< as GyroShare::along
+  double gyro_share = 0.0;  ///< as GyroShare::turn
+  bool gyro_reads = false;
 };
+
+/// A row as wheels and gyro each show it, whether or not the gyro was taken in.
+[[nodiscard]] RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase);
+[[nodiscard]] RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase);
 
 /// What is added to a whole row.
 struct DrivePattern {
@@ -48,6 +58,7 @@ struct DrivePattern {
   double slip = 0.0;     ///< m sideways, to the left
   double turn = 0.0;     ///< rad more turn
   double compass = 0.0;  ///< rad by which the reading exceeds the heading
+  double excess = 0.0;   ///< rad that the gyro's turn is more beyond the wheels'
 };
 
 /// What is added to a view of a landmark or to a truth row.
@@ -66,7 +77,7 @@ struct ViewPattern {
 };
 
 /// What g of this channel adds to a row; with g = f, the column of a coefficient. Nothing where the
-/// channel acts on views.
+/// channel acts on views. Where the gyro reads, the row moves by what wheels and gyro say together.
 [[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row,
                                          double wheelbase);
 /// The same for a view or truth row at this speed (m/s) and turn rate (rad/s).
@@ -83,6 +94,8 @@ struct ViewPattern {
 /// The wheels' travels as they would be if the nominal model held, for a recordable channel that
 /// acts on drives.
 [[nodiscard]] RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase);
+/// A yaw rate [rad/s] freed from g of the channel gyro or gyro_scale.
+[[nodiscard]] double yaw_rate_without(Channel channel, double g, double yaw_rate);
 /// A range and bearing freed from g of the channel range, range_scale or bearing.
 [[nodiscard]] Sighting without(Channel channel, double g, const Sighting& sighting);
 

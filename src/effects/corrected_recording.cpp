@@ -37,6 +37,8 @@ void free_drive(Channel channel, const std::vector<double>& g, double wheelbase,
     const RowTravel nominal = without(channel, g[row], shown, wheelbase);
     drive.left[row] = nominal.left;
     drive.right[row] = nominal.right;
+    if (drive.has_gyro())
+      drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
   }
 }
 

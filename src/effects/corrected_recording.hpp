@@ -4,7 +4,8 @@
 // A recording as it would be without the model's effects: what the wheels would have shown if the
 // nominal model held.
 //
-// Wheel channels change the rows' travels, `compass` the readings, `range`, `range_scale` and
+// Wheel channels change the rows' travels, `gyro` and `gyro_scale` the yaw rates, `compass` the
+// readings, `range`, `range_scale` and
 // `bearing` the sightings. Other channels (creep, lever, lever_left, delay) have no place in a
 // recording; the adjustment knows them.
 #pragma once

@@ -53,6 +53,10 @@ std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
   const bool compass =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_compass(); });
+  const bool gyro =
+      std::any_of(recordings.begin(), recordings.end(),
+                  [](const Recording& recording) { return recording.drive.has_gyro(); });
+  if (gyro) result.push_back({"gyro bias", Channel::gyro, {constant_shape()}, {0.0}});
   if (compass) {
     result.push_back(
         {"hard iron", Channel::compass, {sine_of("heading"), cosine_of("heading")}, {0.0, 0.0}});
@@ -67,6 +71,7 @@ double common_error_sd(const Effect& effect) {
     case Channel::turn:
       return 0.05;
     case Channel::drift:
+    case Channel::gyro:
       return 0.01;
     case Channel::compass:
       return 0.2;

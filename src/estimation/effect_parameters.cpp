@@ -40,7 +40,7 @@ EffectPattern plain_effect(Channel channel, const std::vector<Recording>& record
     const Drive& drive = recording.drive;
     std::vector<DrivePattern>& patterns = result.drives.emplace_back();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const RowTravel shown{drive.left[row], drive.right[row], drive.duration(row)};
+      const RowTravel shown = row_travel(drive, row, robot.wheelbase);
       patterns.push_back(drive_pattern(channel, 1.0, shown, robot.wheelbase));
     }
   }

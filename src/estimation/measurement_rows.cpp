@@ -111,7 +111,7 @@ MeasurementRows truth_rows(const Pose& pose, const Vector4& value, const ViewPat
 ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
                     const Measurement& one) {
   ViewPattern sum;
-  if (one.session < 0 || one.kind == MeasurementKind::segment) return sum;
+  if (one.session < 0 || is_driven(one.kind)) return sum;
   for (std::size_t k = 0; k < border.size(); ++k) {
     const auto& views = one.kind == MeasurementKind::truth ? border[k].truths : border[k].sightings;
     if (views.empty() || views[idx(one.session)].empty()) continue;
@@ -137,6 +137,11 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
   switch (measurement.kind) {
     case MeasurementKind::segment:
       return segment_rows(measurement, pose(measurement.from), pose(measurement.to), value);
+    case MeasurementKind::gyro: {
+      MeasurementRows rows;
+      rows.error = -value;
+      return rows;
+    }
     case MeasurementKind::standing:
       return standing_rows(pose(measurement.from), landmark(measurement.to), view);
     case MeasurementKind::view:

@@ -8,6 +8,7 @@
 //   delta     l - q
 //
 //   segment      R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a,  theta_i - m
+//   gyro       -value: nothing is predicted of an excess
 //   standing   R(theta)' delta
 //   view       |delta| - range,  direction(delta) - theta - bearing
 //   cartesian_view  R(theta)' delta - offset

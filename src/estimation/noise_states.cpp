@@ -69,10 +69,10 @@ std::vector<double> ends_of_legs(const Recording& recording) {
   const Drive& drive = recording.drive;
   double rested = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const bool rests = drive.left[row] == 0.0 && drive.right[row] == 0.0;
+    const bool rests = drive.wheel_left(row) == 0.0 && drive.wheel_right(row) == 0.0;
     rested = rests ? rested + drive.duration(row) : 0.0;
     const bool last = rests && row + 1 < drive.rows() &&
-                      (drive.left[row + 1] != 0.0 || drive.right[row + 1] != 0.0);
+                      (drive.wheel_left(row + 1) != 0.0 || drive.wheel_right(row + 1) != 0.0);
     if (last && rested >= kLeastRest) ends.push_back(drive.t[row]);
   }
   return ends;
@@ -103,9 +103,22 @@ std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentR
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (reads && std::isnan(rows[row].reading)) continue;
     const std::size_t at = rows[row].row;
-    const DrivePattern unit = drive_pattern(
-        channel, 1.0, {drive.left[at], drive.right[at], drive.duration(at)}, robot.wheelbase);
+    const DrivePattern unit =
+        drive_pattern(channel, 1.0, row_travel(drive, at, robot.wheelbase), robot.wheelbase);
     c[row] = influences[row] * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+  }
+  return c;
+}
+
+std::vector<Vector4> unit_excesses(const Drive& drive, const std::vector<SegmentRow>& rows,
+                                   const std::vector<Vector4>& weights, Channel channel,
+                                   const Robot& robot) {
+  std::vector<Vector4> c(rows.size(), Vector4::Zero());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::size_t at = rows[row].row;
+    const DrivePattern unit =
+        drive_pattern(channel, 1.0, row_travel(drive, at, robot.wheelbase), robot.wheelbase);
+    c[row] = rows[row].part * unit.excess * weights[row];
   }
   return c;
 }
@@ -160,7 +173,7 @@ class ProcessLayout {
     if (is_chain(process_)) lay_instants();
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = problem_.measurements[k];
-      if (one.kind == MeasurementKind::segment) {
+      if (is_driven(one.kind)) {
         if (acts_on(channel_) != ActsOn::views) lay_segment(k, one);
       } else if (sees(one) && process_ == ProcessKind::white && is_reading()) {
         laid_.within[k] = white_reading(one);
@@ -210,7 +223,7 @@ class ProcessLayout {
       case Channel::truth_heading:
         return one.kind == MeasurementKind::truth;
       default:
-        return one.kind != MeasurementKind::segment;
+        return !is_driven(one.kind);
     }
   }
 
@@ -316,7 +329,10 @@ class ProcessLayout {
     const std::vector<Matrix4>& influences = layer_.influences_[one.source];
     const Drive& drive = recording(one.session).drive;
     const bool reads = acts_on(channel_) == ActsOn::readings;
-    std::vector<Vector4> c = unit_columns(drive, rows, influences, channel_, layer_.robot_);
+    std::vector<Vector4> c =
+        one.kind == MeasurementKind::gyro
+            ? unit_excesses(drive, rows, problem_.gyro_weights[one.source], channel_, layer_.robot_)
+            : unit_columns(drive, rows, influences, channel_, layer_.robot_);
     Vector4 sum = Vector4::Zero();
     for (Vector4& row : c) {
       if (one.rows < 4) row[3] = 0.0;
@@ -356,7 +372,8 @@ class ProcessLayout {
     // Which states a segment has must not depend on the length.
     if (by_start.isZero(0.0)) return;
     add_term(k, state_at_[idx(one.from - problem_.landmark_count())], by_start - keep * K);
-    add_term(k, state_at_[idx(one.to - problem_.landmark_count())], K);
+    const int end = one.kind == MeasurementKind::gyro ? one.from + 1 : one.to;
+    add_term(k, state_at_[idx(end - problem_.landmark_count())], K);
   }
 
   void add_term(std::size_t k, int state, const Vector4& by) {
@@ -439,7 +456,7 @@ void add_processes(RecordingProblem& problem, const std::vector<Recording>& reco
 
 Vector4 error_by(const Measurement& measurement, const Eigen::Matrix<double, 4, 6>& by_view,
                  const NoiseTerm& term) {
-  if (measurement.kind == MeasurementKind::segment) return -term.by.head<4>();
+  if (is_driven(measurement.kind)) return -term.by.head<4>();
   return by_view * term.by;
 }
 

@@ -78,6 +78,13 @@ struct ProcessMoments {
                                                 const std::vector<Matrix4>& influences,
                                                 Channel channel, const Robot& robot);
 
+/// How a unit of g of a channel changes a gyro's numbers, row by row; weights as in
+/// gyro_excess.hpp.
+[[nodiscard]] std::vector<Vector4> unit_excesses(const Drive& drive,
+                                                 const std::vector<SegmentRow>& rows,
+                                                 const std::vector<Vector4>& weights,
+                                                 Channel channel, const Robot& robot);
+
 /// Keeps references to problem and recordings. The rows' influences are reckoned once.
 class ProcessLayer {
  public:

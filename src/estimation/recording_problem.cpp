@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_problem.hpp"
 
+#include "estimation/gyro_excess.hpp"
 #include "estimation/motion_changes.hpp"
 #include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
@@ -179,7 +180,24 @@ class Collector {
       one.source = problem_.segments.size();
       problem_.segments.push_back(std::move(rows));
       problem_.measurements.push_back(one);
+      add_gyro(recording.drive, one);
     }
+  }
+
+  void add_gyro(const Drive& drive, const Measurement& segment) {
+    GyroExcess excess =
+        gyro_excess(drive, problem_.segments[segment.source], model_.robot, model_.noise);
+    problem_.gyro_weights.push_back(std::move(excess.weights));
+    if (excess.rows == 0) return;
+    Measurement one;
+    one.kind = MeasurementKind::gyro;
+    one.from = segment.from;
+    one.rows = excess.rows;
+    one.value = excess.value;
+    one.whitener.topLeftCorner(one.rows, one.rows).setIdentity();
+    one.session = session_;
+    one.source = segment.source;
+    problem_.measurements.push_back(one);
   }
 
   void add_sighting(const Sighting& sighting, std::size_t source) {
@@ -281,6 +299,8 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
     case MeasurementKind::segment:
       return "drive from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
              session;
+    case MeasurementKind::gyro:
+      return "gyro from t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::standing:
       return "standing on landmark " + problem.landmarks[idx(measurement.to)] +
              " at t = " + time(measurement.from) + " s" + session;

@@ -11,6 +11,8 @@
 //
 //   measurement          between                rows
 //     segment              pose, next pose        motion (3), mean compass innovation (0 or 1)
+//     gyro               segment's first pose   gyro against wheels (1 to 4, gyro_excess.hpp); of
+//                                               no pose, but of effects
 //     standing           pose, landmark         landmark in robot axes (2): 0 is exact      m
 //     view               pose, landmark         range, bearing (2), range alone (1)         m, rad
 //     cartesian_view          pose, landmark         the same in robot axes (2): a range within
@@ -35,7 +37,12 @@
 
 namespace trussmap {
 
-enum class MeasurementKind { segment, standing, view, cartesian_view, survey, truth };
+enum class MeasurementKind { segment, gyro, standing, view, cartesian_view, survey, truth };
+
+/// Of the drive: what its rows add up to.
+[[nodiscard]] constexpr bool is_driven(MeasurementKind kind) {
+  return kind == MeasurementKind::segment || kind == MeasurementKind::gyro;
+}
 
 /// Of a landmark: standing on it, or seeing it.
 [[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
@@ -57,9 +64,10 @@ struct Measurement {
   /// Added to the value: by segment_noise.hpp, and by student_tails.hpp to a sighting's.
   Vector4 value_offset = Vector4::Zero();
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
-  double tails = 0.0;      ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
-  int session = -1;        ///< -1: survey
-  std::size_t source = 0;  ///< sighting, survey point or truth row of the session; else the segment
+  double tails = 0.0;  ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
+  int session = -1;    ///< -1: survey
+  /// Sighting, survey point or truth row of the session; of what is driven, the segment.
+  std::size_t source = 0;
 };
 
 /// A scalar unknown of a noise process (noise_states.hpp): z = keep z_previous + N(0, sd^2).
@@ -86,6 +94,8 @@ struct RecordingProblem {
   std::vector<std::string> landmarks;             ///< names, in order of first sighting
   std::vector<PoseNode> poses;                    ///< session after session, in order of time
   std::vector<std::vector<SegmentRow>> segments;  ///< rows of each segment
+  /// Per segment and row what an excess of the gyro counts (gyro_excess.hpp); empty: no gyro.
+  std::vector<std::vector<Vector4>> gyro_weights;
   std::vector<Measurement> measurements;
   std::vector<std::string> sessions;  ///< names of the recordings
   std::vector<NoiseState> noise_states;

@@ -27,7 +27,7 @@ ByPose by_pose(const RecordingProblem& problem) {
   result.others.resize(problem.poses.size());
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::survey) continue;
+    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::gyro) continue;
     const std::size_t pose = idx(one.from - problem.landmark_count());
     if (one.kind == MeasurementKind::segment) {
       result.segment_from[pose] = static_cast<int>(k);
@@ -319,9 +319,11 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   for (const Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth) continue;
     if (!inside(one.from) || (one.kind == MeasurementKind::segment && !inside(one.to))) continue;
+    // What a segment's gyro says goes with it.
+    if (one.kind == MeasurementKind::gyro && !inside(one.from + 1)) continue;
     if (placed != nullptr && is_sighting(one.kind) && !(*placed)[idx(one.to)]) continue;
     kept.push_back(&one);
-    if (one.kind == MeasurementKind::segment || place[idx(one.to)] >= 0) continue;
+    if (is_driven(one.kind) || place[idx(one.to)] >= 0) continue;
     place[idx(one.to)] = static_cast<int>(part.landmarks.size());
     part.landmarks.push_back(one.to);
     part.problem.landmarks.push_back(problem.landmarks[idx(one.to)]);
@@ -335,6 +337,9 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
       moved.to = part.problem.pose_node(one->to - offset);
       moved.source = part.problem.segments.size();
       part.problem.segments.push_back(problem.segments[one->source]);
+      part.problem.gyro_weights.push_back(problem.gyro_weights[one->source]);
+    } else if (one->kind == MeasurementKind::gyro) {
+      moved.source = part.problem.segments.size() - 1;  // right after its segment
     } else {
       moved.to = place[idx(one->to)];
     }

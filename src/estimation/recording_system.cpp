@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_system.hpp"
 
+#include "estimation/gyro_excess.hpp"
 #include "estimation/noise_states.hpp"
 #include "estimation/student_tails.hpp"
 #include "linalg/dense.hpp"
@@ -124,7 +125,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
       state.noise.size() == states ? state.noise : Eigen::VectorXd::Zero(states);
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    const bool segment = one.kind == MeasurementKind::segment;
+    const bool segment = is_driven(one.kind);
     Vector4 value =
         (segment && with_drives ? moved_by_effects(k, all) : one.value) + one.value_offset;
     ViewPattern view = view_of(border_, all, one);
@@ -276,6 +277,13 @@ Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& 
     }
   }
   const Measurement& one = problem_.measurements[k];
+  if (one.kind == MeasurementKind::gyro) {
+    motion.at = offsets;
+    motion.slopes = excess_slopes(problem_.segments[one.source], problem_.gyro_weights[one.source],
+                                  drive_patterns(border_, idx(one.session)));
+    motion.value = one.value + motion.slopes * offsets;
+    return motion.value;
+  }
   const SegmentWithEffects segment = segment_motion(
       problem_.segments[one.source], drive_patterns(border_, idx(one.session)), offsets);
   const Pose& d = segment.motion.displacement;
@@ -289,14 +297,14 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
   const Measurement& one = problem_.measurements[k];
   const Matrix4 W = root_weights_[k] * one.whitener;
   auto M = M_.middleRows(first_row_[k], one.rows);
-  if (one.kind == MeasurementKind::segment && !motions_.empty()) {
+  if (is_driven(one.kind) && !motions_.empty()) {
     for (std::size_t c = 0; c < unknown_.size(); ++c) {
       const Vector4 column = -(W * motions_[k].slopes.col(unknown_[c]));
       M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
     }
     return;
   }
-  if (one.session < 0 || one.kind == MeasurementKind::segment) return;
+  if (one.session < 0 || is_driven(one.kind)) return;
   for (std::size_t c = 0; c < unknown_.size(); ++c) {
     const EffectPattern& effect = border_[idx(unknown_[c])];
     const auto& views = one.kind == MeasurementKind::truth ? effect.truths : effect.sightings;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_motion.hpp"
 
-#include "trussmap/dead_reckoning.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
 
@@ -187,7 +187,7 @@ Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& ro
     F.block<2, 1>(0, 2) = quarter_turn(T.topLeftCorner<2, 2>() * step.position());
     P = F * P * F.transpose();
     P.topLeftCorner<3, 3>() +=
-        T * arc_covariance(travel, row.duration, robot, noise) * T.transpose();
+        T * row_covariance(drive, row.row, row.part, row.duration, robot, noise) * T.transpose();
     pose = compose(pose, step);
     if (std::isnan(row.reading)) continue;
     ++readings;

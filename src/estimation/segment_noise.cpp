@@ -3,7 +3,7 @@
 #include "estimation/segment_noise.hpp"
 
 #include "estimation/noise_states.hpp"
-#include "trussmap/dead_reckoning.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +72,7 @@ RowsAlone rows_alone(const Drive& drive, const std::vector<SegmentRow>& rows, co
         std::isnan(row.reading)
             ? 0.0
             : wrap_angle(row.reading - motion.displacement.heading - motion.mean_heading));
-    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
-    alone.Q.push_back(arc_covariance(travel, row.duration, robot, noise));
+    alone.Q.push_back(row_covariance(drive, row.row, row.part, row.duration, robot, noise));
   }
   alone.recorded = lay(rows, alone.steps, alone.offsets);
   return alone;

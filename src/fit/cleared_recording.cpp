@@ -4,6 +4,7 @@
 
 #include "estimation/measurement_rows.hpp"
 #include "fit/effect_columns.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offse
     sum.slip += a * unit.slip;
     sum.turn += a * unit.turn;
     sum.compass += a * unit.compass;
+    sum.excess += a * unit.excess;
   }
   return sum;
 }
@@ -48,6 +50,7 @@ void clear_drive(const Recording& recorded, const EffectParameters& border,
     clear.left[row] = drive.left[row] + more.advance - 0.5 * wheelbase * more.turn;
     clear.right[row] = drive.right[row] + more.advance + 0.5 * wheelbase * more.turn;
     result.slip[row] = more.slip;
+    if (!drive.gyro.empty()) clear.gyro[row].excess = drive.gyro[row].excess + more.excess;
     if (drive.has_compass()) clear.heading[row] = drive.heading[row] - more.compass;
   }
   const bool slips =
@@ -93,8 +96,11 @@ SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
   return path;
 }
 
-std::vector<ClearedRecording> cleared(const std::vector<Recording>& recordings,
-                                      const Model& model) {
+std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, const Model& model) {
+  const bool gyro = has_gyro(recorded);
+  const std::vector<Recording> together =
+      gyro ? with_gyro(recorded, model.robot, model.noise) : std::vector<Recording>();
+  const std::vector<Recording>& recordings = gyro ? together : recorded;
   std::vector<ClearedRecording> result;
   if (model.effects.empty()) {
     for (const Recording& recording : recordings) result.push_back(as_recorded(recording));

@@ -42,14 +42,16 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
-    if (one.kind == MeasurementKind::segment) {
+    if (one.kind == MeasurementKind::gyro) {
+      add_gyro(problem, one, W);
+    } else if (one.kind == MeasurementKind::segment) {
       std::vector<const std::vector<DrivePattern>*> patterns;
       for (const EffectPattern& effect : border) {
         patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
       }
       const std::vector<SegmentRow>& rows = problem.segments[one.source];
       const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
-      Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0};
+      Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, false};
       for (std::size_t row = 0; row < rows.size(); ++row) {
         segment_rows_->push_back({rows[row].row, -(W * influences[row])});
       }
@@ -65,6 +67,21 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   }
   rows_ += static_cast<int>(problem.noise_states.size());
   take_training_segments();
+}
+
+/// Of a gyro's numbers only the excess counts: it stands in the first column.
+void ColumnBuilder::add_gyro(const RecordingProblem& problem, const Measurement& one,
+                             const Matrix4& W) {
+  const std::vector<SegmentRow>& rows = problem.segments[one.source];
+  const std::vector<Vector4>& weights = problem.gyro_weights[one.source];
+  Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, true};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    Matrix4 influence = Matrix4::Zero();
+    influence.col(0) = -(W * (rows[row].part * weights[row]));
+    segment_rows_->push_back({rows[row].row, influence});
+  }
+  segment.row_end = segment_rows_->size();
+  segments_.push_back(segment);
 }
 
 ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
@@ -128,7 +145,9 @@ const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
         const DrivePattern unit = drive_pattern(
             channel, 1.0, context_.travel(segment.session, row.row), context_.robot().wheelbase);
         basis.col(static_cast<Eigen::Index>(k)).noalias() +=
-            row.influence * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
+            segment.gyro ? Vector4(unit.excess * row.influence.col(0))
+                         : Vector4(row.influence *
+                                   Vector4(unit.advance, unit.slip, unit.turn, unit.compass));
       }
     }
   }

@@ -61,6 +61,7 @@ class ColumnBuilder {
     std::size_t row_end = 0;
     std::size_t begin = 0;  ///< of training_segments_
     std::size_t end = 0;
+    bool gyro = false;  ///< a gyro's numbers
   };
   struct View {
     Eigen::Index first_row = 0;
@@ -72,6 +73,7 @@ class ColumnBuilder {
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
 
+  void add_gyro(const RecordingProblem& problem, const Measurement& one, const Matrix4& W);
   /// Of rows joint_ long at most; no longer than a segment.
   void take_training_segments();
   void take_training_segments(Segment& segment);

@@ -6,10 +6,12 @@
 #include "fit/effect_columns.hpp"
 #include "fit/online_terms.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -57,10 +59,12 @@ class CorrectedOdometry::State {
     const CausalRow facts = variables_.next(row.left, row.right, row.duration);
     // Shapes that speak of the pose see it first as the row says, then as corrected.
     const bool twice = drives_.see_the_pose() || readings_.see_the_pose();
-    ReckonedRow clear{{row.left, row.right}, row.duration, 0.0, row.compass};
+    const GyroShare gyro =
+        gyro_share({row.left, row.right}, row.yaw_rate, row.duration, robot_, noise_);
+    ReckonedRow clear{together(gyro, robot_), row.duration, 0.0, row.compass, noise_of(row, gyro)};
     Reckoning after = twice ? reckoned(clear) : now_;
     for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
-      clear = cleared(row, facts, covariates, after);
+      clear = cleared(row, gyro, facts, covariates, after);
       after = reckoned(clear);
     }
     variables_.take(row.left, row.right, row.duration);
@@ -68,7 +72,7 @@ class CorrectedOdometry::State {
     std::copy(covariates.begin(), covariates.end(), covariates_.begin());
     now_ = after;
     return {{displacement_of(clear.travel, clear.slip, robot_.wheelbase),
-             arc_covariance(clear.travel, row.duration, robot_, noise_)},
+             covariance_of(clear, robot_, noise_)},
             now_.reckoner.at()};
   }
 
@@ -140,6 +144,10 @@ class CorrectedOdometry::State {
       refuse("a row's travel is not finite");
     }
     if (std::isinf(row.compass)) refuse("a compass reading is infinite");
+    if (std::isinf(row.yaw_rate)) refuse("a yaw rate is infinite");
+    if (!inputs_.gyro && !std::isnan(row.yaw_rate)) {
+      refuse("a row has a yaw rate, but the robot was said to have no gyro");
+    }
     if (!inputs_.compass && !std::isnan(row.compass)) {
       refuse("a row has a compass reading, but the robot was said to have no compass");
     }
@@ -153,28 +161,37 @@ class CorrectedOdometry::State {
     }
   }
 
+  /// Nothing without a gyro: then that of the wheels.
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const WheelRow& row, const GyroShare& gyro) const {
+    if (!inputs_.gyro) return std::nullopt;
+    const ArcNoise wheels = arc_noise({row.left, row.right}, row.duration, robot_, noise_);
+    return noise_together(gyro, wheels, row.duration, noise_);
+  }
+
   /// The row less what the effects add to it; `after` is where it leads as far as is known.
-  ReckonedRow cleared(const WheelRow& row, const CausalRow& facts,
+  ReckonedRow cleared(const WheelRow& row, const GyroShare& gyro, const CausalRow& facts,
                       std::span<const double> covariates, const Reckoning& after) {
     const Pose before = after.map_pose(pose().pose);
     const Pose end = after.map_pose(after.reckoner.at().pose);
     const Pose middle{0.5 * (before.x + end.x), 0.5 * (before.y + end.y),
                       before.heading + 0.5 * wrap_angle(end.heading - before.heading)};
     const double wheelbase = robot_.wheelbase;
+    const WheelTravel both = together(gyro, robot_);
+    const RowTravel shown = row_travel(gyro, row.duration, wheelbase);
     DrivePattern more;
     drives_.fill(facts, middle, covariates);
     for (const OnlineTerm& term : drives_.all()) {
-      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term),
-                                              {row.left, row.right, row.duration}, wheelbase);
+      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term), shown, wheelbase);
       more.advance += term.coefficient * unit.advance;
       more.slip += term.coefficient * unit.slip;
       more.turn += term.coefficient * unit.turn;
     }
-    ReckonedRow clear{{row.left + more.advance - 0.5 * wheelbase * more.turn,
-                       row.right + more.advance + 0.5 * wheelbase * more.turn},
+    ReckonedRow clear{{both.left + more.advance - 0.5 * wheelbase * more.turn,
+                       both.right + more.advance + 0.5 * wheelbase * more.turn},
                       row.duration,
                       more.slip,
-                      row.compass};
+                      row.compass,
+                      noise_of(row, gyro)};
     if (std::isnan(row.compass)) return clear;
     readings_.fill(facts, end, covariates);
     for (const OnlineTerm& term : readings_.all()) {
@@ -190,7 +207,7 @@ class CorrectedOdometry::State {
     if (inputs_.compass && !now_.heading_known) {
       row.reading = kAbsent;
       after.reckoner.take(row, robot_, noise_);
-      after.turned_variance += arc_covariance(row.travel, row.duration, robot_, noise_)(2, 2);
+      after.turned_variance += covariance_of(row, robot_, noise_)(2, 2);
       if (std::isnan(reading)) return after;
       after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
       after.reckoner.add_first_variance(reading_variance(noise_) + after.turned_variance);

@@ -58,6 +58,7 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
     const Recording& one = recordings[s];
     const int session = static_cast<int>(s);
     missing_.push_back(paths[s].missing);
+    excess_.push_back(paths[s].excess);
     middles_.push_back(
         row_variables(one.drive, robot.wheelbase, paths[s].start, paths[s].ends, session));
     ends_.push_back(
@@ -69,9 +70,15 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
 
 RowTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
   const Drive& drive = recordings_[session].drive;
-  RowTravel travel{drive.left[row], drive.right[row], drive.duration(row)};
+  RowTravel travel = row_travel(drive, row, robot_.wheelbase);
   if (missing_[session].empty()) return travel;
-  const Vector2& lacks = missing_[session][row];
+  Vector2 lacks = missing_[session][row];
+  if (travel.gyro_reads && !excess_[session].empty()) {
+    // The noise of an excess is the wheels' in part, and the gyro's for the rest.
+    const double excess = excess_[session][row];
+    travel.gyro_turn += lacks[1] - (1.0 - travel.gyro_share) * excess;
+    lacks += excess * Vector2(travel.gyro_along, travel.gyro_share);
+  }
   travel.left += lacks[0] - 0.5 * robot_.wheelbase * lacks[1];
   travel.right += lacks[0] + 0.5 * robot_.wheelbase * lacks[1];
   return travel;

@@ -70,6 +70,7 @@ class ShapeContext {
   const std::vector<Recording>& recordings_;
   Robot robot_;
   std::vector<std::vector<Vector2>> missing_;  ///< per session and row: travel, turn
+  std::vector<std::vector<double>> excess_;    ///< likewise, of the gyro; empty: none
   std::vector<RowVariables> middles_, ends_, sightings_, truths_;
 };
 

@@ -9,6 +9,7 @@
 #include "estimation/student_tails.hpp"
 #include "fit/cleared_recording.hpp"
 #include "fit/noise_free.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -35,7 +36,10 @@ std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
 class Fitter {
  public:
   Fitter(const std::vector<Recording>& recordings, const Model& model, const FitterOptions& options)
-      : recorded_(recordings), options_(options) {
+      : together_(has_gyro(recordings) ? with_gyro(recordings, model.robot, model.noise)
+                                       : std::vector<Recording>()),
+        recorded_(together_.empty() ? recordings : together_),
+        options_(options) {
     fit_.model = model;
     if (options.free_common_errors) {
       for (const Effect& effect : common_errors(recordings)) fit_.model.effects.push_back(effect);
@@ -506,6 +510,7 @@ class Fitter {
     }
   }
 
+  std::vector<Recording> together_;  ///< with the gyro taken in, where there is one
   const std::vector<Recording>& recorded_;
   FitterOptions options_;
   FitState fit_;

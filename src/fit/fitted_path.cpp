@@ -56,12 +56,17 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
     Influence A;
     A.col(0) = influences[k].block<3, 1>(0, 0);
     A.col(1) = influences[k].block<3, 1>(0, 2);
-    const double left = std::abs(rows[k].part * drive.left[rows[k].row]) + kLeastShare;
-    const double right = std::abs(rows[k].part * drive.right[rows[k].row]) + kLeastShare;
+    const double left = std::abs(rows[k].part * drive.wheel_left(rows[k].row)) + kLeastShare;
+    const double right = std::abs(rows[k].part * drive.wheel_right(rows[k].row)) + kLeastShare;
     Matrix2 Q;
     Q << 0.25 * (left + right), 0.5 * (right - left) / robot.wheelbase,
         0.5 * (right - left) / robot.wheelbase,
         (left + right) / (robot.wheelbase * robot.wheelbase);
+    if (!drive.gyro.empty()) {
+      const GyroShare& gyro = drive.gyro[rows[k].row];
+      Q = (Q - Vector2(gyro.along, gyro.turn) * Q.row(1)).eval();
+      Q(1, 0) = Q(0, 1);
+    }
     spread[k] = A * Q;
     total += spread[k] * A.transpose();
   }
@@ -116,6 +121,23 @@ void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckon
   }
 }
 
+/// Per row; empty without a gyro.
+std::vector<double> excesses(const Drive& drive,
+                             const std::vector<const std::vector<DrivePattern>*>& patterns,
+                             const Eigen::VectorXd& offsets) {
+  std::vector<double> result;
+  result.reserve(drive.gyro.size());
+  for (const GyroShare& one : drive.gyro) result.push_back(one.excess);
+  for (std::size_t k = 0; k < patterns.size(); ++k) {
+    if (patterns[k] == nullptr || patterns[k]->empty()) continue;
+    const double a = offsets[static_cast<Eigen::Index>(k)];
+    for (std::size_t row = 0; row < result.size(); ++row) {
+      result[row] += a * (*patterns[k])[row].excess;
+    }
+  }
+  return result;
+}
+
 /// The pose that a motion leads from to `end`.
 Pose before(const Pose& end, const Pose& motion) {
   Pose start;
@@ -146,6 +168,7 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
     SessionPath& path = paths[s];
     path.ends.resize(drive.rows());
     path.missing.assign(drive.rows(), Vector2::Zero());
+    path.excess = excesses(drive, drive_patterns(border, s), offsets);
     if (first[s] < 0) continue;
     const PoseNode& first_node = problem.poses[idx(first[s])];
     path.start = before(state.poses[idx(first[s])], reckoner.motion(drive.start(), first_node.t));

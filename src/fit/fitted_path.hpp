@@ -21,6 +21,9 @@ struct SessionPath {
   /// What each row's record lacks of forward travel (m) and turn (rad), as estimated: its
   /// noise. Empty: nothing.
   std::vector<Vector2> missing = {};
+  /// What each row's gyro exceeds the wheels by (rad) beyond the effects: noise of both. Empty: no
+  /// gyro.
+  std::vector<double> excess = {};
 };
 
 /// One path per session. `offsets` are the coefficients of the border less their references. Before

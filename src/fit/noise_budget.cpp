@@ -82,6 +82,7 @@ class Budget {
     if (noise.travel_per_s > 0.0) {
       add("travel_per_s", white_square(window, noise, {&Noise::travel_per_s}));
     }
+    if (!window.drive.gyro.empty()) add("gyro", white_square(window, noise, {&Noise::gyro}));
     for (const NoiseProcess& one : noise.processes) {
       add(name_of_source(one), process_square(window, one));
     }

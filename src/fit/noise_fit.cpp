@@ -322,6 +322,9 @@ class NoiseFitter {
         return "bearing";
       case Channel::truth_heading:
         return "truth";
+      case Channel::gyro:
+      case Channel::gyro_scale:
+        return "gyro";
       default:
         return "wheels";
     }

@@ -6,7 +6,7 @@
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"
 #include "linalg/dense.hpp"
-#include "trussmap/dead_reckoning.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ double mean_wheel_noise(const Noise& noise) {
 Noise silent_noise() {
   Noise none;
   none.left = none.right = none.compass = none.sighting = none.range = none.bearing = 0.0;
-  none.survey = none.truth = none.truth_heading = 0.0;
+  none.gyro = none.survey = none.truth = none.truth_heading = 0.0;
   return none;
 }
 
@@ -89,6 +89,7 @@ std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& n
   add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
   add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
   add("travel_per_s", "m/s^1/2", &Noise::travel_per_s, true);
+  add("gyro", "rad/s^1/2", &Noise::gyro, any_of_kind(fit, MeasurementKind::gyro));
   return result;
 }
 
@@ -142,6 +143,11 @@ std::vector<NoiseComponent> candidate_components(const FitState& fit, const Nois
     add(Channel::compass, ProcessKind::correlated_in_t, times);
     add(Channel::compass, ProcessKind::correlated_in_distance, ways);
   }
+  if (any_of_kind(fit, MeasurementKind::gyro)) {
+    add(Channel::gyro, ProcessKind::walk_in_t);
+    add(Channel::gyro, ProcessKind::per_session);
+    add(Channel::gyro, ProcessKind::correlated_in_t, {10.0});
+  }
   if (has_views(fit)) {
     add(Channel::range, ProcessKind::correlated_in_t, times);
     add(Channel::bearing, ProcessKind::correlated_in_t, times);
@@ -182,6 +188,8 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
     Matrix4 added = Matrix4::Zero();
     if (one.kind == MeasurementKind::segment) {
       added = segment_covariance(one, unit);
+    } else if (one.kind == MeasurementKind::gyro) {
+      added = gyro_covariance(one, unit);
     } else if (one.kind == MeasurementKind::standing) {
       added.diagonal().head<2>().setConstant(unit.sighting * unit.sighting);
     } else if (one.kind == MeasurementKind::view) {
@@ -199,17 +207,30 @@ Matrix4 NoiseReml::segment_covariance(const Measurement& one, const Noise& noise
   Matrix4 result = Matrix4::Zero();
   const Rows& rows = rows_[one.source];
   if (one.rows == 4) result(3, 3) = noise.compass * noise.compass / rows.readings;
-  const bool moves =
-      noise.left + noise.right + noise.heading_per_s + noise.heading_per_rad + noise.travel_per_s >
-      0.0;
+  const bool moves = noise.left + noise.right + noise.heading_per_s + noise.heading_per_rad +
+                         noise.travel_per_s + noise.gyro >
+                     0.0;
   if (!moves) return result;
   const Drive& drive = fit_.recordings[idx(one.session)].drive;
   const std::vector<SegmentRow>& parts = fit_.problem.segments[one.source];
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const SegmentRow& row = parts[k];
-    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
-    const Matrix3 Q = arc_covariance(travel, row.duration, fit_.model.robot, noise);
+    const Matrix3 Q =
+        row_covariance(drive, row.row, row.part, row.duration, fit_.model.robot, noise);
     result += rows.H[k] * Q * rows.H[k].transpose();
+  }
+  return result;
+}
+
+Matrix4 NoiseReml::gyro_covariance(const Measurement& one, const Noise& noise) const {
+  Matrix4 result = Matrix4::Zero();
+  const Drive& drive = fit_.recordings[idx(one.session)].drive;
+  const std::vector<SegmentRow>& rows = fit_.problem.segments[one.source];
+  const std::vector<Vector4>& weights = fit_.problem.gyro_weights[one.source];
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double variance = excess_variance(drive, rows[k].row, rows[k].part, rows[k].duration,
+                                            fit_.model.robot, noise);
+    if (std::isfinite(variance)) result += variance * weights[k] * weights[k].transpose();
   }
   return result;
 }
@@ -228,6 +249,7 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
       fixed.topLeftCorner(one.rows, one.rows) = colour * colour.transpose();
       break;
     }
+    case MeasurementKind::gyro:
     case MeasurementKind::standing:
       break;
     case MeasurementKind::view:

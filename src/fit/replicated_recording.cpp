@@ -43,6 +43,7 @@ class Replicator {
     measure_places();
     see_landmarks();
     for (std::size_t s = 0; s < timed_.size(); ++s) {
+      part_wheels_and_gyro(s);
       disturb_drive(s);
       for (const NoiseProcess& one : noise_.processes) add(one, s);
     }
@@ -186,6 +187,29 @@ class Replicator {
     }
   }
 
+  /// Of a drive along which both lead, what wheels and gyro each show without noise.
+  void part_wheels_and_gyro(std::size_t s) {
+    Drive& drive = timed_[s].drive;
+    const auto patterns = drive_patterns(border_, s);
+    const double wheelbase = fit_.model.robot.wheelbase;
+    for (std::size_t row = 0; row < drive.gyro.size(); ++row) {
+      const GyroShare& gyro = drive.gyro[row];
+      if (!std::isfinite(gyro.variance)) continue;
+      double excess = 0.0;  // that the effects bring
+      for (std::size_t k = 0; k < patterns.size(); ++k) {
+        if (patterns[k] == nullptr) continue;
+        excess += offsets_[static_cast<Eigen::Index>(k)] * (*patterns[k])[row].excess;
+      }
+      const double apart = 0.5 * wheelbase * gyro.turn * excess;
+      drive.left[row] += gyro.along * excess - apart;
+      drive.right[row] += gyro.along * excess + apart;
+      const double duration = drive.duration(row);
+      const double turn = (drive.right[row] - drive.left[row]) / wheelbase - excess;
+      drive.yaw_rate[row] = (turn + drawn(noise_.gyro * std::sqrt(duration))) / duration;
+    }
+    drive.gyro.clear();
+  }
+
   void disturb_drive(std::size_t s) {
     Drive& drive = timed_[s].drive;
     const auto patterns = drive_patterns(border_, s);
@@ -269,6 +293,9 @@ class Replicator {
               without(process.channel, g[row], shown, fit_.model.robot.wheelbase);
           drive.left[row] = other.left;
           drive.right[row] = other.right;
+          if (drive.has_gyro()) {
+            drive.yaw_rate[row] = yaw_rate_without(process.channel, g[row], drive.yaw_rate[row]);
+          }
         }
         return;
       case ActsOn::views:

@@ -3,6 +3,7 @@
 #include "fit/cleared_recording.hpp"
 #include "fit/fit_state.hpp"
 #include "geometry/index.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "recording/row_variables.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/error.hpp"
@@ -27,7 +28,7 @@ Motion row_motion(const Drive& drive, std::size_t row, double from, double to, c
   const double part = (to - from) / (drive.t[row] - begin);
   const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
   return {arc_displacement(travel, model.robot.wheelbase),
-          arc_covariance(travel, to - from, model.robot, model.noise)};
+          row_covariance(drive, row, part, to - from, model.robot, model.noise)};
 }
 
 /// A session of a fit: what is known at its nodes, and between them.

@@ -38,6 +38,7 @@ constexpr NoiseKey kNoise[] = {
     {"heading_per_s", &Noise::heading_per_s, "rad/s^1/2"},
     {"heading_per_rad", &Noise::heading_per_rad, "rad/rad^1/2 turned"},
     {"travel_per_s", &Noise::travel_per_s, "m/s^1/2"},
+    {"gyro", &Noise::gyro, "rad/s^1/2: angle random walk"},
 };
 
 /// Reads from one file, with its name for the errors.
@@ -365,6 +366,7 @@ std::string format_model(const Model& model) {
   for (const NoiseKey& key : kNoise) {
     const double value = model.noise.*(key.value);
     if (value == 0.0 && defaults.*(key.value) == 0.0) continue;  // an optional law that is off
+    if (key.value == &Noise::gyro && value == defaults.gyro) continue;  // few robots have one
     text += std::string(key.name) + " = " + toml_number(value) + "  # " + key.unit + "\n";
   }
   for (const NoiseProcess& process : model.noise.processes) text += process_text(process);

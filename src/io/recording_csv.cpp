@@ -41,6 +41,7 @@ constexpr double kLargestTime = 1e12;       // s: Unix time in nanoseconds is mo
 constexpr double kLargestTravel = 1e6;      // m in a row
 constexpr double kLargestRange = 1e6;       // m
 constexpr double kLargestAngle = 1e9;       // rad: turns add up
+constexpr double kLargestYawRate = 1e3;     // rad/s: a gyro in degrees reads less on a real robot
 constexpr double kLargestPosition = 1e9;    // m
 constexpr double kLargestCovariate = 1e50;  // in whatever unit
 
@@ -88,10 +89,12 @@ Drive read_drive(const fs::path& file) {
   const int left = csv.require("left");
   const int right = csv.require("right");
   const int heading = csv.find("heading");
+  const int yaw_rate = csv.find("yaw_rate");
   Drive drive;
   std::vector<int> covariate_columns;
   for (int column = 0; column < static_cast<int>(csv.columns().size()); ++column) {
     if (column == t || column == left || column == right || column == heading) continue;
+    if (column == yaw_rate) continue;
     const std::string& name = csv.columns()[idx(column)];
     if (!is_name(name)) {
       csv.fail("column \"" + name +
@@ -110,6 +113,7 @@ Drive read_drive(const fs::path& file) {
     drive.left.push_back(csv.number(left, kLargestTravel));
     drive.right.push_back(csv.number(right, kLargestTravel));
     if (heading >= 0) drive.heading.push_back(csv.number_or_absent(heading, kLargestAngle));
+    if (yaw_rate >= 0) drive.yaw_rate.push_back(csv.number_or_absent(yaw_rate, kLargestYawRate));
     for (std::size_t k = 0; k < covariate_columns.size(); ++k) {
       drive.covariates[k].values.push_back(csv.number(covariate_columns[k], kLargestCovariate));
     }

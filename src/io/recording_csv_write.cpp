@@ -23,12 +23,14 @@ std::string drive_text(const Drive& drive, const std::string& comment) {
   }
   text += "t,left,right";
   if (drive.has_compass()) text += ",heading";
+  if (drive.has_gyro()) text += ",yaw_rate";
   for (const Covariate& covariate : drive.covariates) text += ',' + covariate.name;
   text += '\n';
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    text += csv_number(drive.t[row]) + ',' + csv_number(drive.left[row]) + ',' +
-            csv_number(drive.right[row]);
+    text += csv_number(drive.t[row]) + ',' + csv_number(drive.wheel_left(row)) + ',' +
+            csv_number(drive.wheel_right(row));
     if (drive.has_compass()) text += ',' + csv_number(drive.heading[row]);
+    if (drive.has_gyro()) text += ',' + csv_number(drive.yaw_rate[row]);
     for (const Covariate& covariate : drive.covariates) {
       text += ',' + csv_number(covariate.values[row]);
     }

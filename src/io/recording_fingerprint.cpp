@@ -42,6 +42,7 @@ std::string fingerprint(const Recording& recording) {
   for (const auto* column : {&drive.t, &drive.left, &drive.right, &drive.heading}) {
     hash.take(*column);
   }
+  if (drive.has_gyro()) hash.take(drive.yaw_rate);
   for (const Sighting& one : recording.sightings) {
     hash.take(one.landmark);
     hash.take({one.t, one.range, one.bearing});

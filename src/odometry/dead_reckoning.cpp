@@ -4,19 +4,38 @@
 
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
+#include <optional>
 
 namespace trussmap {
+namespace {
 
-Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
-                       const Noise& noise) {
+/// Nothing where the wheels' alone is meant.
+std::optional<ArcNoise> noise_with_gyro(const Drive& drive, const DriveRow& row, const Robot& robot,
+                                        const Noise& noise) {
+  if (drive.gyro.empty()) return std::nullopt;
+  return row_noise(drive, row.row, row.part, row.duration, robot, noise);
+}
+
+}  // namespace
+
+ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
+                   const Noise& noise) {
   ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
   const double turn = (travel.right - travel.left) / robot.wheelbase;
   sources.along += noise.travel_per_s * noise.travel_per_s * duration;
   sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
                      noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
-  return arc_covariance(0.5 * (travel.left + travel.right), turn, sources);
+  return sources;
+}
+
+Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
+                       const Noise& noise) {
+  return arc_covariance(0.5 * (travel.left + travel.right),
+                        (travel.right - travel.left) / robot.wheelbase,
+                        arc_noise(travel, duration, robot, noise));
 }
 
 LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
@@ -38,7 +57,7 @@ InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
     if (!drive.has_compass()) break;
     const WheelTravel travel = travel_of(drive, row);
     turn += (travel.right - travel.left) / robot.wheelbase;
-    variance += arc_covariance(travel, row.duration, robot, noise)(2, 2);
+    variance += row_covariance(drive, row.row, row.part, row.duration, robot, noise)(2, 2);
     const double reading = drive.heading[row.row];
     if (!std::isnan(reading)) {
       return {{wrap_angle(reading - turn), reading_variance(noise) + variance}, drive.t[row.row]};
@@ -64,17 +83,22 @@ PoseEstimate pose_from_landmark(const HeadingEstimate& heading, const LandmarkOf
 PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double from, double to,
                          const Robot& robot, const Noise& noise, double readings_used_until,
                          const std::vector<double>& slip) {
+  if (drive.has_gyro() && drive.gyro.empty()) {
+    return dead_reckon(start, with_gyro(drive, robot, noise), from, to, robot, noise,
+                       readings_used_until, slip);
+  }
   const std::vector<DriveRow> rows = rows_between(drive, from, to);
   const auto slip_in = [&slip](const DriveRow& row) {
     return slip.empty() ? 0.0 : row.part * slip[row.row];
   };
-  if (drive.has_compass()) {
-    RowReckoner reckoner(start, true);
+  if (drive.has_compass() || drive.has_gyro()) {
+    RowReckoner reckoner(start, drive.has_compass());
     for (const DriveRow& row : rows) {
-      const bool reads = row.ends && drive.t[row.row] > readings_used_until;
-      reckoner.take({travel_of(drive, row), row.duration, slip_in(row),
-                     reads ? drive.heading[row.row] : kAbsent},
-                    robot, noise);
+      const bool reads = drive.has_compass() && row.ends && drive.t[row.row] > readings_used_until;
+      reckoner.take(
+          {travel_of(drive, row), row.duration, slip_in(row),
+           reads ? drive.heading[row.row] : kAbsent, noise_with_gyro(drive, row, robot, noise)},
+          robot, noise);
     }
     return reckoner.at();
   }
@@ -96,6 +120,9 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
 std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robot& robot,
                                                   const Noise& noise,
                                                   const std::vector<double>& slip) {
+  if (drive.has_gyro() && drive.gyro.empty()) {
+    return dead_reckoned_estimates(with_gyro(drive, robot, noise), robot, noise, slip);
+  }
   const InitialHeading first = initial_heading(drive, drive.start(), robot, noise);
   PoseEstimate start;
   start.pose.heading = first.heading.heading;
@@ -108,7 +135,8 @@ std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robo
     reckoner.take({{drive.left[row], drive.right[row]},
                    drive.duration(row),
                    slip.empty() ? 0.0 : slip[row],
-                   reads ? drive.heading[row] : kAbsent},
+                   reads ? drive.heading[row] : kAbsent,
+                   noise_with_gyro(drive, {row, 1.0, drive.duration(row)}, robot, noise)},
                   robot, noise);
     result.push_back(reckoner.at());
   }

@@ -26,6 +26,12 @@ void correct_heading(PoseEstimate& estimate, double reading, double variance) {
 
 }  // namespace
 
+Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
+  if (!row.noise) return arc_covariance(row.travel, row.duration, robot, noise);
+  return arc_covariance(0.5 * (row.travel.left + row.travel.right),
+                        (row.travel.right - row.travel.left) / robot.wheelbase, *row.noise);
+}
+
 Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
   Pose end = arc_displacement(travel, wheelbase);
   if (slip == 0.0) return end;
@@ -64,8 +70,8 @@ double white_equivalent(const Noise& noise, double duration, double way) {
 
 void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
   const Pose displacement = displacement_of(row.travel, row.slip, robot.wheelbase);
-  if (compass_) {
-    at_ = moved(at_, displacement, arc_covariance(row.travel, row.duration, robot, noise));
+  if (compass_ || row.noise) {
+    at_ = moved(at_, displacement, covariance_of(row, robot, noise));
     if (!std::isnan(row.reading)) {
       const double way = 0.5 * std::abs(row.travel.left + row.travel.right);
       correct_heading(at_, row.reading, white_equivalent(noise, row.duration, way));

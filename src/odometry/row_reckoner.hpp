@@ -6,11 +6,14 @@
 //   without a compass   covariance by the arc that the row belongs to: from the arc's start, one
 //                       closed form over all of its rows so far
 //   with one            row by row, and each reading corrects (extended Kalman filter)
+//   with a gyro         row by row
 #pragma once
 
 #include "odometry/merge.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/dead_reckoning.hpp"
+
+#include <optional>
 
 namespace trussmap {
 
@@ -30,7 +33,12 @@ struct ReckonedRow {
   double duration = 0.0;     ///< s
   double slip = 0.0;         ///< m to the left
   double reading = kAbsent;  ///< rad, compass at the row's end; NaN: none
+  /// Where a gyro was taken in: the row's noise. Absent: the wheels'.
+  std::optional<ArcNoise> noise = std::nullopt;
 };
+
+/// Of the row's motion, in the frame of its start.
+[[nodiscard]] Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& noise);
 
 class RowReckoner {
  public:

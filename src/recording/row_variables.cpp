@@ -103,7 +103,8 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    kinds.push_back(motion_kind(drive.left[row], drive.right[row], drive.duration(row)));
+    kinds.push_back(
+        motion_kind(drive.wheel_left(row), drive.wheel_right(row), drive.duration(row)));
   }
   return kinds;
 }
@@ -151,6 +152,12 @@ void take_turning(const Drive& drive, const std::vector<MotionKind>& kinds,
   }
 }
 
+std::vector<double> wheel_travels(const Drive& drive, double (Drive::*wheel)(std::size_t) const) {
+  std::vector<double> travels(drive.rows());
+  for (std::size_t row = 0; row < travels.size(); ++row) travels[row] = (drive.*wheel)(row);
+  return travels;
+}
+
 /// Everything but the pose, in the middle of each row.
 RowVariables drive_variables(const Drive& drive, double wheelbase, int session) {
   const std::size_t rows = drive.rows();
@@ -176,8 +183,8 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
   variables["session"] = std::vector<double>(rows, session);
   variables["starts"] = beginnings(kinds, MotionKind::driving);
   variables["spins"] = beginnings(kinds, MotionKind::spinning);
-  variables["reverses_left"] = reversals(drive.left);
-  variables["reverses_right"] = reversals(drive.right);
+  variables["reverses_left"] = reversals(wheel_travels(drive, &Drive::wheel_left));
+  variables["reverses_right"] = reversals(wheel_travels(drive, &Drive::wheel_right));
   for (const Covariate& covariate : drive.covariates) variables[covariate.name] = covariate.values;
   return variables;
 }

@@ -52,6 +52,11 @@ void require_drive(const Recording& recording) {
                   [](double reading) { return std::isinf(reading); })) {
     refuse(recording, "column heading of the drive is infinite in a row");
   }
+  if (drive.has_gyro()) require_rows(recording, "yaw_rate", drive.yaw_rate);
+  if (std::any_of(drive.yaw_rate.begin(), drive.yaw_rate.end(),
+                  [](double reading) { return std::isinf(reading); })) {
+    refuse(recording, "column yaw_rate of the drive is infinite in a row");
+  }
   for (const Covariate& one : drive.covariates) {
     require_rows(recording, one.name, one.values);
     require_finite(recording, one.name, one.values);

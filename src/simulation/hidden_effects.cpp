@@ -87,12 +87,14 @@ class Draw {
   [[nodiscard]] bool can_be_shown(const CatalogueEntry& entry) const {
     const bool ranged = entry.channel == Channel::range || entry.channel == Channel::range_scale ||
                         entry.channel == Channel::bearing;
+    const bool of_gyro = entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale;
     const bool needs_survey = is_among(kNeedSurvey, entry.name);
     const bool needs_compass = entry.channel == Channel::compass || entry.name == "constant creep";
     // A robot that stands still as it looks shows no delay, and a late stamp shows at a glance.
     return entry.detectable > 0.0 && entry.channel != Channel::delay &&
            !is_among(kMisleading, entry.name) && (robot_.compass || !needs_compass) &&
-           (robot_.range_sensor || !ranged) && (surveyed_ || !needs_survey);
+           (robot_.gyro || !of_gyro) && (robot_.range_sensor || !ranged) &&
+           (surveyed_ || !needs_survey);
   }
 
   /// Two that cannot be told apart, or whose parts cannot, make no fair riddle.

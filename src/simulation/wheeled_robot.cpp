@@ -75,11 +75,19 @@ SensorRow misread(const SensorRow& row, const LegMisreading& leg) {
   return {row.left + forward - apart, row.right + forward + apart, row.heading};
 }
 
+/// What a gyro would say of a row without noise, rad/s.
+double yaw_rate(const TrueRow& motion, const ChannelGains& gains, std::size_t row) {
+  return (motion.turn_rate + gain(gains, Channel::gyro, row)) /
+         (1.0 + gain(gains, Channel::gyro_scale, row));
+}
+
 Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
                    const ChannelGains& gains) {
   const std::vector<SensorRow> sensed = sense(motion, robot, gains);
   const std::vector<LegMisreading> legs = leg_misreadings(motion, robot.rough, seed);
   SensorErrors errors(robot, seed);
+  Dice gyro(seed, Stream::gyro);
+  double bias = 0.0;  // rad/s
   Drive drive;
   Covariate payload{"payload_kg", {}};
   Covariate lights{"lights", {}};
@@ -92,6 +100,13 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
     drive.right.push_back(shown.right + errors.right(seen.right, row.duration));
     if (robot.compass) {
       drive.heading.push_back(wrap_angle(seen.heading + errors.compass(row.duration)));
+    }
+    if (robot.gyro) {
+      const double walked = gyro.deviation(robot.noise.gyro_walk * std::sqrt(row.duration));
+      const double error = gyro.deviation(robot.noise.gyro / std::sqrt(row.duration));
+      drive.yaw_rate.push_back(yaw_rate(row, gains, drive.rows() - 1) + bias + 0.5 * walked +
+                               error);
+      bias += walked;
     }
     payload.values.push_back(row.surroundings.payload_kg);
     lights.values.push_back(row.surroundings.lights);
@@ -132,7 +147,8 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
 
 void check(const WheeledRobot& robot) {
   const SensorNoise& noise = robot.noise;
-  for (const double sd : {noise.left, noise.right, noise.compass, noise.range, noise.bearing}) {
+  for (const double sd : {noise.left, noise.right, noise.compass, noise.range, noise.bearing,
+                          noise.gyro, noise.gyro_walk}) {
     if (!std::isfinite(sd) || sd < 0.0) {
       throw std::invalid_argument("a sensor's noise must be a number of 0 or more");
     }

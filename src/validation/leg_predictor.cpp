@@ -102,7 +102,7 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
               trained.covariances) {
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    if (one.kind == MeasurementKind::survey) continue;
+    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::gyro) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
     if (one.kind == MeasurementKind::segment) {
       here.segment = static_cast<int>(k);

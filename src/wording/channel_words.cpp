@@ -19,6 +19,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 Scale scale_of(Channel channel) {
   switch (channel) {
     case Channel::drift:
+    case Channel::gyro:
       return {kDegrees * 60.0, " deg/min"};
     case Channel::advance:
     case Channel::lever:
@@ -59,6 +60,10 @@ Phrase phrase_of(Channel channel) {
       return {"each event turns the robot by", "to the left", "to the right"};
     case Channel::creep:
       return {"the robot slips by", "of its travel to the left", "of its travel to the right"};
+    case Channel::gyro:
+      return {"the gyro reads", "too much", "too little"};
+    case Channel::gyro_scale:
+      return {"the robot turns", "more than its gyro says", "less than its gyro says"};
     case Channel::lever:
       return {"the sensor sits", "ahead of the axle", "behind the axle"};
     case Channel::lever_left:
@@ -101,6 +106,10 @@ const char* noun_of(Channel channel) {
       return "turning error per event";
     case Channel::creep:
       return "sideways slip";
+    case Channel::gyro:
+      return "gyro bias";
+    case Channel::gyro_scale:
+      return "error of the gyro's scale";
     case Channel::lever:
       return "sensor's place ahead";
     case Channel::lever_left:
@@ -141,6 +150,10 @@ std::string channel_in_words(Channel channel) {
       return "turning, missing per second";
     case Channel::compass:
       return "compass reads too much by";
+    case Channel::gyro:
+      return "gyro reads too much by";
+    case Channel::gyro_scale:
+      return "turning, measured too little by the gyro by";
     case Channel::range:
     case Channel::range_scale:
       return "ranges too long by";

@@ -290,7 +290,12 @@ TEST_P(EachChannel, ColumnsAreThoseOfDifferences) {
 
 std::vector<Channel> all_channels() {
   std::vector<Channel> all;
-  for (const ChannelFacts& one : channels()) all.push_back(one.channel);
+  // This robot has no gyro: gyro_test.cpp.
+  for (const ChannelFacts& one : channels()) {
+    if (one.channel != Channel::gyro && one.channel != Channel::gyro_scale) {
+      all.push_back(one.channel);
+    }
+  }
   return all;
 }
 

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Wheels and gyro, row by row, as one motion.
+//
+//   s = (path, turn)   of the wheels, covariance Q (2 x 2) of their noise in the row
+//   w, g               the wheels' turn and the gyro's, which errs by N(0, r), r = gyro^2 duration
+//   e = g - w          the excess;  u = (0, 1)
+//
+//   G  = Q u/(u'Qu + r)                    how much of the excess is believed
+//   s' = s + G e,   Q' = (I - G u')Q(I - G u')' + G r G'
+//
+// s' and e do not correlate (Kalman): the motion of a segment takes s', and what e says of wheels
+// and gyro is a measurement of its own (estimation/gyro_excess.hpp). Q' in this form (Joseph's) is
+// linear in the variances as long as G stays.
+//
+// A robot whose wheels both stand still is taken to stand: there e is the gyro's error alone.
+#pragma once
+
+#include "trussmap/arc.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Of one row, from its wheels' travels and the gyro's reading (rad/s, NaN: none).
+[[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
+                                   const Robot& robot, const Noise& noise);
+/// s', as wheel travels that lead along it.
+[[nodiscard]] WheelTravel together(const GyroShare& share, const Robot& robot);
+/// Q' of a row, or of a part that lasts `duration` s, in which the wheels' noise is `wheels`.
+[[nodiscard]] ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels,
+                                      double duration, const Noise& noise);
+
+/// The drive with its gyro taken in, so that `left` and `right` lead along s'. Unchanged where
+/// there is no gyro, or where it has been taken in before.
+[[nodiscard]] Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise);
+[[nodiscard]] std::vector<Recording> with_gyro(const std::vector<Recording>& recordings,
+                                               const Robot& robot, const Noise& noise);
+[[nodiscard]] bool has_gyro(const std::vector<Recording>& recordings);
+
+/// Where the noise of a row's motion, or of a part of it that lasts `duration` s, comes from: of
+/// the wheels, and of the gyro that was taken in.
+[[nodiscard]] ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double duration,
+                                 const Robot& robot, const Noise& noise);
+/// Covariance of that motion, as arc_covariance.
+[[nodiscard]] Matrix3 row_covariance(const Drive& drive, std::size_t row, double part,
+                                     double duration, const Robot& robot, const Noise& noise);
+
+/// Variance of a row's excess, or of a part of it, rad^2. Infinite without a reading.
+[[nodiscard]] double excess_variance(const Drive& drive, std::size_t row, double part,
+                                     double duration, const Robot& robot, const Noise& noise);
+
+}  // namespace trussmap

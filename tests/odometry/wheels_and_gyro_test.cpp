@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "odometry/wheels_and_gyro.hpp"
+
+#include "trussmap/dead_reckoning.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+Noise noise_of(double left, double right, double gyro) {
+  Noise noise;
+  noise.left = left;
+  noise.right = right;
+  noise.gyro = gyro;
+  return noise;
+}
+
+/// Of a row's path and turn by generalised least squares: the wheels measure both, the gyro the
+/// turn.
+TEST(WheelsAndGyro, AreTakenTogetherAsLeastSquaresHasIt) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const Robot robot{0.4};
+  for (int k = 0; k < 50; ++k) {
+    const Noise noise =
+        noise_of(0.004 + 0.003 * unit(random), 0.004, 0.002 + 0.0015 * unit(random));
+    const WheelTravel wheels{0.1 * unit(random), 0.1 * unit(random)};
+    const double duration = 0.3;
+    const double rate = unit(random);
+    const GyroShare share = gyro_share(wheels, rate, duration, robot, noise);
+
+    // d(path, turn)/d(left, right), and the two wheels' own variances.
+    Matrix2 T;
+    T << 0.5, 0.5, -1.0 / 0.4, 1.0 / 0.4;
+    const Matrix2 of_wheels = Vector2(noise.left * noise.left * std::abs(wheels.left),
+                                      noise.right * noise.right * std::abs(wheels.right))
+                                  .asDiagonal();
+    Eigen::Matrix3d C = Eigen::Matrix3d::Zero();
+    C.topLeftCorner<2, 2>() = T * of_wheels * T.transpose();
+    C(2, 2) = noise.gyro * noise.gyro * duration;
+    Eigen::Matrix<double, 3, 2> A;
+    A << 1.0, 0.0, 0.0, 1.0, 0.0, 1.0;
+    Eigen::Vector3d y;
+    y << T * Vector2(wheels.left, wheels.right), rate * duration;
+    const Matrix2 expected_covariance = (A.transpose() * C.inverse() * A).inverse();
+    const Vector2 expected = expected_covariance * A.transpose() * C.inverse() * y;
+
+    const WheelTravel both = together(share, robot);
+    const Vector2 found = T * Vector2(both.left, both.right);
+    EXPECT_LT((found - expected).norm(), 1e-12);
+    const ArcNoise left =
+        noise_together(share, arc_noise(wheels, duration, robot, noise), duration, noise);
+    const double size = expected_covariance.norm();
+    EXPECT_NEAR(left.along, expected_covariance(0, 0), 1e-12 * size);
+    EXPECT_NEAR(left.heading, expected_covariance(1, 1), 1e-12 * size);
+    EXPECT_NEAR(left.shared, expected_covariance(0, 1), 1e-12 * size);
+  }
+}
+
+Drive a_drive() {
+  Drive drive;
+  drive.t = {0.1, 0.2, 0.3};
+  drive.left = {0.05, 0.0, -0.02};
+  drive.right = {0.06, 0.0, 0.03};
+  drive.yaw_rate = {0.2, 0.01, kAbsent};
+  return drive;
+}
+
+TEST(WheelsAndGyro, ARobotWhoseWheelsStandStillStandsWhateverTheGyroSays) {
+  const Drive drive = with_gyro(a_drive(), Robot{0.3}, noise_of(0.003, 0.003, 0.001));
+  EXPECT_EQ(drive.left[1], 0.0);
+  EXPECT_EQ(drive.right[1], 0.0);
+  EXPECT_NEAR(drive.gyro[1].excess, 0.001, 1e-15);
+  EXPECT_NEAR(excess_variance(drive, 1, 1.0, 0.1, Robot{0.3}, noise_of(0.003, 0.003, 0.001)),
+              1e-6 * 0.1, 1e-18);
+}
+
+TEST(WheelsAndGyro, ARowWithoutAReadingIsTheWheelsAlone) {
+  const Noise noise = noise_of(0.003, 0.003, 0.001);
+  const Robot robot{0.3};
+  const Drive drive = with_gyro(a_drive(), robot, noise);
+  EXPECT_EQ(drive.left[2], -0.02);
+  EXPECT_EQ(drive.right[2], 0.03);
+  EXPECT_TRUE(std::isinf(excess_variance(drive, 2, 1.0, 0.1, robot, noise)));
+  EXPECT_EQ(row_covariance(drive, 2, 1.0, 0.1, robot, noise),
+            arc_covariance({-0.02, 0.03}, 0.1, robot, noise));
+}
+
+TEST(WheelsAndGyro, AreTakenTogetherOnce) {
+  const Noise noise = noise_of(0.003, 0.003, 0.001);
+  const Drive once = with_gyro(a_drive(), Robot{0.3}, noise);
+  const Drive twice = with_gyro(once, Robot{0.3}, noise);
+  EXPECT_EQ(once.left, twice.left);
+  EXPECT_EQ(once.wheel_left(0), 0.05);
+  Drive without = a_drive();
+  without.yaw_rate.clear();
+  EXPECT_EQ(with_gyro(without, Robot{0.3}, noise).left, without.left);
+  EXPECT_TRUE(with_gyro(without, Robot{0.3}, noise).gyro.empty());
+}
+
+}  // namespace
+}  // namespace trussmap
