@@ -45,9 +45,9 @@ struct Drive {
   std::vector<double> left;     ///< m, signed travel of the left wheel over the interval
   std::vector<double> right;    ///< m
   std::vector<double> heading;  ///< rad, compass reading at t, NaN = none; empty = no compass
+  std::vector<Covariate> covariates;
   /// rad/s, gyro, mean over the interval, NaN = none; empty = no gyro.
   std::vector<double> yaw_rate = {};
-  std::vector<Covariate> covariates;
   /// Left empty by who makes a drive. Where the gyro was taken in, one per row, and `left` and
   /// `right` are what wheels and gyro say together.
   std::vector<GyroShare> gyro = {};

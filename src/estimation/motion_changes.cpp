@@ -10,13 +10,13 @@ namespace {
 /// Rows of one kind in a row.
 struct Run {
   bool spin = false;
-  double turn = 0.0;   ///< rad
-  double path = 0.0;   ///< m
+  double turn = 0.0;   ///< rad, all of it: turns there and back are as uncertain
+  double path = 0.0;   ///< m, likewise
   double begin = 0.0;  ///< s, end of the row before
 };
 
 bool matters(const Run& run, const LeastMotion& least) {
-  return run.spin ? std::abs(run.turn) >= least.spin : std::abs(run.path) >= least.drive;
+  return run.spin ? run.turn >= least.spin : run.path >= least.drive;
 }
 
 std::vector<Run> runs_of(const Drive& drive, const std::vector<SegmentRow>& rows,
@@ -28,8 +28,8 @@ std::vector<Run> runs_of(const Drive& drive, const std::vector<SegmentRow>& rows
     if (row.path != 0.0 || row.turn != 0.0) {
       const bool spin = about_centre > std::abs(row.path);
       if (runs.empty() || runs.back().spin != spin) runs.push_back({spin, 0.0, 0.0, begin});
-      runs.back().turn += row.turn;
-      runs.back().path += row.path;
+      runs.back().turn += std::abs(row.turn);
+      runs.back().path += std::abs(row.path);
     }
     begin = drive.t[row.row];
   }

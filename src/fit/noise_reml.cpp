@@ -142,6 +142,7 @@ std::vector<NoiseComponent> candidate_components(const FitState& fit, const Nois
   if (has_compass(fit)) {
     add(Channel::compass, ProcessKind::correlated_in_t, times);
     add(Channel::compass, ProcessKind::correlated_in_distance, ways);
+    add(Channel::compass, ProcessKind::walk_in_t);
   }
   if (any_of_kind(fit, MeasurementKind::gyro)) {
     add(Channel::gyro, ProcessKind::walk_in_t);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/wording.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -21,13 +23,15 @@ struct Remedy {
   const char* help;
 };
 
-Remedy remedy_of(const std::string& source) {
+Remedy remedy_of(const std::string& source, bool gyro) {
+  const char* better = gyro ? "a better gyro would help most" : "a gyro would help most";
   if (source == "wheels") {
-    return {"what the wheels misread from metre to metre", "a gyro would help most"};
+    return {"what the wheels misread from metre to metre", better};
   }
+  if (begins_with(source, "gyro")) return {"the gyro's error", better};
   for (const char* turning : {"heading_per_s", "heading_per_rad", "turn", "drift", "difference",
                               "left", "right", "rotate"}) {
-    if (begins_with(source, turning)) return {"turning error", "a gyro would help most"};
+    if (begins_with(source, turning)) return {"turning error", better};
   }
   if (begins_with(source, "creep")) {
     return {"slip to the side", "a sensor that sees the floor would help most"};
@@ -69,6 +73,11 @@ std::string lasting_of(const NoiseProcess& process) {
 
 std::string changed_in_words(const NoiseSource& source) {
   constexpr double kSame = 1.005;
+  if (source.lasts && source.process.channel == Channel::compass &&
+      source.process.process == ProcessKind::walk_in_t) {
+    return "compass errors that only grow: it looks like a heading integrated from a gyro, whose "
+           "rate belongs in a column yaw_rate";
+  }
   if (source.lasts) {
     return fmt::format("{} errors {}", name_of(source.process.channel), lasting_of(source.process));
   }
@@ -93,7 +102,9 @@ std::string in_words(const FittedNoise& noise) {
 std::string in_words(const NoiseBudget& budget) {
   if (budget.shares.empty()) return "";
   const NoiseShare& most = budget.shares.front();
-  const Remedy remedy = remedy_of(most.source);
+  const bool gyro = std::any_of(budget.shares.begin(), budget.shares.end(),
+                                [](const auto& one) { return begins_with(one.source, "gyro"); });
+  const Remedy remedy = remedy_of(most.source, gyro);
   const std::string when =
       budget.horizon == 0.0 ? "at a leg's end" : fmt::format("after {:g} s", budget.horizon);
   return fmt::format("{} {:.0f} % is {}{}; {}", when, 100.0 * most.share, remedy.error,

@@ -67,6 +67,10 @@ RowTravel any_row(std::mt19937_64& random) {
   return {travel(random), travel(random), 0.1};
 }
 
+bool of_gyro(Channel channel) {
+  return channel == Channel::gyro || channel == Channel::gyro_scale;
+}
+
 class EveryChannel : public ::testing::TestWithParam<Channel> {};
 
 TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
@@ -87,7 +91,37 @@ TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
     EXPECT_DOUBLE_EQ(twice.advance, -2.0 * found.advance);
     EXPECT_DOUBLE_EQ(twice.turn, -2.0 * found.turn);
   }
-  EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views);
+  EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views && !of_gyro(GetParam()));
+}
+
+/// Where a gyro is believed by a share, a row moves by that share of what the gyro says, and by the
+/// rest of what the wheels say.
+TEST_P(EveryChannel, AddsToARowWithAGyroWhatBothSay) {
+  const Channel channel = GetParam();
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 20; ++k) {
+    RowTravel row = any_row(random);
+    row.gyro_reads = true;
+    row.gyro_turn = 0.21;
+    row.gyro_along = 0.004;
+    row.gyro_share = 0.8;
+    const double step = 1e-3;
+    const auto said = [&](double g) {
+      const Eigen::Vector4d wheels = motion(channel, g, row);
+      double turn = row.gyro_turn;
+      if (channel == Channel::gyro) turn -= g * row.duration;
+      if (channel == Channel::gyro_scale) turn *= 1.0 + g;
+      const double excess = turn - wheels[2];
+      Eigen::Matrix<double, 5, 1> all;
+      all << wheels + excess * Eigen::Vector4d(0.004, 0.0, 0.8, 0.0), excess;
+      return all;
+    };
+    const Eigen::Matrix<double, 5, 1> expected = (said(step) - said(-step)) / (2.0 * step);
+    const DrivePattern found = drive_pattern(channel, 1.0, row, kWheelbase);
+    Eigen::Matrix<double, 5, 1> all;
+    all << found.advance, found.slip, found.turn, found.compass, found.excess;
+    EXPECT_LT((all - expected).norm(), 1e-12);
+  }
 }
 
 TEST(ChannelPhysics, ATruthsHeadingIsNothingThatSightingsKnow) {
@@ -147,7 +181,7 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 18U);
+  EXPECT_EQ(channels().size(), 20U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);

@@ -11,7 +11,9 @@
 #include "trussmap/corrected_odometry.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
+#include "trussmap/noise_fit.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/wording.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -181,7 +183,7 @@ TEST(Gyro, NoiseIsWhatIsStated) {
   world.noise.gyro = 0.0008;
   const Statistics found = statistics(world, 25, 100);
   EXPECT_NEAR(found.chi2_per_dof, 1.0, 3.5 * found.sd);
-  EXPECT_LT(found.sd, 0.02);
+  EXPECT_LT(found.sd, 0.04);
   EXPECT_GT(found.covered, 0.88);
 }
 
@@ -257,14 +259,14 @@ TEST(Gyro, TheRobotReckonsAsOneDoesAfterwards) {
 TEST(Gyro, ABiasThatWalksIsAProcess) {
   World world;
   world.noise.gyro = 0.0005;
-  world.noise.gyro_walk = 0.0004;
+  world.noise.gyro_walk = 0.00015;
   Model white;
   white.noise.gyro = 0.0005;
   Model walks = white;
   NoiseProcess walk;
   walk.channel = Channel::gyro;
   walk.process = ProcessKind::walk_in_t;
-  walk.sd = 0.0004;
+  walk.sd = 0.00015;
   walks.noise.processes = {walk};
   double plain = 0.0;
   double stated = 0.0;
@@ -276,7 +278,7 @@ TEST(Gyro, ABiasThatWalksIsAProcess) {
     plain += a.chi2 / a.dof / kDrives;
     stated += b.chi2 / b.dof / kDrives;
   }
-  EXPECT_GT(plain, 1.5);
+  EXPECT_GT(plain, 1.3);
   EXPECT_NEAR(stated, 1.0, 0.1);
 }
 
@@ -290,6 +292,32 @@ TEST(Gyro, AMissingBiasIsNamed) {
                                     std::pair("wheelbase", 0.015)}) {
     const Recording recording = simulated(world, {catalogue_effect(name, {value})}, 21).recording;
     EXPECT_EQ(diagnose({recording}, model).missing, name);
+  }
+}
+
+/// A heading that a robot integrated from its gyro, given as a compass.
+TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
+  World world;
+  world.noise.gyro = 0.003;
+  world.tours = 2;
+  for (const std::uint64_t seed : {31U, 32U, 33U}) {
+    Recording recording = simulated(world, {}, seed).recording;
+    Drive& drive = recording.drive;
+    double heading = 0.0;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      heading += drive.yaw_rate[row] * drive.duration(row);
+      drive.heading.push_back(wrap_angle(heading));
+    }
+    drive.yaw_rate.clear();
+    const std::string words = in_words(fit_model_and_noise({recording}, Model()).noise);
+    EXPECT_NE(words.find("integrated from a gyro"), std::string::npos) << words;
+    // One that reads north is a compass.
+    world.compass = true;
+    Recording other = simulated(world, {}, seed).recording;
+    other.drive.yaw_rate.clear();
+    EXPECT_EQ(in_words(fit_model_and_noise({other}, Model()).noise).find("gyro"),
+              std::string::npos);
+    world.compass = false;
   }
 }
 

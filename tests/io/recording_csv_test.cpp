@@ -34,6 +34,7 @@ Recording random_recording() {
     r.drive.left.push_back(normal(random) * std::pow(10.0, k % 14 - 8));
     r.drive.right.push_back(normal(random));
     r.drive.heading.push_back(k % 3 == 0 ? kAbsent : normal(random));
+    r.drive.yaw_rate.push_back(k % 5 == 0 ? kAbsent : normal(random));
     r.drive.covariates[0].values.push_back(normal(random));
     r.drive.covariates[1].values.push_back(k);
   }
@@ -56,6 +57,7 @@ TEST(RecordingCsv, ReadsBackExactlyWhatItWrote) {
   EXPECT_EQ(in.drive.right, out.drive.right);
   for (std::size_t k = 0; k < in.drive.rows(); ++k) {
     EXPECT_TRUE(same(in.drive.heading[k], out.drive.heading[k]));
+    EXPECT_TRUE(same(in.drive.yaw_rate[k], out.drive.yaw_rate[k]));
   }
   ASSERT_EQ(in.drive.covariates.size(), 2U);
   EXPECT_EQ(in.drive.covariates[1].name, "T_1");

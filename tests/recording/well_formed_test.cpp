@@ -86,7 +86,7 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
        [](Recording& r) { r.sightings[1].range = -2.0; }},
       {"the drive has 1 rows, expected two at least",
        [](Recording& r) {
-         r.drive = {{1.0}, {0.5}, {0.5}};
+         r.drive = {{1.0}, {0.5}, {0.5}, {}, {}};
        }},
   };
   for (const Spoilt& one : all) {

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/motion_changes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+/// So many rows of 0.1 s of these travels.
+void add(Drive& drive, int rows, double left, double right) {
+  for (int k = 0; k < rows; ++k) {
+    drive.t.push_back(0.1 * static_cast<double>(drive.rows() + 1));
+    drive.left.push_back(left);
+    drive.right.push_back(right);
+  }
+}
+
+std::vector<double> changes(const Drive& drive) {
+  const Robot robot{0.3};
+  return motion_changes(drive, segment_rows(drive, drive.start(), drive.t.back(), robot), robot,
+                        {});
+}
+
+TEST(MotionChanges, ASpinAndADriveAreTwoMotions) {
+  Drive drive;
+  add(drive, 10, -0.03, 0.03);
+  add(drive, 10, 0.1, 0.1);
+  ASSERT_EQ(changes(drive).size(), 1U);
+  EXPECT_NEAR(changes(drive).front(), 1.0, 1e-12);
+}
+
+/// The heading after it is as uncertain as all that was turned.
+TEST(MotionChanges, ASpinThereAndBackIsAMotion) {
+  Drive drive;
+  add(drive, 10, -0.03, 0.03);
+  add(drive, 10, 0.03, -0.03);
+  add(drive, 10, 0.1, 0.1);
+  ASSERT_EQ(changes(drive).size(), 1U);
+  EXPECT_NEAR(changes(drive).front(), 2.0, 1e-12);
+}
+
+TEST(MotionChanges, ATwitchIsNone) {
+  Drive drive;
+  add(drive, 10, 0.1, 0.1);
+  add(drive, 1, -0.01, 0.01);
+  add(drive, 10, 0.1, 0.1);
+  EXPECT_TRUE(changes(drive).empty());
+}
+
+}  // namespace
+}  // namespace trussmap
