@@ -186,6 +186,7 @@ struct SensorNoise {
   double range = 0.05;    ///< m
   double bearing = 0.02;  ///< rad
   double survey = 0.001;  ///< m per coordinate
+  double fix = 0.05;      ///< m per coordinate
 };
 
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
@@ -212,6 +213,7 @@ struct WheeledRobot {
   bool range_sensor = false;
   double reach = 8.0;        ///< m, range sensor
   double recognition = 0.5;  ///< chance that a landmark in reach is recognised
+  double fix_rate = 0.0;     ///< Hz: fixes of its antenna; 0: none
   SensorNoise noise;
   RoughNoise rough;
 };
@@ -271,7 +273,8 @@ enum class Stream : std::uint32_t {
   hidden,
   wheel_tails,
   compass_tails,
-  floor
+  floor,
+  fixes
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Wrong sightings: a label misread, a landmark that somebody moved for a while.
+// Wrong sightings: a label misread, a landmark that somebody moved for a while; fixes by an echo;
+// loops that take one place for another. All that follows of sightings holds of these as well.
 //
 //   r^2    squared whitened error of a sighting
 //   c^2    the largest r^2 that a right one should have: `gate`
@@ -29,12 +30,12 @@
 
 namespace trussmap {
 
-/// Weights of Geman and McClure for sightings, (gate/(r^2 + gate))^2, and 1 for all else.
+/// Weights of Geman and McClure for what may be wrong, (gate/(r^2 + gate))^2, and 1 for all else.
 [[nodiscard]] std::vector<double> soft_weights(const RecordingProblem& problem,
                                                const std::vector<double>& squared_errors,
                                                double gate);
 
-/// Share of the sightings whose squared error is beyond a limit.
+/// Share of what may be wrong whose squared error is beyond a limit.
 [[nodiscard]] double share_beyond(const RecordingProblem& problem,
                                   const std::vector<double>& squared_errors, double limit);
 

@@ -322,6 +322,9 @@ class NoiseFitter {
         return "bearing";
       case Channel::truth_heading:
         return "truth";
+      case Channel::fix_x:
+      case Channel::fix_y:
+        return "fix";
       default:
         return "wheels";
     }
