@@ -76,19 +76,41 @@ std::vector<double> soft_weights(const RecordingProblem& problem,
   return weights;
 }
 
-double share_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
-                    double limit) {
+namespace {
+
+/// Of loops, or of what else may be wrong.
+double share_of_kind_beyond(const RecordingProblem& problem,
+                            const std::vector<double>& squared_errors, double limit, bool loops) {
   double beyond = 0.0;
   double all = 0.0;
   for (std::size_t k = 0; k < squared_errors.size(); ++k) {
-    if (!may_be_wrong(problem.measurements[k].kind)) continue;
+    const MeasurementKind kind = problem.measurements[k].kind;
+    if (!may_be_wrong(kind) || (kind == MeasurementKind::loop) != loops) continue;
     all += 1.0;
     if (squared_errors[k] > limit) beyond += 1.0;
   }
   return beyond / std::max(all, 1.0);
 }
 
+}  // namespace
+
+double share_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+                    double limit) {
+  return share_of_kind_beyond(problem, squared_errors, limit, false);
+}
+
 namespace {
+
+/// Places are taken for one another far more often than landmarks are misread; but where most loops
+/// contradict the drive, it is the drive that is wrong.
+constexpr double kMostLoopsOut = 0.5;
+
+bool are_few_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+                    double limit, double most) {
+  return share_beyond(problem, squared_errors, limit) <= most &&
+         share_of_kind_beyond(problem, squared_errors, limit, true) <=
+             std::max(most, kMostLoopsOut);
+}
 
 constexpr double kSamePlace = 0.5;  // m
 
@@ -128,7 +150,7 @@ class RobustDescent {
         descend_by(10);
       }
       fit_.gate = gate;
-      if (share_beyond(problem_, system_.squared_errors(), gate) <= most) best = fit_;
+      if (are_few_beyond(problem_, system_.squared_errors(), gate, most)) best = fit_;
     }
     fit_ = std::move(best);
   }

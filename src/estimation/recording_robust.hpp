@@ -15,9 +15,9 @@
 //   heed     landmarks go to where most of their sightings have them
 //   narrow   Geman and McClure's weights, their c from 16 times as wide (in sds) down to the one
 //            wanted. Wrong sightings are few, and each contradicts all others; where more than
-//            `most_left_out` are beyond c, it is the model that is wrong, and c stays wider: the
-//            noise counts as that much larger. Where even the widest leaves out too many, none is
-//            left out.
+//            `most_left_out` are beyond c (of loops: more than half), it is the model that is
+//            wrong, and c stays wider: the noise counts as that much larger. Where even the widest
+//            leaves out too many, none is left out.
 //   harden   the cost is bent, step by step, into the truncated one; then what is out is asked
 //            once more
 //
@@ -35,7 +35,7 @@ namespace trussmap {
                                                const std::vector<double>& squared_errors,
                                                double gate);
 
-/// Share of what may be wrong whose squared error is beyond a limit.
+/// Share of what may be wrong, loops apart, whose squared error is beyond a limit.
 [[nodiscard]] double share_beyond(const RecordingProblem& problem,
                                   const std::vector<double>& squared_errors, double limit);
 

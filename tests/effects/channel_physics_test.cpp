@@ -91,11 +91,11 @@ TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
 }
 
 TEST(ChannelPhysics, FixesHaveAnAntennaAndAClockOfTheirOwn) {
-  const auto all = view_pattern(Channel::antenna, 0.2, 0.6, -0.3).vector() +
-                   view_pattern(Channel::antenna_left, -0.1, 0.6, -0.3).vector() +
-                   view_pattern(Channel::fix_delay, 0.5, 0.6, -0.3).vector() +
-                   view_pattern(Channel::fix_x, 3.0, 0.6, -0.3).vector() +
-                   view_pattern(Channel::fix_y, 4.0, 0.6, -0.3).vector();
+  const ViewVector all = view_pattern(Channel::antenna, 0.2, 0.6, -0.3).vector() +
+                         view_pattern(Channel::antenna_left, -0.1, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_delay, 0.5, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_x, 3.0, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_y, 4.0, 0.6, -0.3).vector();
   const ViewVector expected =
       (ViewVector() << 0.2 - 0.3, -0.1, 0.15, 0.0, 0.0, 0.0, 3.0, 4.0).finished();
   EXPECT_LT((all - expected).norm(), 1e-15);
@@ -163,7 +163,7 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 18U);
+  EXPECT_EQ(channels().size(), 23U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);
