@@ -42,9 +42,10 @@ std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand
 bool motion_noise_lasts(const Noise& noise) {
   return std::any_of(noise.processes.begin(), noise.processes.end(), [](const NoiseProcess& one) {
     static constexpr std::array kOthers{
-        Channel::lever,   Channel::lever_left, Channel::range,   Channel::range_scale,
-        Channel::bearing, Channel::delay,      Channel::compass, Channel::truth_heading,
-        Channel::gyro,    Channel::gyro_scale};
+        Channel::lever,   Channel::lever_left,   Channel::range,     Channel::range_scale,
+        Channel::bearing, Channel::delay,        Channel::compass,   Channel::truth_heading,
+        Channel::antenna, Channel::antenna_left, Channel::fix_delay, Channel::fix_x,
+        Channel::fix_y,   Channel::gyro,         Channel::gyro_scale};
     return std::find(kOthers.begin(), kOthers.end(), one.channel) == kOthers.end();
   });
 }
@@ -105,14 +106,14 @@ void setup_apply(const Command& app) {
                    "By everything that was measured, in the map's frame, instead of dead reckoned");
   command
       .add_option("--without", options->input.without,
-                  "With --adjusted: do not use the survey, or the truth")
+                  "With --adjusted: do not use the survey, the truth, fixes, or loops")
       .delimiter(',')
-      .check(one_of({"survey", "truth"}))
+      .check(one_of({"survey", "truth", "fixes", "loops"}))
       .type_name("WHAT,...");
   command
       .add_option("--gate", options->input.gate,
-                  "With --adjusted: sightings that the others contradict by more standard "
-                  "deviations are left out (0: none)")
+                  "With --adjusted: sightings, fixes and loops that the others contradict by more "
+                  "standard deviations are left out (0: none)")
       .check(zero_or_more())
       .capture_default_str();
   command.footer(

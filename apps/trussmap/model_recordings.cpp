@@ -33,18 +33,21 @@ void add_model_recordings(const Command& command, ModelRecordingsOptions& option
       .check(zero_or_more())
       .capture_default_str();
   command
-      .add_option("--leg", options.legs.leg,
-                  "Length of a leg where there is truth but no landmark [m of driven path]")
+      .add_option(
+          "--leg", options.legs.leg,
+          "Length of a leg where there is truth, or fixes, but no landmark [m of driven path]")
       .check(above_zero())
       .capture_default_str();
-  command.add_option("--without", options.without, "Do not use the survey, or the truth")
+  command
+      .add_option("--without", options.without, "Do not use the survey, the truth, fixes, or loops")
       .delimiter(',')
-      .check(one_of({"survey", "truth"}))
+      .check(one_of({"survey", "truth", "fixes", "loops"}))
       .type_name("WHAT,...");
   command
-      .add_option("--gate", options.gate,
-                  "Leave sightings out that all others contradict by more standard deviations than "
-                  "this (0: leave none out)")
+      .add_option(
+          "--gate", options.gate,
+          "Leave sightings, fixes and loops out that all others contradict by more standard "
+          "deviations than this (0: leave none out)")
       .check(zero_or_more())
       .capture_default_str();
   command
@@ -131,6 +134,8 @@ FitOptions fit_options(const ModelRecordingsOptions& options) {
   FitOptions result;
   result.use_survey = !left_out("survey");
   result.use_truth = !left_out("truth");
+  result.use_fixes = !left_out("fixes");
+  result.use_loops = !left_out("loops");
   if (options.gate > 0.0) result.gate = options.gate * options.gate;
   result.most_left_out = kMostLeftOut;
   return result;

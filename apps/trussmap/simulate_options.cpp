@@ -123,6 +123,11 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       "--range-sensor", options.range_sensor,
       "From each stop the robot also sees landmarks in reach (half of them, at random) "
       "by range (within 0.05 m) and bearing (within 0.02 rad)");
+  command
+      .add_option("--fixes", options.fix_rate,
+                  "A receiver also gives the place of its antenna so often [Hz] (fixes.csv)")
+      .check(between(0.0, 1000.0));
+  add_positive("--fix-noise", options.fix_noise, "Standard deviation of a fix [m per coordinate]");
   add_positive("--reach", options.reach, "Reach of the range sensor [m]");
 }
 
@@ -151,6 +156,8 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   robot.noise.right = options.wheel_noise;
   robot.noise.compass = options.compass_noise;
   robot.noise.survey = options.survey_noise;
+  robot.noise.fix = options.fix_noise;
+  robot.fix_rate = options.fix_rate;
   if (!options.rough.empty()) {
     robot.rough = parse_rough(options.rough);
     if (options.no_compass) robot.rough.haze = false;
@@ -159,7 +166,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
           "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
     }
   }
-  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   return robot;
 }
 
@@ -192,6 +199,7 @@ Model nominal_model(const SimulateOptions& options) {
   model.noise.bearing = sensors.bearing;
   model.noise.survey = options.survey_noise;
   if (options.gyro) model.noise.gyro = options.gyro_noise;
+  model.noise.fix = options.fix_noise;
   return model;
 }
 
@@ -211,7 +219,8 @@ void add_simulate_options(const Command& command, SimulateOptions& options) {
   command.add_flag("--no-survey", options.no_survey, "Write no survey.csv");
   command
       .add_option("--out", options.out,
-                  "Folder to write drive.csv, sightings.csv, survey.csv and model.toml to; a "
+                  "Folder to write drive.csv, sightings.csv, survey.csv, fixes.csv (with --fixes) "
+                  "and model.toml to; a "
                   "recording that is there already is replaced")
       .required()
       .type_name("DIR");

@@ -36,7 +36,9 @@ struct SimulateOptions {
   double gyro_noise = 0.0005;  // rad/s^1/2
   bool no_survey = false;
   bool range_sensor = false;
-  double reach = 8.0;  // m
+  double reach = 8.0;       // m
+  double fix_rate = 0.0;    // Hz
+  double fix_noise = 0.05;  // m
   bool rests = false;
   int full_turns = 0;
   std::vector<double> speeds = {0.25, 0.9};     // m/s

@@ -11,6 +11,8 @@
 //   range, bearing    reading + g                     range_scale           range (1 + g)
 //   delay             stamped g late                          truth_heading   truth's heading + g
 //   gyro              yaw rate read = rate + g     gyro_scale             gyro's turn (1 + g)
+//   antenna, antenna_left   the point of the robot that a fix has
+//   fix_delay         fixes are stamped g late                fix_x, fix_y    fix = position + g
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.
 #pragma once
@@ -42,7 +44,12 @@ enum class Channel {
   range_scale,
   bearing,
   delay,
-  truth_heading
+  truth_heading,
+  antenna,
+  antenna_left,
+  fix_delay,
+  fix_x,
+  fix_y
 };
 
 struct ChannelFacts {

@@ -28,11 +28,13 @@ namespace trussmap {
 struct FitOptions {
   bool use_survey = true;   ///< survey.csv as measurements
   bool use_truth = true;    ///< truth.csv likewise
+  bool use_fixes = true;    ///< fixes.csv likewise
+  bool use_loops = true;    ///< loops.csv likewise
   bool fit_effects = true;  ///< false: coefficients stay as the model has them
-  /// Sightings that the others contradict by more are left out: squared standard deviations, 16 for
-  /// one right sighting in 3000. Absent: all stay.
+  /// Sightings, fixes and loops that the others contradict by more are left out: squared standard
+  /// deviations, 16 for one right sighting in 3000. Absent: all stay.
   std::optional<double> gate = std::nullopt;
-  /// Share of the sightings: where more would be left out the gate widens, at last to none. Few are
+  /// Share of these: where more would be left out the gate widens, at last to none. Few are
   /// ever misread; where many contradict the rest, the model is wrong.
   double most_left_out = 1.0;
 };
@@ -76,7 +78,7 @@ struct ModelFit {
   int coefficients = 0;  ///< estimated, each of which costs a degree of freedom
   double p_value = 1.0;  ///< chance of a chi^2 as large where the model is right
   bool settled = true;   ///< shapes and path agree
-  std::vector<std::string> left_out;  ///< sightings that the gate left out
+  std::vector<std::string> left_out;  ///< sightings, fixes and loops that the gate left out
   std::vector<std::string> warnings;
   std::shared_ptr<const FitState> state;
 };

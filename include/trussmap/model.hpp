@@ -69,6 +69,9 @@ struct Noise {
   double heading_per_rad = 0.0;  ///< rad/rad^(1/2) turned
   double travel_per_s = 0.0;     ///< m/s^(1/2)
   double gyro = 0.001;           ///< rad/s^(1/2), angle random walk of the gyro
+  double fix = 0.05;             ///< m per coordinate of a fix
+  double loop = 0.05;            ///< m per coordinate of a loop
+  double loop_heading = 0.01;    ///< rad per loop
   std::vector<NoiseProcess> processes = {};  ///< besides
 
   friend bool operator==(const Noise& a, const Noise& b) = default;

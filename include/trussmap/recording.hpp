@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What a robot recorded: the wheels' travel, the compass, the landmarks it recognised, and what
-// somebody measured independently. Plain data, exactly as in the CSV streams.
+// What a robot recorded: the wheels' travel, the compass, the landmarks it recognised, where a
+// receiver had it, and what somebody measured independently. Plain data, exactly as in the CSV
+// streams.
 //
 //   drive      one row per odometry interval, which ends at t            columns, one value a row
 //   sightings  at time t the robot recognised a landmark
+//   fixes      at time t a receiver (GNSS, UWB tag) had the robot's antenna there
+//   loops      the pose at t2 as the robot measured it from its pose at t (scan matching)
 //   survey     independently measured landmark positions
 //   truth      independently measured robot poses
 //
-// Absent values are NaN: a compass or gyro reading, a range (the robot stands on the landmark), a
-// survey point's sd (the model's applies). Several recordings together are sessions of the same
-// robot in the same place: landmarks of the same name are the same, poses are not.
+// Absent values are NaN: a compass or gyro reading, a range (the robot stands on the landmark), the
+// sd of a survey point, a fix or a loop (the model's applies). Several recordings together are
+// sessions of the same robot in the same place: landmarks of the same name are the same, poses are
+// not.
 #pragma once
 
 #include <cstddef>
@@ -81,6 +85,27 @@ struct Sighting {
   [[nodiscard]] bool locates() const { return standing() || bearing == bearing; }
 };
 
+/// A position without a heading.
+struct Fix {
+  double t = 0.0;       ///< s
+  double x = 0.0;       ///< m, map frame
+  double y = 0.0;       ///< m
+  double sd = kAbsent;  ///< m per coordinate; NaN: the model's `fix`
+  double quality =
+      kAbsent;  ///< as the receiver gives it, in whatever unit; shown, never reckoned with
+};
+
+/// One pose of a drive as seen from another.
+struct Loop {
+  double t = 0.0;               ///< s
+  double t2 = 0.0;              ///< s, before or after t
+  double dx = 0.0;              ///< m ahead: where the axle's centre is at t2, in its axes at t
+  double dy = 0.0;              ///< m to the left
+  double dtheta = 0.0;          ///< rad, heading at t2 less heading at t; may be wrapped
+  double sd = kAbsent;          ///< m per coordinate; NaN: the model's `loop`
+  double sd_heading = kAbsent;  ///< rad; NaN: the model's `loop_heading`
+};
+
 struct SurveyPoint {
   std::string landmark;
   double x = 0.0;       ///< m
@@ -101,13 +126,15 @@ inline constexpr double kDefaultMinDrive = 0.25;
 /// What reads a recording of a caller's own making (build_map, fit_model, calibrate_wheels and what
 /// calls them) throws std::invalid_argument where its drive has fewer than two rows or columns that
 /// differ in length, times leave their order, sightings the drive, or a number is not finite that
-/// must be. Truth may begin before the drive and end after it.
+/// must be. Truth and fixes may begin before the drive and end after it.
 struct Recording {
   std::string name;  ///< where it came from, for messages
   Drive drive;
   std::vector<Sighting> sightings;  ///< in order of time
   std::vector<SurveyPoint> survey;
   std::vector<TruthRow> truth;  ///< in order of time
+  std::vector<Fix> fixes = {};  ///< in order of time
+  std::vector<Loop> loops = {};
 };
 
 /// What shapes speak of: a column of numbers, one per row, per variable.

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A recording as a folder of CSV streams: drive.csv, sightings.csv, survey.csv, truth.csv (their
-// columns: recording.hpp; angles in rad, lengths in m, times in s).
+// A recording as a folder of CSV streams: drive.csv, sightings.csv, fixes.csv, loops.csv,
+// survey.csv, truth.csv (their columns: recording.hpp; angles in rad, lengths in m, times in s).
 #pragma once
 
 #include "trussmap/fit_model.hpp"
@@ -20,15 +20,15 @@
 namespace trussmap {
 
 /// Reads a folder, strictly: InputError with file and line for whatever is wrong, nothing is
-/// guessed. sightings.csv may be absent only where there is a truth.csv.
+/// guessed. sightings.csv may be absent only where there is a truth.csv, fixes.csv or loops.csv.
 [[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
 
 /// Texts by the names of their files.
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// The streams that the recording has (a drive always; sightings unless there is truth and no
-/// sighting), in place of all that an earlier recording left in the folder. `comment`, if any,
-/// becomes # lines at the top of drive.csv; `beside` are further files, by name and content.
+/// The streams that the recording has (a drive always; sightings unless there is none, but truth,
+/// fixes or loops), in place of all that an earlier recording left in the folder. `comment`, if
+/// any, becomes # lines at the top of drive.csv; `beside` are further files, by name and content.
 /// Numbers read back exactly.
 [[nodiscard]] FolderOfFiles recording_folder(const std::filesystem::path& folder,
                                              const Recording& recording,
@@ -120,8 +120,8 @@ struct RangeRecording {
 /// Throws InputError, with the line where there is one.
 [[nodiscard]] RangeRecording read_radio_ranges(const std::filesystem::path& prefix);
 
-/// 16 hexadecimal digits that two recordings share only if their wheels, compass and sightings are
-/// the same, to the last bit: whatever the folders are called.
+/// 16 hexadecimal digits that two recordings share only if their wheels, compass, sightings, fixes
+/// and loops are the same, to the last bit: whatever the folders are called.
 [[nodiscard]] std::string fingerprint(const Recording& recording);
 
 // ----------------------------------------

@@ -186,6 +186,7 @@ struct SensorNoise {
   double range = 0.05;     ///< m
   double bearing = 0.02;   ///< rad
   double survey = 0.001;   ///< m per coordinate
+  double fix = 0.05;       ///< m per coordinate
   double gyro = 0.001;     ///< rad/s^(1/2), angle random walk
   double gyro_walk = 0.0;  ///< rad/s per s^(1/2): how the bias walks
 };
@@ -215,6 +216,7 @@ struct WheeledRobot {
   bool range_sensor = false;
   double reach = 8.0;        ///< m, range sensor
   double recognition = 0.5;  ///< chance that a landmark in reach is recognised
+  double fix_rate = 0.0;     ///< Hz: fixes of its antenna; 0: none
   SensorNoise noise;
   RoughNoise rough;
 };
@@ -275,6 +277,7 @@ enum class Stream : std::uint32_t {
   wheel_tails,
   compass_tails,
   floor,
+  fixes,
   gyro
 };
 

@@ -143,8 +143,10 @@ Supports supports_of(const FitState& fit) {
     if (one.kind == MeasurementKind::standing) stood_on[idx(one.to)] = true;
   }
   for (const int k : fit.adjustment.left_out) {
-    --kept[idx(problem.measurements[idx(k)].to)];
-    ++lost[idx(problem.measurements[idx(k)].to)];
+    const Measurement& one = problem.measurements[idx(k)];
+    if (!is_sighting(one.kind)) continue;
+    --kept[idx(one.to)];
+    ++lost[idx(one.to)];
   }
   Supports result;
   for (std::size_t k = 0; k < kept.size(); ++k) {
@@ -152,6 +154,20 @@ Supports supports_of(const FitState& fit) {
     if (kept[k] == 1 && lost[k] == 0 && !stood_on[k]) result.single.push_back(problem.landmarks[k]);
   }
   return result;
+}
+
+/// Fixes and loops that were left out; the sightings stand in BuiltMap::rejected.
+void tell_left_out(const FitState& fit, std::vector<std::string>& warnings) {
+  constexpr int kNamed = 5;
+  int count = 0;
+  for (const int k : fit.adjustment.left_out) {
+    const Measurement& one = fit.problem.measurements[idx(k)];
+    if (is_sighting(one.kind)) continue;
+    if (++count <= kNamed) warnings.push_back(describe(fit.problem, one) + " was left out");
+  }
+  if (count > kNamed) {
+    warnings.push_back(joined("and ", count - kNamed, " more fixes or loops were left out"));
+  }
 }
 
 void doubt_fit(BuiltMap& built, const MapFitState& best) {
@@ -304,7 +320,10 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const Reck
   result.loops = static_cast<int>(reckoned.misclosures.size());
   result.misclosure_share = median(reckoned.misclosures);
   result.sightings = sightings_of(best.fit.problem);
-  result.left_out_share = static_cast<double>(fit.left_out.size()) / std::max(1, result.sightings);
+  const auto lost = std::count_if(fit.left_out.begin(), fit.left_out.end(), [&](int k) {
+    return is_sighting(best.fit.problem.measurements[idx(k)].kind);
+  });
+  result.left_out_share = static_cast<double>(lost) / std::max(1, result.sightings);
   result.from_adjusted =
       built.method == Method::adjustment ? 0.0 : distance_from(best.fit, built.map);
   return result;
@@ -314,6 +333,7 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
            const Model& model) {
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);
+  tell_left_out(best.fit, built.warnings);
   doubt_shape(built, best);
   doubt_against_survey(built);
 }

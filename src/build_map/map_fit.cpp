@@ -97,6 +97,7 @@ std::vector<RejectedSighting> left_out_of(const FitState& fit) {
   const RecordingProblem& problem = fit.problem;
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = problem.measurements[idx(k)];
+    if (!is_sighting(one.kind)) continue;
     result.push_back({problem.sessions[idx(one.session)],
                       problem.poses[idx(one.from - problem.landmark_count())].t,
                       problem.landmarks[idx(one.to)], misfit_of(fit, one)});
@@ -117,6 +118,7 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
   }
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = fit.problem.measurements[idx(k)];
+    if (!is_sighting(one.kind)) continue;
     guides[idx(one.session)].left_out[one.source] = true;
   }
   return guides;

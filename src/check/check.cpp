@@ -3,6 +3,7 @@
 #include "trussmap/check.hpp"
 
 #include "check/findings.hpp"
+#include "recording/legs.hpp"
 #include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
@@ -25,6 +26,7 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "range unit",
                                          "survey unit",
                                          "truth unit",
+                                         "fix unit",
                                          "angle unit",
                                          "spike",
                                          "gap",
@@ -198,6 +200,15 @@ int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& l
     instants.insert(one.t);
     rows += 3;
   }
+  for (const Fix& one : recording.fixes) {
+    if (one.t < recording.drive.start() || one.t > recording.drive.t.back()) continue;
+    instants.insert(one.t);
+    rows += 2;
+  }
+  for (const Loop& one : recording.loops) {
+    instants.insert({one.t, one.t2});
+    rows += 3;
+  }
   const int poses = static_cast<int>(instants.size());
   const int segments = std::max(0, poses - 1);
   return rows + segments * (recording.drive.has_compass() ? 4 : 3) - 3 * poses;
@@ -210,7 +221,7 @@ void check_freedom(const std::vector<Recording>& recordings, CheckFindings& find
   bool framed = false;
   for (const Recording& one : recordings) {
     dof += degrees_of_freedom(one, landmarks);
-    framed = framed || !one.truth.empty();
+    framed = framed || !one.truth.empty() || !one.fixes.empty();
     for (const SurveyPoint& point : one.survey) surveyed.insert(point.landmark);
   }
   std::erase_if(surveyed, [&](std::string_view name) { return !landmarks.contains(name); });
@@ -224,8 +235,12 @@ void check_freedom(const std::vector<Recording>& recordings, CheckFindings& find
   });
   if (dof >= kHandful || (reads && dof > -kHandful)) return;
   Checked all{recordings.front(), findings};
-  all.add(recordings.front().sightings.empty() ? "truth.csv" : "sightings.csv", "",
-          "nothing to test",
+  const Recording& one = recordings.front();
+  all.add(!one.sightings.empty() ? "sightings.csv"
+          : !one.truth.empty()   ? "truth.csv"
+          : !one.fixes.empty()   ? "fixes.csv"
+                                 : "loops.csv",
+          "", "nothing to test",
           joined("what was measured exceeds what is unknown by ", dof,
                  " values: a model can hardly fail there"),
           "drive routes again, or survey landmarks");
@@ -391,6 +406,39 @@ TurnAgreement check_recording(Checked& checked) {
   return turns;
 }
 
+/// Fixes that hardly move while the robot drives: degrees of latitude and longitude.
+void check_fix_unit(Checked& checked) {
+  constexpr double kApart = 1.0;         // m driven
+  constexpr double kFarTooShort = 1e-4;  // a degree is 111 km
+  constexpr double kStuck = 1e-7;
+  constexpr int kFewest = 3;
+  const Recording& recording = checked.recording;
+  const std::vector<double> path = driven_path(recording.drive);
+  double driven = 0.0;
+  double moved = 0.0;
+  int ways = 0;
+  const Fix* last = nullptr;
+  double begun = 0.0;
+  for (const Fix& fix : recording.fixes) {
+    if (fix.t < recording.drive.start() || fix.t > recording.drive.t.back()) continue;
+    if (std::abs(fix.x) > 180.0 || std::abs(fix.y) > 180.0) return;
+    const double at = path_at(recording.drive, path, fix.t);
+    if (last != nullptr && at - begun < kApart) continue;
+    if (last != nullptr) {
+      driven += at - begun;
+      moved += std::hypot(fix.x - last->x, fix.y - last->y);
+      ++ways;
+    }
+    last = &fix;
+    begun = at;
+  }
+  if (ways < kFewest || moved > kFarTooShort * driven || moved < kStuck * driven) return;
+  checked.add("fixes.csv", "x,y", "fix unit",
+              joined("the fixes move by ", figure(moved), " in all while the wheels drive ",
+                     figure(driven, "m"), ": degrees of latitude and longitude?"),
+              "project them into metres, x to the east and y to the north");
+}
+
 }  // namespace
 
 void Checked::add(const char* file, const std::string& column, const char* kind,
@@ -402,8 +450,10 @@ void Checked::add(const char* file, const std::string& column, const char* kind,
       one += c;
       continue;
     }
-    // "x" of the truth is not that of the survey.
-    wrong.insert(std::string(file) == "truth.csv" ? "truth " + one : one);
+    // "x" of the truth, or of a fix, is not that of the survey.
+    wrong.insert(std::string(file) == "truth.csv"   ? "truth " + one
+                 : std::string(file) == "fixes.csv" ? "fix " + one
+                                                    : one);
     one.clear();
   }
 }
@@ -465,6 +515,7 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
     Checked checked{one, findings};
     checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;
     checked.wheelbase = model != nullptr ? model->robot.wheelbase : Robot().wheelbase;
+    check_fix_unit(checked);
     const TurnAgreement turns = check_recording(checked);
     if (model == nullptr || !model->robot.wheelbase_stated || said) continue;
     const std::size_t before = findings.size();

@@ -47,6 +47,8 @@ class Gatherer {
       has_views_ |=
           one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
       has_truth_ |= one.kind == MeasurementKind::truth;
+      has_fixes_ |= one.kind == MeasurementKind::fix;
+      has_points_ |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
     }
     for (const std::string name :
          {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
@@ -70,7 +72,8 @@ class Gatherer {
     }
     for (const Channel channel :
          {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale,
-          Channel::bearing, Channel::delay, Channel::truth_heading}) {
+          Channel::bearing, Channel::delay, Channel::truth_heading, Channel::antenna,
+          Channel::antenna_left, Channel::fix_delay}) {
       if (!is_possible(channel)) continue;
       take_view_channel(channel);
     }
@@ -99,6 +102,8 @@ class Gatherer {
     if (channel == Channel::compass) return has_compass_;
     if (channel == Channel::gyro || channel == Channel::gyro_scale) return has_gyro_;
     if (channel == Channel::truth_heading) return has_truth_;
+    if (acts_on_fixes(channel)) return has_fixes_;
+    if (acts_on(channel) == ActsOn::views && !has_points_) return false;
     if (channel == Channel::range || channel == Channel::range_scale ||
         channel == Channel::bearing) {
       return has_views_;
@@ -328,6 +333,8 @@ class Gatherer {
   bool has_gyro_ = false;
   bool has_views_ = false;
   bool has_truth_ = false;
+  bool has_fixes_ = false;
+  bool has_points_ = false;  ///< sightings or truth
   std::vector<Spread> variables_;
   std::vector<std::string> covariates_;
   std::vector<Candidate> candidates_;

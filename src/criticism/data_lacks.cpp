@@ -138,13 +138,15 @@ std::vector<DataLack> lacks_of(const std::vector<Recording>& recordings, const R
   Contents contents;
   bool survey = false;
   bool truth = false;
+  bool fixes = false;
   for (const Recording& recording : recordings) {
     add(recording, robot, contents);
     survey = survey || (options.use_survey && !recording.survey.empty());
     truth = truth || (options.use_truth && !recording.truth.empty());
+    fixes = fixes || (options.use_fixes && !recording.fixes.empty());
   }
   std::vector<DataLack> lacks;
-  add_lacks_of_sensors(recordings, survey || truth, truth, lacks);
+  add_lacks_of_sensors(recordings, survey || truth || fixes, truth, lacks);
   add_lacks_of_drives(contents, lacks);
   add_lacks_of_covariates(recordings, lacks);
   const auto once =

@@ -146,7 +146,7 @@ class Diagnostician {
     result.positions =
         std::any_of(measurements.begin(), measurements.end(), [](const Measurement& measured) {
           return measured.kind == MeasurementKind::survey ||
-                 measured.kind == MeasurementKind::truth;
+                 measured.kind == MeasurementKind::truth || measured.kind == MeasurementKind::fix;
         });
     const Score& score = one.score;
     const bool never = std::all_of(score.largest.begin(), score.largest.end(),

@@ -112,6 +112,7 @@ double stated_of(const std::string& law, const Noise& noise) {
   if (law == "compass") return noise.compass;
   if (law == "sighting") return noise.sighting;
   if (law == "range") return noise.range;
+  if (law == "fix") return noise.fix;
   return law == "bearing" ? noise.bearing : 0.0;
 }
 
@@ -144,6 +145,11 @@ std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& contex
   add("range", "m", [](const Measurement& one, int row) {
     const bool near = one.kind == MeasurementKind::cartesian_view;
     return near || (one.kind == MeasurementKind::view && row == 0) ? 1.0 : 0.0;
+  });
+  add("fix", "m", [&](const Measurement& one, int) {
+    if (one.kind != MeasurementKind::fix) return 0.0;
+    // One that states its own sd answers for it.
+    return std::isnan(fit.recordings[idx(one.session)].fixes[one.source].sd) ? 1.0 : 0.0;
   });
   add("bearing", "rad", [](const Measurement& one, int row) {
     return one.kind == MeasurementKind::view && row == 1 ? 1.0 : 0.0;

@@ -48,6 +48,10 @@ const char* noise_source(MeasurementKind kind, Eigen::Index row) {
       return "survey";
     case MeasurementKind::truth:
       return row == 2 ? "truth_heading" : "truth";
+    case MeasurementKind::fix:
+      return "fix";
+    case MeasurementKind::loop:
+      return row == 2 ? "loop_heading" : "loop";
   }
   return "";
 }

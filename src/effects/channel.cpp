@@ -29,7 +29,12 @@ const std::vector<ChannelFacts>& channels() {
       {range_scale, "range_scale", "", 0.1, "range reading, in proportion"},
       {bearing, "bearing", "rad", 0.5, "bearing reading"},
       {delay, "delay", "s", 0.5, "time stamp of sightings and truth"},
-      {truth_heading, "truth_heading", "rad", 0.5, "heading of truth rows"}};
+      {truth_heading, "truth_heading", "rad", 0.5, "heading of truth rows"},
+      {antenna, "antenna", "m", 0.3, "antenna's place ahead of the axle"},
+      {antenna_left, "antenna_left", "m", 0.3, "antenna's place to the axle's left"},
+      {fix_delay, "fix_delay", "s", 0.5, "time stamp of fixes"},
+      {fix_x, "fix_x", "m", 1.0, "fixes along the map's x axis"},
+      {fix_y, "fix_y", "m", 1.0, "fixes along the map's y axis"}};
   return all;
 }
 

@@ -17,6 +17,11 @@ ActsOn acts_on(Channel channel) {
     case Channel::bearing:
     case Channel::delay:
     case Channel::truth_heading:
+    case Channel::antenna:
+    case Channel::antenna_left:
+    case Channel::fix_delay:
+    case Channel::fix_x:
+    case Channel::fix_y:
       return ActsOn::views;
     case Channel::travel:
     case Channel::left:
@@ -73,6 +78,11 @@ DrivePattern wheel_pattern(Channel channel, double g, const RowTravel& row, doub
     case Channel::truth_heading:
     case Channel::gyro:
     case Channel::gyro_scale:
+    case Channel::antenna:
+    case Channel::antenna_left:
+    case Channel::fix_delay:
+    case Channel::fix_x:
+    case Channel::fix_y:
       break;
   }
   return {};
@@ -113,9 +123,11 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
   ViewPattern view;
   switch (channel) {
     case Channel::lever:
+    case Channel::antenna:
       view.ahead = g;
       break;
     case Channel::lever_left:
+    case Channel::antenna_left:
       view.left = g;
       break;
     case Channel::range:
@@ -128,11 +140,18 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
       view.bearing = g;
       break;
     case Channel::delay:
+    case Channel::fix_delay:
       view.ahead = -g * speed;
       view.heading = -g * turn_rate;
       break;
     case Channel::truth_heading:
       view.heading = g;
+      break;
+    case Channel::fix_x:
+      view.x = g;
+      break;
+    case Channel::fix_y:
+      view.y = g;
       break;
     default:
       break;
@@ -142,11 +161,24 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
 
 bool is_recordable(Channel channel) {
   return channel != Channel::creep && channel != Channel::lever && channel != Channel::lever_left &&
-         channel != Channel::delay && channel != Channel::truth_heading;
+         channel != Channel::delay && channel != Channel::truth_heading && !acts_on_fixes(channel);
 }
 
 bool acts_on_sightings(Channel channel) {
-  return acts_on(channel) == ActsOn::views && channel != Channel::truth_heading;
+  return acts_on_truth(channel) && channel != Channel::truth_heading;
+}
+
+bool acts_on_truth(Channel channel) {
+  return acts_on(channel) == ActsOn::views && !acts_on_fixes(channel);
+}
+
+bool acts_on_fixes(Channel channel) {
+  return channel == Channel::antenna || channel == Channel::antenna_left ||
+         channel == Channel::fix_delay || channel == Channel::fix_x || channel == Channel::fix_y;
+}
+
+bool is_delay(Channel channel) {
+  return channel == Channel::delay || channel == Channel::fix_delay;
 }
 
 RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase) {

@@ -22,6 +22,10 @@
 //   range, range_scale, bearing   f (sightings only)          its instant
 //   delay               -speed f ahead, -turn rate f          its instant
 //   truth_heading     f further left (truth rows only)      its instant
+//   ... per fix
+//   antenna, antenna_left   f ahead, to the left            its instant
+//   fix_delay           -speed f ahead, -turn rate f          its instant
+//   fix_x, fix_y        f along the map's axes                its instant
 //
 // Path and turn are those of a row's wheels: (left + right)/2 and (right - left)/wheelbase. The
 // simulator finds readings by turning the physics round; it shares no formula with this file.
@@ -61,7 +65,10 @@ struct DrivePattern {
   double excess = 0.0;   ///< rad that the gyro's turn is more beyond the wheels'
 };
 
-/// What is added to a view of a landmark or to a truth row.
+using ViewVector = Eigen::Matrix<double, 8, 1>;  ///< a ViewPattern's numbers, in its order
+using ByView = Eigen::Matrix<double, 4, 8>;      ///< a measurement's rows by them
+
+/// What is added to a view of a landmark, to a truth row or to a fix.
 struct ViewPattern {
   double ahead = 0.0;        ///< m
   double left = 0.0;         ///< m
@@ -69,10 +76,11 @@ struct ViewPattern {
   double range = 0.0;        ///< m
   double range_scale = 0.0;  ///< fraction
   double bearing = 0.0;      ///< rad
+  double x = 0.0;            ///< m, map frame; of a fix
+  double y = 0.0;            ///< m
 
-  [[nodiscard]] Eigen::Matrix<double, 6, 1> vector() const {
-    return (Eigen::Matrix<double, 6, 1>() << ahead, left, heading, range, range_scale, bearing)
-        .finished();
+  [[nodiscard]] ViewVector vector() const {
+    return (ViewVector() << ahead, left, heading, range, range_scale, bearing, x, y).finished();
   }
 };
 
@@ -80,15 +88,20 @@ struct ViewPattern {
 /// channel acts on views. Where the gyro reads, the row moves by what wheels and gyro say together.
 [[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row,
                                          double wheelbase);
-/// The same for a view or truth row at this speed (m/s) and turn rate (rad/s).
+/// The same for a view, truth row or fix at this speed (m/s) and turn rate (rad/s).
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
-/// Whether it acts on sightings: of what acts on views all but truth_heading, which acts on truth
-/// rows alone.
+/// Of what acts on views: on sightings (all but truth_heading and what acts on fixes), on truth
+/// rows (all but what acts on fixes), on fixes.
 [[nodiscard]] bool acts_on_sightings(Channel channel);
+[[nodiscard]] bool acts_on_truth(Channel channel);
+[[nodiscard]] bool acts_on_fixes(Channel channel);
+
+/// delay or fix_delay: the instants of what it acts on are moved.
+[[nodiscard]] bool is_delay(Channel channel);
 
 /// Whether a recording without the effect can be written down: not so for creep, lever, lever_left,
-/// delay and truth_heading.
+/// delay, truth_heading and what acts on fixes.
 [[nodiscard]] bool is_recordable(Channel channel);
 
 /// The wheels' travels as they would be if the nominal model held, for a recordable channel that

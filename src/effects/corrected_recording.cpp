@@ -54,7 +54,8 @@ void free_sightings(Channel channel, const std::vector<double>& g, Recording& re
 }
 
 void apply(Channel channel, const std::vector<double>& g, double wheelbase, Recording& recording) {
-  if (channel == Channel::truth_heading) return;  // a tracker's affair
+  // A tracker's affair, or a receiver's.
+  if (channel == Channel::truth_heading || acts_on_fixes(channel)) return;
   if (!is_recordable(channel)) {
     throw std::invalid_argument("has channel \"" + std::string(name_of(channel)) +
                                 "\", which only an adjustment can take into account");

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT
 //
 // Coefficients of physical effects as further unknowns: what one unit of each does to every row of
-// every drive, and to every view of a landmark or truth row.
+// every drive, and to every view of a landmark, truth row or fix.
 //
 //   row of a drive   DrivePattern (channel_physics.hpp): advance, slip, turn, compass
 //   view             the point that meets landmarks and carries the sensors lies `ahead` and
 //                    `left` of the axle's centre, and looks `heading` further left; the readings
 //                    are range (1 + range_scale) + range, and bearing + bearing
 //   truth row        ahead, left, heading alike
+//   fix              ahead, left, heading (by which the way ahead is turned), and x, y
 //
 // An effect is linear in its coefficient row by row; what rows add up to is not, and is computed
 // anew at every coefficient. Effects change no covariance.
@@ -23,13 +24,14 @@
 
 namespace trussmap {
 
-/// One coefficient. Per session a pattern per row (sighting, truth row), or none at all.
+/// One coefficient. Per session a pattern per row (sighting, truth row, fix), or none at all.
 struct EffectPattern {
   std::string name;
   std::vector<std::vector<DrivePattern>> drives;
   std::vector<std::vector<ViewPattern>> sightings;
   std::vector<std::vector<ViewPattern>> truths;
   double prior_sd = std::numeric_limits<double>::infinity();  ///< of the coefficient, about 0
+  std::vector<std::vector<ViewPattern>> fixes = {};
   std::optional<double> held = {};  ///< known at this value: acts, but is no unknown
   double reference = 0.0;  ///< of the coefficient, where the patterns leave all as recorded
 };

@@ -106,16 +106,47 @@ MeasurementRows truth_rows(const Pose& pose, const Vector4& value, const ViewPat
   return rows;
 }
 
+/// The way to the antenna turns with the heading of the view: a late fix is one of another heading.
+MeasurementRows fix_rows(const Pose& pose, const Vector4& value, const ViewPattern& view) {
+  MeasurementRows rows;
+  const Matrix2 R = rotation(pose.heading + view.heading);
+  const Vector2 antenna = R * Vector2(view.ahead, view.left);
+  rows.error.head<2>() = pose.position() + antenna + Vector2(view.x, view.y) - value.head<2>();
+  rows.by_from.topLeftCorner<2, 2>().setIdentity();
+  rows.by_from.block<2, 1>(0, 2) = quarter_turn(antenna);
+  rows.by_view.topLeftCorner<2, 2>() = R;
+  rows.by_view.block<2, 1>(0, 2) = quarter_turn(antenna);
+  rows.by_view.block<2, 2>(0, 6).setIdentity();
+  return rows;
+}
+
+MeasurementRows loop_rows(const Measurement& one, const Pose& from, const Pose& to,
+                          const Vector4& value) {
+  MeasurementRows rows = segment_rows(one, from, to, value);
+  rows.error[2] = wrap_angle(rows.error[2]);  // a loop does not count turns
+  return rows;
+}
+
 }  // namespace
+
+const ViewPattern* unit_view_of(const EffectPattern& effect, const Measurement& one) {
+  if (one.session < 0 || is_driven(one.kind) || one.kind == MeasurementKind::loop) {
+    return nullptr;
+  }
+  const auto& views = one.kind == MeasurementKind::truth ? effect.truths
+                      : one.kind == MeasurementKind::fix ? effect.fixes
+                                                         : effect.sightings;
+  if (views.empty() || views[idx(one.session)].empty()) return nullptr;
+  return &views[idx(one.session)][one.source];
+}
 
 ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
                     const Measurement& one) {
   ViewPattern sum;
-  if (one.session < 0 || is_driven(one.kind)) return sum;
   for (std::size_t k = 0; k < border.size(); ++k) {
-    const auto& views = one.kind == MeasurementKind::truth ? border[k].truths : border[k].sightings;
-    if (views.empty() || views[idx(one.session)].empty()) continue;
-    const ViewPattern& unit = views[idx(one.session)][one.source];
+    const ViewPattern* pattern = unit_view_of(border[k], one);
+    if (pattern == nullptr) continue;
+    const ViewPattern& unit = *pattern;
     const double a = offsets[static_cast<Eigen::Index>(k)];
     sum.ahead += a * unit.ahead;
     sum.left += a * unit.left;
@@ -123,6 +154,8 @@ ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offse
     sum.range += a * unit.range;
     sum.range_scale += a * unit.range_scale;
     sum.bearing += a * unit.bearing;
+    sum.x += a * unit.x;
+    sum.y += a * unit.y;
   }
   return sum;
 }
@@ -150,6 +183,10 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
       return cartesian_view_rows(pose(measurement.from), landmark(measurement.to), value, view);
     case MeasurementKind::truth:
       return truth_rows(pose(measurement.from), value, view);
+    case MeasurementKind::fix:
+      return fix_rows(pose(measurement.from), value, view);
+    case MeasurementKind::loop:
+      return loop_rows(measurement, pose(measurement.from), pose(measurement.to), value);
     case MeasurementKind::survey:
       break;
   }

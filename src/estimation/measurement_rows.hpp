@@ -14,6 +14,8 @@
 //   cartesian_view  R(theta)' delta - offset
 //   survey     l - s
 //   truth      q - t,  theta - h
+//   fix        p + R(theta + heading) (ahead, left) + (x, y) - f      (x, y and heading of the
+//   view) loop       R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -27,11 +29,15 @@ struct MeasurementRows {
   Vector4 error = Vector4::Zero();
   RowsByNode by_from = RowsByNode::Zero();
   RowsByNode by_to = RowsByNode::Zero();
-  Eigen::Matrix<double, 4, 6> by_view = Eigen::Matrix<double, 4, 6>::Zero();  ///< of ViewPattern
+  ByView by_view = ByView::Zero();
 };
 
-/// The sum of the effects' patterns for one sighting or truth row; `offsets` are all coefficients
-/// of the border less their references.
+/// An effect's pattern for one sighting, truth row or fix; nullptr where it has none.
+[[nodiscard]] const ViewPattern* unit_view_of(const EffectPattern& effect,
+                                              const Measurement& measurement);
+
+/// The sum of the effects' patterns for one sighting, truth row or fix; `offsets` are all
+/// coefficients of the border less their references.
 [[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
                                   const Measurement& measurement);
 

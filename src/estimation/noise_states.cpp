@@ -196,11 +196,14 @@ class ProcessLayout {
   /// A white reading needs no state: its variance is the reading's own.
   [[nodiscard]] bool is_reading() const {
     return channel_ == Channel::range || channel_ == Channel::range_scale ||
-           channel_ == Channel::bearing;
+           channel_ == Channel::bearing || channel_ == Channel::fix_x || channel_ == Channel::fix_y;
   }
   [[nodiscard]] Matrix4 white_reading(const Measurement& one) const {
     Matrix4 variance = Matrix4::Zero();
-    if (one.kind == MeasurementKind::cartesian_view) {
+    if (one.kind == MeasurementKind::fix) {
+      const Eigen::Index axis = channel_ == Channel::fix_x ? 0 : 1;
+      variance(axis, axis) = 1.0;
+    } else if (one.kind == MeasurementKind::cartesian_view) {
       const double size = channel_ == Channel::range ? 1.0 : one.value.head<2>().norm();
       variance(0, 0) = variance(1, 1) = size * size;
     } else if (channel_ == Channel::bearing) {
@@ -214,6 +217,10 @@ class ProcessLayout {
   /// Whether the channel acts on the view.
   [[nodiscard]] bool sees(const Measurement& one) const {
     if (acts_on(channel_) != ActsOn::views || one.session < 0) return false;
+    if (one.kind == MeasurementKind::loop) return false;
+    if (one.kind == MeasurementKind::fix || acts_on_fixes(channel_)) {
+      return one.kind == MeasurementKind::fix && acts_on_fixes(channel_);
+    }
     switch (channel_) {
       case Channel::range:
       case Channel::range_scale:
@@ -227,14 +234,13 @@ class ProcessLayout {
     }
   }
 
-  [[nodiscard]] Eigen::Matrix<double, 6, 1> unit_view(const Measurement& one) const {
+  [[nodiscard]] ViewVector unit_view(const Measurement& one) const {
     const Drive& drive = recording(one.session).drive;
     const std::size_t row = row_at(drive, pose(one.from).t);
     const double duration = std::max(drive.duration(row), 1e-9);
     const double path = 0.5 * (drive.left[row] + drive.right[row]);
     const double turn = (drive.right[row] - drive.left[row]) / layer_.robot_.wheelbase;
-    Eigen::Matrix<double, 6, 1> unit =
-        view_pattern(channel_, 1.0, path / duration, turn / duration).vector();
+    ViewVector unit = view_pattern(channel_, 1.0, path / duration, turn / duration).vector();
     if (one.kind != MeasurementKind::cartesian_view) return unit;
     // Of a near landmark the offset is measured: its error lies along the sight.
     const Vector2 away = -one.value.head<2>().normalized();
@@ -454,8 +460,7 @@ void add_processes(RecordingProblem& problem, const std::vector<Recording>& reco
   }
 }
 
-Vector4 error_by(const Measurement& measurement, const Eigen::Matrix<double, 4, 6>& by_view,
-                 const NoiseTerm& term) {
+Vector4 error_by(const Measurement& measurement, const ByView& by_view, const NoiseTerm& term) {
   if (is_driven(measurement.kind)) return -term.by.head<4>();
   return by_view * term.by;
 }
@@ -482,6 +487,8 @@ ViewPattern lasting_in_view(const RecordingProblem& problem, std::size_t measure
     sum.range += z * term.by[3];
     sum.range_scale += z * term.by[4];
     sum.bearing += z * term.by[5];
+    sum.x += z * term.by[6];
+    sum.y += z * term.by[7];
   }
   return sum;
 }

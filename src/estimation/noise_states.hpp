@@ -113,8 +113,8 @@ void put_processes(RecordingProblem& problem, const std::vector<LaidProcess>& la
                    const std::vector<double>& sds);
 
 /// What one unit of a term's state adds to a measurement's error (predicted - measured).
-[[nodiscard]] Vector4 error_by(const Measurement& measurement,
-                               const Eigen::Matrix<double, 4, 6>& by_view, const NoiseTerm& term);
+[[nodiscard]] Vector4 error_by(const Measurement& measurement, const ByView& by_view,
+                               const NoiseTerm& term);
 
 /// What the states add to a segment's four numbers.
 [[nodiscard]] Vector4 lasting_in_segment(const RecordingProblem& problem, std::size_t measurement,

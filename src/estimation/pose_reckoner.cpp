@@ -104,6 +104,7 @@ void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correc
   }
   if (correct) {
     for (const Measurement* one : seen) {
+      if (one->kind == MeasurementKind::fix) meet_fix(*one);
       if (is_sighting(one->kind) && landmarks_[idx(one->to)]) meet_landmark(*one);
     }
   }
@@ -123,6 +124,15 @@ void PoseReckoner::meet_truth(const Measurement& one) {
   innovation -= Eigen::Vector3d(pose_.x, pose_.y, pose_.heading);
   innovation[2] = wrap_angle(innovation[2]);
   update(Eigen::MatrixXd::Identity(3, covariance_.cols()), innovation, covariance_of(one));
+}
+
+/// The antenna is taken to be at the robot, as nearly as a landmark is known.
+void PoseReckoner::meet_fix(const Measurement& one) {
+  Eigen::VectorXd innovation = one.value.head<2>();
+  innovation -= pose_.position();
+  Eigen::MatrixXd R = covariance_of(one);
+  R.diagonal().array() += options_.map_sd * options_.map_sd;
+  update(Eigen::MatrixXd::Identity(2, covariance_.cols()), innovation, R);
 }
 
 void PoseReckoner::meet_landmark(const Measurement& one) {

@@ -7,7 +7,8 @@
 //   drive           the segment's motion with the effects; what is not known of them adds to the
 //                   pose's covariance, and ties pose and coefficients together
 //   read_compass    the heading, and with it what the compass's effects must be
-//   look            truth, and landmarks that have a place, correct pose and coefficients; the
+//   look            truth, fixes, and landmarks that have a place, correct pose and coefficients;
+//   the
 //                   others are placed
 //
 // Landmarks stand still: they are as certain as `map_sd` says.
@@ -57,7 +58,8 @@ class PoseReckoner {
 
   void read_compass(const Measurement& segment);
   void drive(const Measurement& segment);
-  /// Corrects by truth and landmarks that have a place, if wanted; then places the others.
+  /// Corrects by truth, and by fixes and landmarks that have a place, if wanted; then places the
+  /// others.
   void look(const std::vector<const Measurement*>& seen, bool correct);
 
  private:
@@ -68,6 +70,7 @@ class PoseReckoner {
   [[nodiscard]] Motion motion_of(const Measurement& segment) const;
   [[nodiscard]] Vector2 sighted(const Measurement& one) const;
   void meet_truth(const Measurement& one);
+  void meet_fix(const Measurement& one);
   void meet_landmark(const Measurement& one);
   void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
               const Eigen::MatrixXd& R);

@@ -148,7 +148,23 @@ void warn_of_mirrors(const RecordingProblem& problem, RecordingAdjustment& resul
   }
 }
 
-void add_warnings(RecordingAdjustment& result) {
+/// In a word: what was left out.
+std::string kinds_left_out(const RecordingProblem& problem, const std::vector<int>& left_out) {
+  const auto any = [&](const auto& is) {
+    return std::any_of(left_out.begin(), left_out.end(),
+                       [&](int k) { return is(problem.measurements[idx(k)].kind); });
+  };
+  std::string text;
+  const auto add = [&text](bool there, const char* what) {
+    if (there) text += (text.empty() ? "" : " or ") + std::string(what);
+  };
+  add(any(is_sighting), "sightings");
+  add(any([](MeasurementKind kind) { return kind == MeasurementKind::fix; }), "fixes");
+  add(any([](MeasurementKind kind) { return kind == MeasurementKind::loop; }), "loops");
+  return text;
+}
+
+void add_warnings(const RecordingProblem& problem, RecordingAdjustment& result) {
   constexpr double kImplausible = 1e-6;
   if (!result.converged) {
     result.warnings.push_back(joined("no minimum was reached in ", result.iterations,
@@ -161,7 +177,8 @@ void add_warnings(RecordingAdjustment& result) {
                                      "an effect is missing, or sightings are wrong"));
   }
   if (!result.left_out.empty()) {
-    result.warnings.push_back(joined(result.left_out.size(), " sightings were left out"));
+    const std::string what = kinds_left_out(problem, result.left_out);
+    result.warnings.push_back(joined(result.left_out.size(), " ", what, " were left out"));
   }
 }
 
@@ -220,7 +237,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   result.gradient_norm = system.gradient_norm();
   if (options.landmark_uncertainties) take_uncertainties(system, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
-  add_warnings(result);
+  add_warnings(problem, result);
   warn_of_mirrors(problem, result);
   return result;
 }

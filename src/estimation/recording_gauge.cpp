@@ -11,7 +11,8 @@ namespace trussmap {
 namespace {
 
 bool in_map(const Measurement& one) {
-  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
+  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth ||
+         one.kind == MeasurementKind::fix;
 }
 
 void refuse_loose_sessions(const RecordingProblem& problem) {
@@ -22,7 +23,7 @@ void refuse_loose_sessions(const RecordingProblem& problem) {
   const std::string& session = problem.sessions[idx(problem.poses[idx(untied[0])].session)];
   throw SolveError(session + (absolute ? " floats" : " stands apart") +
                    ": no landmark ties it to " +
-                   (absolute ? "the survey or the truth" : problem.sessions.front()));
+                   (absolute ? "the survey, the truth or the fixes" : problem.sessions.front()));
 }
 
 }  // namespace
@@ -52,6 +53,7 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
   refuse_loose_sessions(problem);
   bool position = false;
   bool direction = false;
+  int fixes = 0;
   std::set<int> surveyed;
   for (const Measurement& one : problem.measurements) {
     switch (one.kind) {
@@ -62,6 +64,10 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
       case MeasurementKind::truth:
         position = direction = true;
         break;
+      case MeasurementKind::fix:
+        position = true;
+        ++fixes;
+        break;
       case MeasurementKind::segment:
         direction = direction || one.rows == 4;
         break;
@@ -69,8 +75,10 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
         break;
     }
   }
-  direction = direction || surveyed.size() >= 2;
-  return {!position && problem.landmark_count() > 0, !direction && !problem.poses.empty()};
+  direction = direction || surveyed.size() >= 2 || fixes >= 2 || (fixes > 0 && !surveyed.empty());
+  const bool any_pose = !problem.poses.empty();
+  const bool landmarks = problem.landmark_count() > 0;
+  return {!position && landmarks, !direction && any_pose, !position && !landmarks && any_pose};
 }
 
 }  // namespace trussmap

@@ -6,6 +6,7 @@
 #include "estimation/motion_changes.hpp"
 #include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
+#include "recording/legs.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -40,17 +41,27 @@ class Collector {
     session_ = static_cast<int>(problem_.sessions.size());
     problem_.sessions.push_back(recording.name);
     const std::vector<std::size_t> truth = truth_rows_used(recording);
-    if (recording.sightings.empty() && truth.empty()) {
+    const std::vector<std::size_t> fixes = fixes_used(recording);
+    const bool loops = options_.loops && !recording.loops.empty();
+    if (recording.sightings.empty() && truth.empty() && fixes.empty() && !loops) {
       throw InputError(recording.name, 0,
-                       "neither sightings nor truth in use, expected some to adjust to");
+                       "neither sightings, truth, fixes nor loops in use, expected some to adjust "
+                       "to");
     }
-    add_poses(recording, truth);
+    add_poses(recording, truth, fixes);
     add_segments(recording);
     for (std::size_t k = 0; k < recording.sightings.size(); ++k) {
       if (pose_at_.contains(recording.sightings[k].t)) add_sighting(recording.sightings[k], k);
     }
     for (const std::size_t k : truth) {
       if (pose_at_.contains(recording.truth[k].t)) add_truth(recording.truth[k], k);
+    }
+    for (const std::size_t k : fixes) {
+      if (pose_at_.contains(recording.fixes[k].t)) add_fix(recording.fixes[k], k);
+    }
+    for (std::size_t k = 0; loops && k < recording.loops.size(); ++k) {
+      const Loop& loop = recording.loops[k];
+      if (pose_at_.contains(loop.t) && pose_at_.contains(loop.t2)) add_loop(loop, k);
     }
   }
 
@@ -110,10 +121,40 @@ class Collector {
     return used;
   }
 
-  void add_poses(const Recording& recording, const std::vector<std::size_t>& truth) {
+  /// All but those that follow one another faster than their errors change; at rest one in
+  /// `fix_gap`, too, for each tells more of the place.
+  [[nodiscard]] std::vector<std::size_t> fixes_used(const Recording& recording) const {
+    std::vector<std::size_t> used;
+    if (!options_.fixes || recording.fixes.empty()) return used;
+    const Drive& drive = recording.drive;
+    const std::vector<double> driven = driven_path(drive);
+    double last_t = 0.0;
+    double last_path = 0.0;
+    for (std::size_t k = 0; k < recording.fixes.size(); ++k) {
+      const double t = recording.fixes[k].t;
+      if (t < drive.start() || t > drive.t.back()) continue;
+      const double path = path_at(drive, driven, t);
+      const bool soon = t - last_t < options_.fix_gap && path - last_path < options_.fix_path;
+      if (!used.empty() && soon) continue;
+      used.push_back(k);
+      last_t = t;
+      last_path = path;
+    }
+    return used;
+  }
+
+  void add_poses(const Recording& recording, const std::vector<std::size_t>& truth,
+                 const std::vector<std::size_t>& fixes) {
     std::vector<double> times;
     for (const Sighting& sighting : recording.sightings) times.push_back(sighting.t);
     for (const std::size_t k : truth) times.push_back(recording.truth[k].t);
+    for (const std::size_t k : fixes) times.push_back(recording.fixes[k].t);
+    if (options_.loops) {
+      for (const Loop& loop : recording.loops) {
+        times.push_back(loop.t);
+        times.push_back(loop.t2);
+      }
+    }
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     leave_out(times);
@@ -247,6 +288,35 @@ class Collector {
     problem_.measurements.push_back(one);
   }
 
+  void add_fix(const Fix& fix, std::size_t source) {
+    const double sd = std::isnan(fix.sd) ? model_.noise.fix : fix.sd;
+    Measurement one;
+    one.kind = MeasurementKind::fix;
+    one.from = pose_at_.at(fix.t);
+    one.rows = 2;
+    one.value.head<2>() = Vector2(fix.x, fix.y);
+    one.whitener = whitener_of_sds({sd, sd});
+    one.session = session_;
+    one.source = source;
+    problem_.measurements.push_back(one);
+  }
+
+  void add_loop(const Loop& loop, std::size_t source) {
+    const double sd = std::isnan(loop.sd) ? model_.noise.loop : loop.sd;
+    const double sd_heading =
+        std::isnan(loop.sd_heading) ? model_.noise.loop_heading : loop.sd_heading;
+    Measurement one;
+    one.kind = MeasurementKind::loop;
+    one.from = pose_at_.at(loop.t);
+    one.to = pose_at_.at(loop.t2);
+    one.rows = 3;
+    one.value.head<3>() = Eigen::Vector3d(loop.dx, loop.dy, loop.dtheta);
+    one.whitener = whitener_of_sds({sd, sd, sd_heading});
+    one.session = session_;
+    one.source = source;
+    problem_.measurements.push_back(one);
+  }
+
   const Model& model_;
   const ProblemOptions& options_;
   int session_ = 0;
@@ -282,7 +352,9 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
   for (Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey) continue;
     one.from = problem.pose_node(one.from);
-    if (one.kind == MeasurementKind::segment) one.to = problem.pose_node(one.to);
+    const bool between_poses =
+        one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
+    if (between_poses) one.to = problem.pose_node(one.to);
   }
   add_processes(problem, recordings, model);
   return problem;
@@ -312,6 +384,11 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
       return "survey of landmark " + problem.landmarks[idx(measurement.from)];
     case MeasurementKind::truth:
       return "truth at t = " + time(measurement.from) + " s" + session;
+    case MeasurementKind::fix:
+      return "fix at t = " + time(measurement.from) + " s" + session;
+    case MeasurementKind::loop:
+      return "loop from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
+             session;
   }
   return "measurement";
 }

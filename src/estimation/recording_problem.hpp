@@ -5,8 +5,9 @@
 //
 //   unknown                                        node
 //     landmark positions, shared by all sessions   0 ... landmarks - 1                2 each
-//     robot poses at sightings, truth rows used,   landmarks ... nodes - 1            3 each
-//     and changes between spinning and driving
+//     robot poses at sightings, truth rows and     landmarks ... nodes - 1            3 each
+//     fixes used, at both ends of loops, and at
+//     changes between spinning and driving
 //     coefficients of effects                      none: a dense border               1 each
 //
 //   measurement          between                rows
@@ -20,10 +21,12 @@
 //                                               of its sds says nothing of a direction      m
 //     survey             landmark               x, y (2)                                    m
 //     truth              pose                   x, y, heading (3)                           m, rad
+//     fix                pose                   x, y of the antenna (2)                     m
+//     loop               pose, pose             the second in the first's axes (3)          m, rad
 //
 // A segment's four numbers share the wheels' noise (segment_motion.hpp); all else is independent.
-// What was driven before the first and after the last sighting (or truth row) carries nothing and
-// is left out.
+// What was driven before the first and after the last of what is measured carries nothing and is
+// left out.
 #pragma once
 
 #include "estimation/segment_motion.hpp"
@@ -37,7 +40,17 @@
 
 namespace trussmap {
 
-enum class MeasurementKind { segment, gyro, standing, view, cartesian_view, survey, truth };
+enum class MeasurementKind {
+  segment,
+  gyro,
+  standing,
+  view,
+  cartesian_view,
+  survey,
+  truth,
+  fix,
+  loop
+};
 
 /// Of the drive: what its rows add up to.
 [[nodiscard]] constexpr bool is_driven(MeasurementKind kind) {
@@ -48,6 +61,12 @@ enum class MeasurementKind { segment, gyro, standing, view, cartesian_view, surv
 [[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
   return kind == MeasurementKind::standing || kind == MeasurementKind::view ||
          kind == MeasurementKind::cartesian_view;
+}
+
+/// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
+/// place taken for another.
+[[nodiscard]] constexpr bool may_be_wrong(MeasurementKind kind) {
+  return is_sighting(kind) || kind == MeasurementKind::fix || kind == MeasurementKind::loop;
 }
 
 struct Measurement;
@@ -66,7 +85,7 @@ struct Measurement {
   Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
   double tails = 0.0;  ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
   int session = -1;    ///< -1: survey
-  /// Sighting, survey point or truth row of the session; of what is driven, the segment.
+  /// Row of the session's stream; of what is driven, the segment.
   std::size_t source = 0;
 };
 
@@ -81,7 +100,7 @@ struct NoiseState {
 /// What one unit of a state adds: to a segment's four numbers, or to the ViewPattern of a view.
 struct NoiseTerm {
   int state = 0;
-  Eigen::Matrix<double, 6, 1> by = Eigen::Matrix<double, 6, 1>::Zero();
+  ViewVector by = ViewVector::Zero();
 };
 
 /// A robot's pose that is unknown.
@@ -118,8 +137,14 @@ struct TimeSpan {
 struct ProblemOptions {
   bool survey = true;        ///< use survey.csv
   bool truth = true;         ///< use truth.csv
+  bool fixes = true;         ///< use fixes.csv
+  bool loops = true;         ///< use loops.csv
   double truth_path = 0.25;  ///< m between truth rows used, or
   double truth_turn = 0.5;   ///< rad turned between them, whichever comes first
+  /// Fixes that follow sooner and nearer than both are passed over, for their errors are hardly
+  /// independent of those before: s, and m of driven path.
+  double fix_gap = 0.0999;
+  double fix_path = 0.25;
   double least_spin = 0.1;   ///< rad: a shorter spin is no change of motion
   double least_drive = 0.1;  ///< m: nor is a shorter drive
   /// Per session, in order of time (or none at all): what is driven there, and what is sighted or
@@ -133,7 +158,7 @@ struct ProblemOptions {
 /// Inverse Cholesky factor of a covariance's leading rows x rows.
 [[nodiscard]] Matrix4 whitener_of(const Matrix4& covariance, int rows);
 
-/// Throws InputError where a recording has neither sightings nor truth in use.
+/// Throws InputError where a recording has nothing in use that ties it to a place.
 [[nodiscard]] RecordingProblem make_problem(const std::vector<Recording>& recordings,
                                             const Model& model, const ProblemOptions& options = {});
 

@@ -51,8 +51,12 @@ void keep_tied(const RecordingProblem& problem, const std::vector<double>& squar
     std::size_t best = weights.size();
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const Measurement& one = problem.measurements[k];
-      if (weights[k] > 0.0 || !is_sighting(one.kind)) continue;
-      if (!loose.contains(one.from - problem.landmark_count())) continue;
+      if (weights[k] > 0.0 || !may_be_wrong(one.kind)) continue;
+      const auto is_loose = [&](int node) {
+        return loose.contains(node - problem.landmark_count());
+      };
+      const bool loop = one.kind == MeasurementKind::loop;
+      if (!is_loose(one.from) && !(loop && is_loose(one.to))) continue;
       if (best == weights.size() || squared_errors[k] < squared_errors[best]) best = k;
     }
     if (best == weights.size()) return;  // nothing ever tied it
@@ -66,25 +70,47 @@ std::vector<double> soft_weights(const RecordingProblem& problem,
                                  const std::vector<double>& squared_errors, double gate) {
   std::vector<double> weights(squared_errors.size(), 1.0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (!is_sighting(problem.measurements[k].kind)) continue;
+    if (!may_be_wrong(problem.measurements[k].kind)) continue;
     weights[k] = std::pow(gate / (squared_errors[k] + gate), 2);
   }
   return weights;
 }
 
-double share_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
-                    double limit) {
+namespace {
+
+/// Of loops, or of what else may be wrong.
+double share_of_kind_beyond(const RecordingProblem& problem,
+                            const std::vector<double>& squared_errors, double limit, bool loops) {
   double beyond = 0.0;
   double all = 0.0;
   for (std::size_t k = 0; k < squared_errors.size(); ++k) {
-    if (!is_sighting(problem.measurements[k].kind)) continue;
+    const MeasurementKind kind = problem.measurements[k].kind;
+    if (!may_be_wrong(kind) || (kind == MeasurementKind::loop) != loops) continue;
     all += 1.0;
     if (squared_errors[k] > limit) beyond += 1.0;
   }
   return beyond / std::max(all, 1.0);
 }
 
+}  // namespace
+
+double share_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+                    double limit) {
+  return share_of_kind_beyond(problem, squared_errors, limit, false);
+}
+
 namespace {
+
+/// Places are taken for one another far more often than landmarks are misread; but where most loops
+/// contradict the drive, it is the drive that is wrong.
+constexpr double kMostLoopsOut = 0.5;
+
+bool are_few_beyond(const RecordingProblem& problem, const std::vector<double>& squared_errors,
+                    double limit, double most) {
+  return share_beyond(problem, squared_errors, limit) <= most &&
+         share_of_kind_beyond(problem, squared_errors, limit, true) <=
+             std::max(most, kMostLoopsOut);
+}
 
 constexpr double kSamePlace = 0.5;  // m
 
@@ -124,7 +150,7 @@ class RobustDescent {
         descend_by(10);
       }
       fit_.gate = gate;
-      if (share_beyond(problem_, system_.squared_errors(), gate) <= most) best = fit_;
+      if (are_few_beyond(problem_, system_.squared_errors(), gate, most)) best = fit_;
     }
     fit_ = std::move(best);
   }
@@ -184,7 +210,7 @@ class RobustDescent {
     std::vector<std::size_t> out;
     std::vector<double> weights = fit_.weights;
     for (std::size_t k = 0; k < weights.size(); ++k) {
-      if (weights[k] > 0.0 || !is_sighting(problem_.measurements[k].kind)) continue;
+      if (weights[k] > 0.0 || !may_be_wrong(problem_.measurements[k].kind)) continue;
       out.push_back(k);
       weights[k] = kFaint;
     }
@@ -233,7 +259,7 @@ class RobustDescent {
 
   void weigh(double mu) {
     for (std::size_t k = 0; k < fit_.weights.size(); ++k) {
-      if (!is_sighting(problem_.measurements[k].kind)) continue;
+      if (!may_be_wrong(problem_.measurements[k].kind)) continue;
       fit_.weights[k] = bent_weight(system_.squared_errors()[k], fit_.gate, mu);
     }
     keep_one_per_landmark(problem_, system_.squared_errors(), fit_.weights);

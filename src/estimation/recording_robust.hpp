@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Wrong sightings: a label misread, a landmark that somebody moved for a while.
+// Wrong sightings: a label misread, a landmark that somebody moved for a while; fixes by an echo;
+// loops that take one place for another. All that follows of sightings holds of these as well.
 //
 //   r^2    squared whitened error of a sighting
 //   c^2    the largest r^2 that a right one should have: `gate`
@@ -14,9 +15,9 @@
 //   heed     landmarks go to where most of their sightings have them
 //   narrow   Geman and McClure's weights, their c from 16 times as wide (in sds) down to the one
 //            wanted. Wrong sightings are few, and each contradicts all others; where more than
-//            `most_left_out` are beyond c, it is the model that is wrong, and c stays wider: the
-//            noise counts as that much larger. Where even the widest leaves out too many, none is
-//            left out.
+//            `most_left_out` are beyond c (of loops: more than half), it is the model that is
+//            wrong, and c stays wider: the noise counts as that much larger. Where even the widest
+//            leaves out too many, none is left out.
 //   harden   the cost is bent, step by step, into the truncated one; then what is out is asked
 //            once more
 //
@@ -29,12 +30,12 @@
 
 namespace trussmap {
 
-/// Weights of Geman and McClure for sightings, (gate/(r^2 + gate))^2, and 1 for all else.
+/// Weights of Geman and McClure for what may be wrong, (gate/(r^2 + gate))^2, and 1 for all else.
 [[nodiscard]] std::vector<double> soft_weights(const RecordingProblem& problem,
                                                const std::vector<double>& squared_errors,
                                                double gate);
 
-/// Share of the sightings whose squared error is beyond a limit.
+/// Share of what may be wrong, loops apart, whose squared error is beyond a limit.
 [[nodiscard]] double share_beyond(const RecordingProblem& problem,
                                   const std::vector<double>& squared_errors, double limit);
 

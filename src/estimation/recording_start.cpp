@@ -6,6 +6,7 @@
 #include "estimation/pose_reckoner.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
+#include "statistics/thinned.hpp"
 #include "trussmap/planar.hpp"
 
 #include <algorithm>
@@ -14,6 +15,15 @@
 
 namespace trussmap {
 namespace {
+
+bool in_map_frame(const Measurement& one) {
+  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth ||
+         one.kind == MeasurementKind::fix;
+}
+
+bool between_poses(const Measurement& one) {
+  return one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
+}
 
 /// Measurements by the poses that they belong to.
 struct ByPose {
@@ -157,6 +167,55 @@ class Layer {
   KnownCoefficients coefficients_;
 };
 
+/// Where a pose that a fix belongs to is now, and where the fix has it.
+struct FixedPlace {
+  Vector2 here;
+  Vector2 there;
+};
+
+double truncated_cost(const Alignment& over, const std::vector<FixedPlace>& places, double limit) {
+  double sum = 0.0;
+  for (const FixedPlace& one : places) {
+    sum += std::min((over.apply(one.here) - one.there).squaredNorm(), limit * limit);
+  }
+  return sum;
+}
+
+/// The rotation and translation that suit most fixes, from pairs of them; those that are further
+/// off than `limit` (m) have no say. Shifted only where no two of them are `apart`.
+Alignment align_to_most(const std::vector<FixedPlace>& all, double limit, double apart) {
+  constexpr std::size_t kPaired = 30;
+  constexpr std::size_t kJudged = 300;
+  const std::vector<FixedPlace> some = thinned(all, kPaired);
+  const std::vector<FixedPlace> judges = thinned(all, kJudged);
+  Alignment best;
+  double least = std::numeric_limits<double>::infinity();
+  const auto judge = [&](const Alignment& over) {
+    const double cost = truncated_cost(over, judges, limit);
+    if (cost >= least) return;
+    least = cost;
+    best = over;
+  };
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    judge({1.0, 0.0, some[i].there - some[i].here, 0.0});
+    for (std::size_t j = i + 1; j < some.size(); ++j) {
+      const Vector2 here = some[j].here - some[i].here;
+      const Vector2 there = some[j].there - some[i].there;
+      if (here.norm() < apart || there.norm() < apart) continue;
+      judge(align_rigidly({some[i].here, some[j].here}, {some[i].there, some[j].there}));
+    }
+  }
+  std::vector<Vector2> here;
+  std::vector<Vector2> there;
+  for (const FixedPlace& one : judges) {
+    if ((best.apply(one.here) - one.there).norm() > limit) continue;
+    here.push_back(one.here);
+    there.push_back(one.there);
+  }
+  if (best.angle != 0.0 && here.size() >= 2) judge(align_rigidly(here, there));
+  return best;
+}
+
 bool has_compass(const RecordingProblem& problem) {
   return std::any_of(
       problem.measurements.begin(), problem.measurements.end(),
@@ -168,7 +227,10 @@ bool has_compass(const RecordingProblem& problem) {
 double adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
                       Layer& layer) {
   const ProblemPart part = part_of(session, 0, count, &layer.landmarks());
-  if (part.landmarks.empty()) return 0.0;
+  const bool loops =
+      std::any_of(part.problem.measurements.begin(), part.problem.measurements.end(),
+                  [](const Measurement& one) { return one.kind == MeasurementKind::loop; });
+  if (part.landmarks.empty() && !loops) return 0.0;
   RecordingDescent fit;
   for (const int landmark : part.landmarks) {
     fit.state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
@@ -178,7 +240,17 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   RecordingSystem system(part.problem, layer.border());
   system.set_slack(RecordingSystem::kRoughSlack);
   constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
-  if (std::isfinite(options.gate)) {
+  if (std::isfinite(options.gate) && loops) {
+    system.linearise(fit.state, fit.coefficients);
+    RobustFit robust{fit.state, fit.coefficients, {}, options.gate};
+    for (std::size_t k = 0; k < part.problem.measurements.size(); ++k) {
+      const bool out = may_be_wrong(part.problem.measurements[k].kind) &&
+                       system.squared_errors()[k] > options.gate;
+      robust.weights.push_back(out ? 0.0 : 1.0);
+    }
+    robust = look_again(system, part.problem, std::move(robust));
+    fit = descend(system, robust.state, robust.coefficients, kRough);
+  } else if (std::isfinite(options.gate)) {
     heed_majority(part.problem, fit.state);
     for (int round = 0; round < 4; ++round) {
       system.linearise(fit.state, fit.coefficients);
@@ -209,8 +281,95 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   return lost;
 }
 
+constexpr double kFarOff = 5.0;       // sds of a fix
+constexpr double kDriftShare = 0.05;  // of a stretch: what dead reckoning may be off
+
+/// A session's fixes, by pose.
+struct SessionFixes {
+  std::vector<int> poses;  ///< ascending
+  std::vector<Vector2> places;
+  double sd = 0.0;  ///< m, the median
+};
+
+SessionFixes fixes_of(const RecordingProblem& session) {
+  SessionFixes result;
+  std::map<int, const Measurement*> fixes;
+  std::vector<double> sds;
+  for (const Measurement& one : session.measurements) {
+    if (one.kind != MeasurementKind::fix) continue;
+    fixes[one.from - session.landmark_count()] = &one;
+    sds.push_back(1.0 / one.whitener(0, 0));
+  }
+  for (const auto& [pose, one] : fixes) {
+    result.poses.push_back(pose);
+    result.places.emplace_back(one->value.head<2>());
+  }
+  if (sds.empty()) return result;
+  std::nth_element(sds.begin(), sds.begin() + std::ssize(sds) / 2, sds.end());
+  result.sd = sds[sds.size() / 2];
+  return result;
+}
+
+/// Where the poses before `end` are to go, by the fixes; `span` (m) is how far they reach.
+Alignment onto_fixes(const SessionFixes& fixes, const std::vector<Pose>& poses, int end,
+                     double span) {
+  std::vector<FixedPlace> places;
+  for (std::size_t k = 0; k < fixes.poses.size() && fixes.poses[k] < end; ++k) {
+    places.push_back({poses[idx(fixes.poses[k])].position(), fixes.places[k]});
+  }
+  const double limit = std::max(kFarOff * fixes.sd, kDriftShare * span);
+  return align_to_most(places, limit, kFarOff * fixes.sd);
+}
+
+Pose moved_by(const Alignment& over, const Pose& pose) {
+  const Vector2 place = over.apply(pose.position());
+  return {place.x(), place.y(), pose.heading + over.angle};
+}
+
+/// From where its first stretch suits the fixes on, corrected by them. That stretch is as long as
+/// tells the heading.
+void lay_along_fixes(const SessionFixes& fixes, bool compass, Layer& layer) {
+  constexpr double kTellsHeading = 20.0;  // sds of a fix
+  constexpr double kShortest = 2.0;       // m
+  constexpr std::size_t kFewest = 8;      // fixes
+  constexpr double kHeadingSd = 0.3;      // rad
+  const int poses = layer.pose_count();
+  const Layer::Laid before = layer.laid();
+  const Matrix3 unknown_heading = Eigen::Vector3d(0.0, 0.0, compass ? 10.0 : 0.0).asDiagonal();
+  layer.lay(0, poses - 1, layer.first_pose(), unknown_heading, false);
+  const double wanted = std::max(kTellsHeading * fixes.sd, kShortest);
+  const Vector2 begin = layer.poses()[idx(fixes.poses.front())].position();
+  double span = 0.0;
+  std::size_t count = 0;
+  while (count < fixes.poses.size() && (span < wanted || count < kFewest)) {
+    span = std::max(span, (layer.poses()[idx(fixes.poses[count])].position() - begin).norm());
+    ++count;
+  }
+  const Alignment over = onto_fixes(fixes, layer.poses(), fixes.poses[count - 1] + 1, span);
+  const double sd = std::max(fixes.sd, kDriftShare * span);
+  const Pose start = moved_by(over, layer.poses().front());
+  layer.take_back(before);
+  const Matrix3 covariance =
+      Eigen::Vector3d(sd * sd, sd * sd, kHeadingSd * kHeadingSd).asDiagonal();
+  layer.lay(0, poses - 1, start, covariance, true);
+  layer.place_by_ranges(poses, true);
+}
+
+/// All of a session that lies in a frame of its own.
+void lay_onto_fixes(const SessionFixes& fixes, Layer& layer) {
+  double span = 0.0;
+  for (const Pose& pose : layer.poses()) {
+    span = std::max(span, (pose.position() - layer.poses().front().position()).norm());
+  }
+  const Alignment over = onto_fixes(fixes, layer.poses(), layer.pose_count(), span);
+  for (std::optional<Vector2>& landmark : layer.landmarks()) {
+    if (landmark) landmark = over.apply(*landmark);
+  }
+  for (Pose& pose : layer.poses()) pose = moved_by(over, pose);
+}
+
 /// One session in a frame of its own (with truth rows: theirs).
-void lay_session(const RecordingProblem& session, const StartOptions& options, Layer& layer) {
+void lay_freely(const RecordingProblem& session, const StartOptions& options, Layer& layer) {
   constexpr int kShortestStretch = 7;
   constexpr double kLost = 0.12;  // share of the sightings: the robot took a wrong turn
   const int poses = layer.pose_count();
@@ -247,6 +406,24 @@ void lay_session(const RecordingProblem& session, const StartOptions& options, L
       longest = std::min(poses, 2 * longest);
     }
   }
+}
+
+/// One session; whether it lies in the map's frame then, by truth or fixes.
+bool lay_session(const RecordingProblem& session, const StartOptions& options, Layer& layer) {
+  std::ptrdiff_t sightings = 0;
+  bool truth = false;
+  for (const Measurement& one : session.measurements) {
+    if (locates(one)) ++sightings;
+    truth = truth || one.kind == MeasurementKind::truth;
+  }
+  const SessionFixes fixes = fixes_of(session);
+  if (!truth && !fixes.poses.empty() && std::ssize(fixes.poses) >= sightings) {
+    lay_along_fixes(fixes, has_compass(session), layer);
+    return true;
+  }
+  lay_freely(session, options, layer);
+  if (!truth && !fixes.poses.empty()) lay_onto_fixes(fixes, layer);
+  return truth || !fixes.poses.empty();
 }
 
 /// Lays a session over landmarks that have their place.
@@ -286,12 +463,13 @@ std::vector<std::pair<int, int>> session_spans(const RecordingProblem& problem) 
   return spans;
 }
 
-/// part_of keeps no truth; a session's start needs it.
+/// part_of keeps neither truth nor fixes; a session's start needs them.
 ProblemPart session_of(const RecordingProblem& problem, int first, int count) {
   ProblemPart part = part_of(problem, first, count);
   for (const Measurement& one : problem.measurements) {
     const int pose = one.from - problem.landmark_count() - first;
-    if (one.kind != MeasurementKind::truth || pose < 0 || pose >= count) continue;
+    const bool place = one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix;
+    if (!place || pose < 0 || pose >= count) continue;
     part.problem.measurements.push_back(one);
     part.problem.measurements.back().from = part.problem.pose_node(pose);
   }
@@ -317,13 +495,13 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   const auto inside = [&](int node) { return node >= offset && node < offset + count; };
   std::vector<const Measurement*> kept;
   for (const Measurement& one : problem.measurements) {
-    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth) continue;
-    if (!inside(one.from) || (one.kind == MeasurementKind::segment && !inside(one.to))) continue;
+    if (in_map_frame(one)) continue;
+    if (!inside(one.from) || (between_poses(one) && !inside(one.to))) continue;
     // What a segment's gyro says goes with it.
     if (one.kind == MeasurementKind::gyro && !inside(one.from + 1)) continue;
     if (placed != nullptr && is_sighting(one.kind) && !(*placed)[idx(one.to)]) continue;
     kept.push_back(&one);
-    if (is_driven(one.kind) || place[idx(one.to)] >= 0) continue;
+    if (!is_sighting(one.kind) || place[idx(one.to)] >= 0) continue;
     place[idx(one.to)] = static_cast<int>(part.landmarks.size());
     part.landmarks.push_back(one.to);
     part.problem.landmarks.push_back(problem.landmarks[idx(one.to)]);
@@ -333,7 +511,9 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   for (const Measurement* one : kept) {
     Measurement moved = *one;
     moved.from = part.problem.pose_node(one->from - offset);
-    if (one->kind == MeasurementKind::segment) {
+    if (one->kind == MeasurementKind::loop) {
+      moved.to = part.problem.pose_node(one->to - offset);
+    } else if (one->kind == MeasurementKind::segment) {
       moved.to = part.problem.pose_node(one->to - offset);
       moved.source = part.problem.segments.size();
       part.problem.segments.push_back(problem.segments[one->source]);
@@ -351,10 +531,8 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
 RecordingStart start_of(const RecordingProblem& problem, const EffectParameters& border,
                         const StartOptions& options) {
   PlacedLandmarks known = surveyed(problem);
-  const bool frame_given = std::any_of(
-      problem.measurements.begin(), problem.measurements.end(), [](const Measurement& one) {
-        return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth;
-      });
+  const bool frame_given =
+      std::any_of(problem.measurements.begin(), problem.measurements.end(), in_map_frame);
   RecordingState state;
   state.poses.resize(problem.poses.size());
   KnownCoefficients coefficients = prior_of(border);
@@ -363,12 +541,11 @@ RecordingStart start_of(const RecordingProblem& problem, const EffectParameters&
     const ProblemPart part = session_of(problem, first, count);
     Layer layer(part.problem, border, options);
     layer.coefficients() = coefficients;
-    lay_session(part.problem, options, layer);
+    const bool in_map = lay_session(part.problem, options, layer);
     coefficients = layer.coefficients();
     PlacedLandmarks in_part;
     for (const int landmark : part.landmarks) in_part.push_back(known[idx(landmark)]);
-    const bool in_truth_frame = part.problem.measurements.back().kind == MeasurementKind::truth;
-    if (!in_truth_frame) lay_over(in_part, !has_compass(part.problem), layer);
+    if (!in_map) lay_over(in_part, !has_compass(part.problem), layer);
     for (std::size_t k = 0; k < part.landmarks.size(); ++k) {
       std::optional<Vector2>& place = known[idx(part.landmarks[k])];
       if (!place) place = layer.landmarks()[k];

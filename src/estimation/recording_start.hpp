@@ -20,6 +20,13 @@
 // A landmark of which there are ranges alone is placed when the path so far tells where it is
 // (multilateration.hpp), at the session's end where they have it most likely.
 //
+// Loops count from the stretch on that holds both their ends: those that contradict what was driven
+// in between by more than its noise can be are left out.
+//
+// With fixes the session is reckoned in their frame all through, where there are as many as
+// sightings; from the pose in which its first stretch suits most of them. Else it is laid over them
+// when it is done.
+//
 // At last the session is laid over the landmarks that are known by then (survey, other sessions):
 // shifted, and without a compass turned.
 #pragma once
@@ -56,8 +63,8 @@ struct RecordingStart {
 /// at the mean of where its sightings put it. What the adjustment is compared with.
 [[nodiscard]] RecordingState dead_reckoned(const RecordingProblem& problem);
 
-/// The part of a problem that one session's poses first ... first + count - 1 see, without survey
-/// and truth; landmarks that they do not see are left out.
+/// The part of a problem that one session's poses first ... first + count - 1 see, without survey,
+/// truth and fixes; landmarks that they do not see are left out.
 struct ProblemPart {
   RecordingProblem problem;
   std::vector<int> landmarks;  ///< of the whole problem, in the part's order

@@ -105,7 +105,8 @@ void RecordingSystem::set_weights(const std::vector<double>& weights) {
 }
 
 int RecordingSystem::unknowns() const {
-  return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) + static_cast<int>(unknown_.size());
+  return normal_.unknowns() - (gauge_.hold_heading ? 1 : 0) - (gauge_.hold_position ? 2 : 0) +
+         static_cast<int>(unknown_.size());
 }
 
 double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
@@ -113,6 +114,13 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   const auto heading_held = [&](int node) {
     return node >= problem_.landmark_count() &&
            (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
+  };
+  const auto place_held = [&](int node) {
+    return gauge_.hold_position && node == problem_.pose_node(0);
+  };
+  const auto take_held_out = [&](int node, RowsByNode& rows) {
+    if (heading_held(node)) rows.col(2).setZero();
+    if (place_held(node)) rows.leftCols<2>().setZero();
   };
   normal_.clear();
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
@@ -136,8 +144,8 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     Whitened& J = J_[k];
     J.from = W * rows.by_from;
     J.to = W * rows.by_to;
-    if (heading_held(one.from)) J.from.col(2).setZero();
-    if (heading_held(one.to)) J.to.col(2).setZero();
+    take_held_out(one.from, J.from);
+    take_held_out(one.to, J.to);
     if (!problem_.noise_terms.empty()) {
       J.states.clear();
       for (const NoiseTerm& term : problem_.noise_terms[k]) {
@@ -153,10 +161,11 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     evaluate_effect_parameters(k, rows);
   }
   linearise_states(noise);
-  Matrix3 held = Matrix3::Zero();
-  held(2, 2) = 1.0;
   for (int node = problem_.landmark_count(); node < problem_.nodes(); ++node) {
-    if (heading_held(node)) normal_.add_diagonal<3>(node, held);
+    const double place = place_held(node) ? 1.0 : 0.0;
+    const double heading = heading_held(node) ? 1.0 : 0.0;
+    if (place + heading == 0.0) continue;
+    normal_.add_diagonal<3>(node, Eigen::Vector3d(place, place, heading).asDiagonal());
   }
   double chi2 = residuals_.squaredNorm();
   B_ = transposed_times(M_);
@@ -304,12 +313,10 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
     }
     return;
   }
-  if (one.session < 0 || is_driven(one.kind)) return;
   for (std::size_t c = 0; c < unknown_.size(); ++c) {
-    const EffectPattern& effect = border_[idx(unknown_[c])];
-    const auto& views = one.kind == MeasurementKind::truth ? effect.truths : effect.sightings;
-    if (views.empty() || views[idx(one.session)].empty()) continue;
-    const Vector4 column = W * rows.by_view * views[idx(one.session)][one.source].vector();
+    const ViewPattern* unit = unit_view_of(border_[idx(unknown_[c])], one);
+    if (unit == nullptr) continue;
+    const Vector4 column = W * rows.by_view * unit->vector();
     M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
   }
 }
@@ -462,7 +469,8 @@ Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes)
   for (const int node : nodes) {
     const int width = problem_.is_landmark(node) ? 2 : 3;
     for (int k = 0; k < width && k < normal_.size(node); ++k) {
-      const bool held = gauge_.hold_heading && node == problem_.pose_node(0) && k == 2;
+      const bool held =
+          node == problem_.pose_node(0) && (k == 2 ? gauge_.hold_heading : gauge_.hold_position);
       if (!held) selection(normal_.offset(node) + k, at + k) = 1.0;
     }
     at += width;
@@ -498,9 +506,14 @@ std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
 std::vector<Matrix3> RecordingSystem::pose_covariances() const {
   std::vector<Matrix3> result =
       covariances<3>(problem_.landmark_count(), static_cast<int>(problem_.poses.size()));
-  if (gauge_.hold_heading) {  // its diagonal is there for the sake of the solution alone
+  // The diagonal of what is held is there for the sake of the solution alone.
+  if (gauge_.hold_heading) {
     result.front().row(2).setZero();
     result.front().col(2).setZero();
+  }
+  if (gauge_.hold_position) {
+    result.front().topRows<2>().setZero();
+    result.front().leftCols<2>().setZero();
   }
   return result;
 }

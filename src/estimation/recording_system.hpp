@@ -16,7 +16,8 @@
 // Noise that lasts has states of its own (noise_states.hpp): nodes of one unknown after the poses,
 // columns of J; and rows of their own, one each, that follow those of all measurements in r and M.
 //
-// Held, where nothing measures it: the first landmark at the origin, and the first pose's heading.
+// Held, where nothing measures it: the first landmark at the origin (without landmarks, the first
+// pose's position), and the first pose's heading.
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -31,14 +32,16 @@ namespace trussmap {
 struct RecordingGauge {
   bool hold_landmark = false;  ///< the first one
   bool hold_heading = false;   ///< of the first pose
+  bool hold_position = false;  ///< of the first pose, where there is no landmark to hold
 };
 
 /// What no measurement of the problem fixes. Throws SolveError where sessions have nothing in
 /// common that would tie them together.
 [[nodiscard]] RecordingGauge choose_gauge(const RecordingProblem& problem);
 
-/// Poses that no common landmark, survey or truth ties to the map's frame or, where nothing gives
-/// one, to the first pose. Measurements of weight 0 tie nothing (no weights: all count).
+/// Poses that no common landmark, survey, truth, fix or loop ties to the map's frame or, where
+/// nothing gives one, to the first pose. Measurements of weight 0 tie nothing (no weights: all
+/// count).
 [[nodiscard]] std::vector<int> untied_poses(const RecordingProblem& problem,
                                             const std::vector<double>& weights = {});
 

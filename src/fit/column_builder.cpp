@@ -33,6 +33,21 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
   return parts;
 }
 
+Instant instant_of(MeasurementKind kind) {
+  return kind == MeasurementKind::truth ? Instant::truth
+         : kind == MeasurementKind::fix ? Instant::fix
+                                        : Instant::sighting;
+}
+
+/// Where a channel that acts on views acts.
+std::vector<Instant> view_instants(Channel channel) {
+  std::vector<Instant> instants;
+  if (acts_on_sightings(channel)) instants.push_back(Instant::sighting);
+  if (acts_on_truth(channel)) instants.push_back(Instant::truth);
+  if (acts_on_fixes(channel)) instants.push_back(Instant::fix);
+  return instants;
+}
+
 }  // namespace
 
 ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem& problem,
@@ -57,11 +72,11 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
       }
       segment.row_end = segment_rows_->size();
       segments_.push_back(segment);
-    } else if (one.session >= 0) {
+    } else if (one.session >= 0 && one.kind != MeasurementKind::loop) {
       const ViewPattern view = view_of(border, offsets, one);
       const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
-      views_.push_back({rows_, one.rows, idx(one.session), one.source,
-                        one.kind == MeasurementKind::truth, W * rows.by_view});
+      views_.push_back(
+          {rows_, one.rows, idx(one.session), one.source, instant_of(one.kind), W * rows.by_view});
     }
     rows_ += one.rows;
   }
@@ -194,11 +209,10 @@ void ColumnBuilder::add_drives(Channel channel, const Shape& shape, int session,
 
 void ColumnBuilder::add_views(Channel channel, const Shape& shape, int session,
                               Eigen::Ref<Eigen::VectorXd> column) {
-  for (const Instant at : {Instant::sighting, Instant::truth}) {
-    if (at == Instant::sighting && !acts_on_sightings(channel)) continue;
+  for (const Instant at : view_instants(channel)) {
     const Values& f = values(shape, at);
     for (const View& view : views_) {
-      if (view.truth != (at == Instant::truth)) continue;
+      if (view.at != at) continue;
       if (session >= 0 && view.session != idx(session)) continue;
       const RowVariables& variables = context_.variables(view.session, at);
       const ViewPattern unit =
@@ -233,8 +247,7 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   const Channel channel = effect.channel;
   std::vector<Instant> instants{Instant::middle};
   if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
-  if (acts_on(channel) == ActsOn::views) instants = {Instant::truth};
-  if (acts_on_sightings(channel)) instants.insert(instants.begin(), Instant::sighting);
+  if (acts_on(channel) == ActsOn::views) instants = view_instants(channel);
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
     if (adds_to_rows(channel, part.shape)) {

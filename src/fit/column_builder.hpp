@@ -68,8 +68,8 @@ class ColumnBuilder {
     int rows = 0;
     std::size_t session = 0;
     std::size_t source = 0;
-    bool truth = false;
-    Eigen::Matrix<double, 4, 6> influence = Eigen::Matrix<double, 4, 6>::Zero();  ///< whitened
+    ShapeContext::Instant at = ShapeContext::Instant::sighting;
+    ByView influence = ByView::Zero();  ///< whitened
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
 

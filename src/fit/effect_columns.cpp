@@ -65,6 +65,7 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
         instant_variables(one.drive, robot.wheelbase, one.drive.t, paths[s].ends, session));
     sightings_.push_back(event_variables(one, robot, paths[s], one.sightings, session));
     truths_.push_back(event_variables(one, robot, paths[s], one.truth, session));
+    fixes_.push_back(event_variables(one, robot, paths[s], one.fixes, session));
   }
 }
 
@@ -93,9 +94,11 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
     case Instant::sighting:
       return sightings_[session];
     case Instant::truth:
+      return truths_[session];
+    case Instant::fix:
       break;
   }
-  return truths_[session];
+  return fixes_[session];
 }
 
 std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instant at) const {
@@ -134,20 +137,18 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
   const std::vector<Recording>& recordings = context.recordings();
   Column column;
   if (acts_on(channel) == ActsOn::views) {
-    auto sightings = context.values(shape, Instant::sighting);
-    auto truths = context.values(shape, Instant::truth);
-    keep_session(sightings, session);
-    keep_session(truths, session);
-    if (!acts_on_sightings(channel)) {
-      for (std::vector<double>& one : sightings) std::fill(one.begin(), one.end(), 0.0);
-    }
-    for (std::size_t s = 0; s < recordings.size(); ++s) {
-      column.pattern.sightings.push_back(
-          views(channel, sightings[s], context.variables(s, Instant::sighting)));
-      column.pattern.truths.push_back(
-          views(channel, truths[s], context.variables(s, Instant::truth)));
-    }
-    column.largest = std::max(largest(sightings), largest(truths));
+    const auto add = [&](Instant at, bool acts, std::vector<std::vector<ViewPattern>>& patterns) {
+      if (!acts) return;
+      auto values = context.values(shape, at);
+      keep_session(values, session);
+      for (std::size_t s = 0; s < recordings.size(); ++s) {
+        patterns.push_back(views(channel, values[s], context.variables(s, at)));
+      }
+      column.largest = std::max(column.largest, largest(values));
+    };
+    add(Instant::sighting, acts_on_sightings(channel), column.pattern.sightings);
+    add(Instant::truth, acts_on_truth(channel), column.pattern.truths);
+    add(Instant::fix, acts_on_fixes(channel), column.pattern.fixes);
     return column;
   }
   const bool readings = acts_on(channel) == ActsOn::readings;
@@ -257,7 +258,7 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
         return make_column(effect.channel, effect.shape[shape], session, context);
       });
       column.pattern.name = effect.name;
-      if (effect.channel == Channel::delay) column.pattern.reference = coefficients[place];
+      if (is_delay(effect.channel)) column.pattern.reference = coefficients[place];
       result.border.push_back(std::move(column.pattern));
       result.coefficients.push_back({e, shape, place, column.largest});
     }
@@ -267,11 +268,11 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
 
 std::vector<double> retimed(const std::vector<double>& instants, const Recording& recording,
                             std::size_t session, std::size_t sessions,
-                            const std::vector<Effect>& effects, const Robot& robot) {
+                            const std::vector<Effect>& effects, const Robot& robot, Channel delay) {
   std::vector<double> result = instants;
   const std::vector<Pose> nowhere(instants.size());
   for (const Effect& effect : effects) {
-    if (effect.channel != Channel::delay) continue;
+    if (effect.channel != delay) continue;
     const std::vector<double> coefficients = coefficients_of(effect, sessions);
     const RowVariables variables = instant_variables(recording.drive, robot.wheelbase, instants,
                                                      nowhere, static_cast<int>(session));
@@ -285,19 +286,26 @@ std::vector<double> retimed(const std::vector<double>& instants, const Recording
   return result;
 }
 
+Channel delay_of_legs(const Recording& recording) {
+  const bool fixes_alone =
+      recording.sightings.empty() && recording.truth.empty() && !recording.fixes.empty();
+  return fixes_alone ? Channel::fix_delay : Channel::delay;
+}
+
 std::vector<Recording> retimed(const std::vector<Recording>& recordings,
                                const std::vector<Effect>& effects, const Robot& robot) {
   std::vector<Recording> result = recordings;
   for (std::size_t s = 0; s < recordings.size(); ++s) {
-    const auto shift = [&](auto& events) {
+    const auto shift = [&](auto& events, Channel delay) {
       std::vector<double> instants;
       instants.reserve(events.size());
       for (const auto& event : events) instants.push_back(event.t);
-      instants = retimed(instants, recordings[s], s, recordings.size(), effects, robot);
+      instants = retimed(instants, recordings[s], s, recordings.size(), effects, robot, delay);
       for (std::size_t n = 0; n < events.size(); ++n) events[n].t = instants[n];
     };
-    shift(result[s].sightings);
-    shift(result[s].truth);
+    shift(result[s].sightings, Channel::delay);
+    shift(result[s].truth, Channel::delay);
+    shift(result[s].fixes, Channel::fix_delay);
   }
   for (Recording& recording : result) {
     const auto outside = [&recording](const auto& event) {
@@ -306,8 +314,10 @@ std::vector<Recording> retimed(const std::vector<Recording>& recordings,
     const auto earlier = [](const auto& a, const auto& b) { return a.t < b.t; };
     std::erase_if(recording.sightings, outside);
     std::erase_if(recording.truth, outside);
+    std::erase_if(recording.fixes, outside);
     std::stable_sort(recording.sightings.begin(), recording.sightings.end(), earlier);
     std::stable_sort(recording.truth.begin(), recording.truth.end(), earlier);
+    std::stable_sort(recording.fixes.begin(), recording.fixes.end(), earlier);
   }
   return result;
 }

@@ -11,7 +11,8 @@
 // smaller map, by shrinking every error, where no survey fixes the scale.
 //
 // All act on the motion as recorded, so the order of effects does not matter. A delay is exact only
-// near its reference: the times of sightings and truth are to be moved back by that (retimed).
+// near its reference: the times of sightings and truth, or of fixes, are to be moved back by that
+// (retimed).
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -55,9 +56,9 @@ class ShapeContext {
   ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
                const std::vector<SessionPath>& paths);
 
-  /// Values of a shape per session, per row at its middle or end, per sighting, per truth row.
+  /// Values of a shape per session, per row at its middle or end, per sighting, truth row, fix.
   /// Throws std::invalid_argument like Shape::values.
-  enum class Instant { middle, end, sighting, truth };
+  enum class Instant { middle, end, sighting, truth, fix };
   [[nodiscard]] std::vector<std::vector<double>> values(const Shape& shape, Instant at) const;
   [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
   /// A row's travels, its noise taken out.
@@ -71,7 +72,7 @@ class ShapeContext {
   Robot robot_;
   std::vector<std::vector<Vector2>> missing_;  ///< per session and row: travel, turn
   std::vector<std::vector<double>> excess_;    ///< likewise, of the gyro; empty: none
-  std::vector<RowVariables> middles_, ends_, sightings_, truths_;
+  std::vector<RowVariables> middles_, ends_, sightings_, truths_, fixes_;
 };
 
 /// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).
@@ -88,17 +89,20 @@ class ShapeContext {
 /// std::invalid_argument where their number is wrong for so many sessions, or there is no shape.
 [[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);
 
-/// Sightings and truth rows moved back by the delays of the effects; those that fall out of the
-/// drive are dropped. Shapes of delays see no path: heading, x and y are 0.
+/// Sightings, truth rows and fixes moved back by the delays of the effects; those that fall out of
+/// the drive are dropped. Shapes of delays see no path: heading, x and y are 0.
 [[nodiscard]] std::vector<Recording> retimed(const std::vector<Recording>& recordings,
                                              const std::vector<Effect>& effects,
                                              const Robot& robot);
 
-/// Any instants of one of the sessions, moved back in the same way.
+/// Any instants of one of the sessions, moved back in the same way by effects of that channel.
 [[nodiscard]] std::vector<double> retimed(const std::vector<double>& instants,
                                           const Recording& recording, std::size_t session,
                                           std::size_t sessions, const std::vector<Effect>& effects,
-                                          const Robot& robot);
+                                          const Robot& robot, Channel delay = Channel::delay);
+
+/// The channel that delays what a recording's legs end at: its fixes', where it has nothing else.
+[[nodiscard]] Channel delay_of_legs(const Recording& recording);
 
 /// Whether the channel adds the same to every row, however short, by a shape that counts no events.
 /// Its size is then no matter of rows.

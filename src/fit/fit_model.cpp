@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/fit_model.hpp"
 
+#include "estimation/measurement_rows.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/well_formed.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace trussmap {
@@ -28,6 +31,21 @@ std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
   return landmarks;
 }
 
+/// With how far off it is, and what the receiver thought of it.
+std::string left_out_text(const FitState& fit, const Measurement& one) {
+  std::string text = describe(fit.problem, one);
+  const bool fix = one.kind == MeasurementKind::fix;
+  if (!fix && one.kind != MeasurementKind::loop) return text;
+  const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
+  const Vector4 error =
+      measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error;
+  text = (fix ? "fixes.csv: " : "loops.csv: ") + text + ", " +
+         fixed_text(error.head<2>().norm(), 2) + " m off";
+  if (!fix) return text + " and " + fixed_text(std::abs(error[2]), 3) + " rad";
+  const double quality = fit.recordings[idx(one.session)].fixes[one.source].quality;
+  return std::isnan(quality) ? text : text + " (quality " + short_text(quality) + ")";
+}
+
 }  // namespace
 
 FitterOptions fitter_options(const FitOptions& options) {
@@ -35,6 +53,8 @@ FitterOptions fitter_options(const FitOptions& options) {
   how.fit_effects = options.fit_effects;
   how.problem.survey = options.use_survey;
   how.problem.truth = options.use_truth;
+  how.problem.fixes = options.use_fixes;
+  how.problem.loops = options.use_loops;
   how.gate = options.gate;
   how.most_left_out = options.most_left_out;
   return how;
@@ -56,7 +76,7 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
   fit.p_value = state.adjustment.p_value;
   fit.settled = state.settled;
   for (const int k : state.adjustment.left_out) {
-    fit.left_out.push_back(describe(state.problem, state.problem.measurements[idx(k)]));
+    fit.left_out.push_back(left_out_text(state, state.problem.measurements[idx(k)]));
   }
   fit.warnings = state.adjustment.warnings;
   fit.state = std::make_shared<const FitState>(std::move(state));

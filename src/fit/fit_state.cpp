@@ -92,7 +92,7 @@ class Fitter {
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
       const Effect& effect = fit_.model.effects[one.effect];
-      if (effect.channel != Channel::delay) continue;
+      if (!is_delay(effect.channel)) continue;
       const auto at = static_cast<Eigen::Index>(k);
       const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
       const double moved =
@@ -116,7 +116,8 @@ class Fitter {
         ends.push_back(span.from);
         ends.push_back(span.to);
       }
-      ends = retimed(ends, recorded_[s], s, recorded_.size(), fit_.model.effects, fit_.model.robot);
+      ends = retimed(ends, recorded_[s], s, recorded_.size(), fit_.model.effects, fit_.model.robot,
+                     delay_of_legs(recorded_[s]));
       for (std::size_t k = 0; k < result.left_out[s].size(); ++k) {
         result.left_out[s][k] = {ends[2 * k], ends[2 * k + 1]};
       }
@@ -293,7 +294,7 @@ class Fitter {
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[k];
-      if (fit_.model.effects[one.effect].channel == Channel::delay) {
+      if (is_delay(fit_.model.effects[one.effect].channel)) {
         fit_.columns.border[k].reference = laid_out_[one.effect].coefficients[one.place];
       }
       if (is_common(one.effect)) {
@@ -464,9 +465,8 @@ class Fitter {
   /// Instants that a delay moves cut rows anew, whose rounding comes back larger.
   [[nodiscard]] double still_enough() const {
     constexpr double kCutAnew = 100.0;
-    const bool delays =
-        std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
-                    [](const Effect& effect) { return effect.channel == Channel::delay; });
+    const bool delays = std::any_of(fit_.model.effects.begin(), fit_.model.effects.end(),
+                                    [](const Effect& effect) { return is_delay(effect.channel); });
     return delays ? kCutAnew : 1.0;
   }
 

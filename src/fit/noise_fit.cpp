@@ -325,6 +325,9 @@ class NoiseFitter {
       case Channel::gyro:
       case Channel::gyro_scale:
         return "gyro";
+      case Channel::fix_x:
+      case Channel::fix_y:
+        return "fix";
       default:
         return "wheels";
     }

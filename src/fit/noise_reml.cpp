@@ -35,6 +35,17 @@ bool has_views(const FitState& fit) {
          any_of_kind(fit, MeasurementKind::cartesian_view);
 }
 
+/// Of a fix that leaves its sd to the model.
+bool is_unstated_fix(const FitState& fit, const Measurement& one) {
+  return one.kind == MeasurementKind::fix &&
+         std::isnan(fit.recordings[idx(one.session)].fixes[one.source].sd);
+}
+
+bool has_unstated_fixes(const FitState& fit) {
+  return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(),
+                     [&fit](const Measurement& one) { return is_unstated_fix(fit, one); });
+}
+
 NoiseComponent white(const char* name, const char* unit, std::vector<double Noise::*> members,
                      double stated) {
   NoiseComponent one;
@@ -66,6 +77,7 @@ Noise silent_noise() {
   Noise none;
   none.left = none.right = none.compass = none.sighting = none.range = none.bearing = 0.0;
   none.gyro = none.survey = none.truth = none.truth_heading = 0.0;
+  none.fix = none.loop = none.loop_heading = 0.0;
   return none;
 }
 
@@ -85,6 +97,7 @@ std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& n
   add("compass", "rad", &Noise::compass, has_compass(fit));
   add("sighting", "m", &Noise::sighting, any_of_kind(fit, MeasurementKind::standing));
   add("range", "m", &Noise::range, has_views(fit));
+  add("fix", "m", &Noise::fix, has_unstated_fixes(fit));
   add("bearing", "rad", &Noise::bearing, any_of_kind(fit, MeasurementKind::view));
   add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
   add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
@@ -198,6 +211,8 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
       if (one.rows == 2) added(1, 1) = unit.bearing * unit.bearing;
     } else if (one.kind == MeasurementKind::cartesian_view) {
       added.diagonal().head<2>().setConstant(unit.range * unit.range);
+    } else if (is_unstated_fix(fit_, one)) {
+      added.diagonal().head<2>().setConstant(unit.fix * unit.fix);
     }
     result.push_back(added);
   }
@@ -245,7 +260,10 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
       if (one.rows == 4) fixed(3, 3) = kLeastSd * kLeastSd;
       break;
     case MeasurementKind::survey:
-    case MeasurementKind::truth: {
+    case MeasurementKind::truth:
+    case MeasurementKind::fix:
+    case MeasurementKind::loop: {
+      if (is_unstated_fix(fit_, one)) break;
       const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
       fixed.topLeftCorner(one.rows, one.rows) = colour * colour.transpose();
       break;

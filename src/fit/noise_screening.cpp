@@ -98,10 +98,9 @@ class Screening {
     return q + quadratic(laid.within, draws);
   }
 
-  [[nodiscard]] Eigen::Matrix<double, 4, 6> by_view_of(const RecordingProblem& problem,
-                                                       std::size_t k) const {
+  [[nodiscard]] ByView by_view_of(const RecordingProblem& problem, std::size_t k) const {
     const Measurement& one = problem.measurements[k];
-    if (is_driven(one.kind)) return Eigen::Matrix<double, 4, 6>::Zero();
+    if (is_driven(one.kind)) return ByView::Zero();
     return measurement_rows(problem, one, fit_.adjustment.state, one.value,
                             view_of(fit_.columns.border, offsets_of(fit_), one))
         .by_view;

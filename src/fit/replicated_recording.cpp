@@ -41,6 +41,7 @@ class Replicator {
     miss_landmarks();
     lead_through_poses();
     measure_places();
+    measure_fixes_and_loops();
     see_landmarks();
     for (std::size_t s = 0; s < timed_.size(); ++s) {
       part_wheels_and_gyro(s);
@@ -167,6 +168,35 @@ class Replicator {
     }
   }
 
+  void measure_fixes_and_loops() {
+    for (std::size_t s = 0; s < timed_.size(); ++s) {
+      const Drive& drive = timed_[s].drive;
+      for (std::size_t row = 0; row < timed_[s].fixes.size(); ++row) {
+        Fix& one = timed_[s].fixes[row];
+        const Pose pose = pose_at(drive, paths_[s], one.t);
+        Measurement measured;
+        measured.kind = MeasurementKind::fix;
+        measured.session = static_cast<int>(s);
+        measured.source = row;
+        const ViewPattern view = view_of(border_, offsets_, measured);
+        const Vector2 antenna =
+            rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left);
+        const double sd = std::isnan(one.sd) ? noise_.fix : one.sd;
+        one.x = pose.x + antenna.x() + view.x + drawn(sd);
+        one.y = pose.y + antenna.y() + view.y + drawn(sd);
+      }
+      for (Loop& one : timed_[s].loops) {
+        const Pose step =
+            relative(pose_at(drive, paths_[s], one.t), pose_at(drive, paths_[s], one.t2));
+        const double sd = std::isnan(one.sd) ? noise_.loop : one.sd;
+        const double sd_heading = std::isnan(one.sd_heading) ? noise_.loop_heading : one.sd_heading;
+        one.dx = step.x + drawn(sd);
+        one.dy = step.y + drawn(sd);
+        one.dtheta = wrap_angle(step.heading + drawn(sd_heading));
+      }
+    }
+  }
+
   void see_landmarks() {
     for (const Measurement& one : fit_.problem.measurements) {
       if (one.kind != MeasurementKind::view && one.kind != MeasurementKind::cartesian_view) {
@@ -241,6 +271,8 @@ class Replicator {
       Recording& own = recordings_[s];
       take_events(s, own.sightings, timed_[s].sightings);
       take_events(s, own.truth, timed_[s].truth);
+      take_events(s, own.fixes, timed_[s].fixes, Channel::fix_delay);
+      own.loops = timed_[s].loops;
       own.drive = std::move(timed_[s].drive);
       own.survey = std::move(timed_[s].survey);
     }
@@ -248,13 +280,14 @@ class Replicator {
   }
 
   template <typename Event>
-  void take_events(std::size_t s, std::vector<Event>& own, const std::vector<Event>& timed) const {
+  void take_events(std::size_t s, std::vector<Event>& own, const std::vector<Event>& timed,
+                   Channel delay = Channel::delay) const {
     const Recording& recording = recordings_[s];
     std::vector<double> instants;
     instants.reserve(own.size());
     for (const Event& one : own) instants.push_back(one.t);
-    instants =
-        retimed(instants, recording, s, recordings_.size(), fit_.model.effects, fit_.model.robot);
+    instants = retimed(instants, recording, s, recordings_.size(), fit_.model.effects,
+                       fit_.model.robot, delay);
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (instants[k] >= recording.drive.start() && instants[k] <= recording.drive.t.back()) {
@@ -274,6 +307,10 @@ class Replicator {
   // Processes: g of the channel, drawn for every row's end.
 
   void add(const NoiseProcess& process, std::size_t s) {
+    if (process.channel == Channel::fix_x || process.channel == Channel::fix_y) {
+      add_to_fixes(process, s);
+      return;
+    }
     if (!is_recordable(process.channel)) {
       throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
                                   "\" cannot be drawn: no recording can hold it");
@@ -301,6 +338,15 @@ class Replicator {
       case ActsOn::views:
         see_through(process, g, timed_[s]);
         return;
+    }
+  }
+
+  void add_to_fixes(const NoiseProcess& process, std::size_t s) {
+    const std::vector<double> g = gains(process, s);
+    for (Fix& one : timed_[s].fixes) {
+      const bool white = process.process == ProcessKind::white;
+      const double value = white ? drawn(process.sd) : g[row_at(timed_[s].drive, one.t)];
+      (process.channel == Channel::fix_x ? one.x : one.y) += value;
     }
   }
 

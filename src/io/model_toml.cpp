@@ -39,6 +39,9 @@ constexpr NoiseKey kNoise[] = {
     {"heading_per_rad", &Noise::heading_per_rad, "rad/rad^1/2 turned"},
     {"travel_per_s", &Noise::travel_per_s, "m/s^1/2"},
     {"gyro", &Noise::gyro, "rad/s^1/2: angle random walk"},
+    {"fix", &Noise::fix, "m, where fixes.csv has no sd"},
+    {"loop", &Noise::loop, "m, where loops.csv has no sd"},
+    {"loop_heading", &Noise::loop_heading, "rad, where loops.csv has no sd_heading"},
 };
 
 /// Reads from one file, with its name for the errors.
@@ -205,7 +208,9 @@ class ModelReader {
     if (!is_correlated(process.process) && process.length != 0.0) {
       fail(table.get("length")->source(), "a process " + name + " has a length, expected none");
     }
-    if (process.process == ProcessKind::per_pass && acts_on(process.channel) != ActsOn::views) {
+    const bool passes =
+        acts_on(process.channel) == ActsOn::views && !acts_on_fixes(process.channel);
+    if (process.process == ProcessKind::per_pass && !passes) {
       fail(table.source(), "channel " + std::string(name_of(process.channel)) +
                                " has no passes, expected lever, lever_left, range, range_scale, "
                                "bearing or delay");
@@ -365,8 +370,10 @@ std::string format_model(const Model& model) {
   const Noise defaults;
   for (const NoiseKey& key : kNoise) {
     const double value = model.noise.*(key.value);
-    if (value == 0.0 && defaults.*(key.value) == 0.0) continue;  // an optional law that is off
-    if (key.value == &Noise::gyro && value == defaults.gyro) continue;  // few robots have one
+    // An optional law that is off, or of a stream that few recordings have.
+    const bool rare = key.value == &Noise::gyro || key.value == &Noise::fix ||
+                      key.value == &Noise::loop || key.value == &Noise::loop_heading;
+    if (value == defaults.*(key.value) && (value == 0.0 || rare)) continue;
     text += std::string(key.name) + " = " + toml_number(value) + "  # " + key.unit + "\n";
   }
   for (const NoiseProcess& process : model.noise.processes) text += process_text(process);

@@ -126,7 +126,21 @@ Drive read_drive(const fs::path& file) {
   return drive;
 }
 
-std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, bool has_truth) {
+void require_inside(const CsvReader& csv, const Drive& drive, double t, const char* what) {
+  const double slack = clock_slack(drive);
+  if (t >= drive.start() - slack && t <= drive.t.back() + slack) return;
+  csv.fail(std::string(what) + csv_number(t) + " is outside the drive, expected " +
+           csv_number(drive.start()) + " to " + csv_number(drive.t.back()));
+}
+
+double sd_or_absent(const CsvReader& csv, int column, double largest, const char* name) {
+  if (column < 0) return kAbsent;
+  const double sd = csv.number_or_absent(column, largest);
+  if (sd <= 0.0) csv.fail(std::string(name) + " is " + csv_number(sd) + ", expected more than 0");
+  return sd;
+}
+
+std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, bool may_lack) {
   const std::string text = read_file(file);
   CsvReader csv(text, file.string());
   const int t = csv.require("t");
@@ -137,7 +151,6 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   if (range < 0 && bearing >= 0) {
     csv.fail("column \"bearing\" without \"range\", expected a range");
   }
-  const double slack = clock_slack(drive);
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
@@ -151,18 +164,15 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
       csv.fail("a bearing without a range, expected a range");
     }
     if (sighting.range < 0.0) csv.fail("the range is negative, expected 0 or more");
-    if (sighting.t < drive.start() - slack || sighting.t > drive.t.back() + slack) {
-      csv.fail("time " + csv_number(sighting.t) + " is outside the drive, expected " +
-               csv_number(drive.start()) + " to " + csv_number(drive.t.back()));
-    }
+    require_inside(csv, drive, sighting.t, "time ");
     if (!sightings.empty()) require_forward(csv, sightings.back().t, sighting.t, true);
     sightings.push_back(std::move(sighting));
   }
   if (sightings.empty()) {
     throw InputError(file.string(), csv.line(),
-                     has_truth ? "no sighting, expected one row at least; beside a truth.csv the "
-                                 "file may be left out"
-                               : "no sighting, expected one row at least");
+                     may_lack ? "no sighting, expected one row at least; beside a truth.csv, "
+                                "fixes.csv or loops.csv the file may be left out"
+                              : "no sighting, expected one row at least");
   }
   return sightings;
 }
@@ -216,6 +226,66 @@ std::vector<TruthRow> read_truth(const fs::path& file) {
   return truth;
 }
 
+std::vector<Fix> read_fixes(const fs::path& file) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int t = csv.require("t");
+  const int x = csv.require("x");
+  const int y = csv.require("y");
+  const int sd = csv.find("sd");
+  const int quality = csv.find("quality");
+  refuse_other_columns(csv, {"t", "x", "y", "sd", "quality"});
+  std::vector<Fix> fixes;
+  while (csv.next()) {
+    Fix fix;
+    fix.t = csv.number(t, kLargestTime);
+    fix.x = csv.number(x, kLargestPosition);
+    fix.y = csv.number(y, kLargestPosition);
+    fix.sd = sd_or_absent(csv, sd, kLargestPosition, "sd");
+    if (quality >= 0) fix.quality = csv.number_or_absent(quality, kLargestCovariate);
+    if (!fixes.empty()) require_forward(csv, fixes.back().t, fix.t, false);
+    fixes.push_back(fix);
+  }
+  if (fixes.empty()) {
+    throw InputError(file.string(), csv.line(), "no fix, expected one row at least");
+  }
+  return fixes;
+}
+
+std::vector<Loop> read_loops(const fs::path& file, const Drive& drive) {
+  const std::string text = read_file(file);
+  CsvReader csv(text, file.string());
+  const int t = csv.require("t");
+  const int t2 = csv.require("t2");
+  const int dx = csv.require("dx");
+  const int dy = csv.require("dy");
+  const int dtheta = csv.require("dtheta");
+  const int sd = csv.find("sd");
+  const int sd_heading = csv.find("sd_heading");
+  refuse_other_columns(csv, {"t", "t2", "dx", "dy", "dtheta", "sd", "sd_heading"});
+  std::vector<Loop> loops;
+  while (csv.next()) {
+    Loop loop;
+    loop.t = csv.number(t, kLargestTime);
+    loop.t2 = csv.number(t2, kLargestTime);
+    loop.dx = csv.number(dx, kLargestPosition);
+    loop.dy = csv.number(dy, kLargestPosition);
+    loop.dtheta = csv.number(dtheta, kLargestAngle);
+    loop.sd = sd_or_absent(csv, sd, kLargestPosition, "sd");
+    loop.sd_heading = sd_or_absent(csv, sd_heading, kLargestAngle, "sd_heading");
+    require_inside(csv, drive, loop.t, "time t ");
+    require_inside(csv, drive, loop.t2, "time t2 ");
+    if (loop.t == loop.t2) {
+      csv.fail("t2 is t, " + csv_number(loop.t) + ", expected another time");
+    }
+    loops.push_back(loop);
+  }
+  if (loops.empty()) {
+    throw InputError(file.string(), csv.line(), "no loop, expected one row at least");
+  }
+  return loops;
+}
+
 }  // namespace
 
 Recording read_recording(const fs::path& folder) {
@@ -230,19 +300,21 @@ Recording read_recording(const fs::path& folder) {
   if (!has("drive.csv")) {
     throw InputError((folder / "drive.csv").string(), 0, "is missing, a recording needs it");
   }
-  if (!has("sightings.csv") && !has("truth.csv")) {
+  const bool may_lack = has("truth.csv") || has("fixes.csv") || has("loops.csv");
+  if (!has("sightings.csv") && !may_lack) {
     throw InputError((folder / "sightings.csv").string(), 0,
-                     "is missing, a recording without truth.csv needs it");
+                     "is missing, a recording without truth.csv, fixes.csv or loops.csv needs it");
   }
   Recording recording;
   recording.name = folder.string();
   recording.drive = read_drive(folder / "drive.csv");
   if (has("sightings.csv")) {
-    recording.sightings =
-        read_sightings(folder / "sightings.csv", recording.drive, has("truth.csv"));
+    recording.sightings = read_sightings(folder / "sightings.csv", recording.drive, may_lack);
   }
   if (has("survey.csv")) recording.survey = read_survey(folder / "survey.csv");
   if (has("truth.csv")) recording.truth = read_truth(folder / "truth.csv");
+  if (has("fixes.csv")) recording.fixes = read_fixes(folder / "fixes.csv");
+  if (has("loops.csv")) recording.loops = read_loops(folder / "loops.csv", recording.drive);
   return recording;
 }
 

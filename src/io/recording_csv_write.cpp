@@ -72,6 +72,36 @@ std::string truth_text(const std::vector<TruthRow>& truth) {
   return text;
 }
 
+std::string fixes_text(const std::vector<Fix>& fixes) {
+  const bool sds =
+      std::any_of(fixes.begin(), fixes.end(), [](const Fix& fix) { return !std::isnan(fix.sd); });
+  const bool qualities = std::any_of(fixes.begin(), fixes.end(),
+                                     [](const Fix& fix) { return !std::isnan(fix.quality); });
+  std::string text =
+      std::string("t,x,y") + (sds ? ",sd" : "") + (qualities ? ",quality" : "") + '\n';
+  for (const Fix& fix : fixes) {
+    text += csv_number(fix.t) + ',' + csv_number(fix.x) + ',' + csv_number(fix.y);
+    if (sds) text += ',' + csv_number(fix.sd);
+    if (qualities) text += ',' + csv_number(fix.quality);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string loops_text(const std::vector<Loop>& loops) {
+  const bool sds = std::any_of(loops.begin(), loops.end(), [](const Loop& loop) {
+    return !std::isnan(loop.sd) || !std::isnan(loop.sd_heading);
+  });
+  std::string text = sds ? "t,t2,dx,dy,dtheta,sd,sd_heading\n" : "t,t2,dx,dy,dtheta\n";
+  for (const Loop& loop : loops) {
+    text += csv_number(loop.t) + ',' + csv_number(loop.t2) + ',' + csv_number(loop.dx) + ',' +
+            csv_number(loop.dy) + ',' + csv_number(loop.dtheta);
+    if (sds) text += ',' + csv_number(loop.sd) + ',' + csv_number(loop.sd_heading);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 FolderOfFiles recording_folder(const fs::path& folder, const Recording& recording,
@@ -79,16 +109,20 @@ FolderOfFiles recording_folder(const fs::path& folder, const Recording& recordin
   FolderOfFiles whole;
   whole.folder = folder;
   whole.files.emplace_back("drive.csv", drive_text(recording.drive, comment));
-  if (!recording.sightings.empty() || recording.truth.empty()) {
+  const bool may_lack =
+      !recording.truth.empty() || !recording.fixes.empty() || !recording.loops.empty();
+  if (!recording.sightings.empty() || !may_lack) {
     whole.files.emplace_back("sightings.csv", sightings_text(recording.sightings));
   }
   if (!recording.survey.empty()) {
     whole.files.emplace_back("survey.csv", survey_text(recording.survey));
   }
   if (!recording.truth.empty()) whole.files.emplace_back("truth.csv", truth_text(recording.truth));
+  if (!recording.fixes.empty()) whole.files.emplace_back("fixes.csv", fixes_text(recording.fixes));
+  if (!recording.loops.empty()) whole.files.emplace_back("loops.csv", loops_text(recording.loops));
   for (auto& file : beside) whole.files.push_back(std::move(file));
   // An earlier recording's stream in the same folder would be taken for this one's.
-  for (const char* name : {"sightings.csv", "survey.csv", "truth.csv"}) {
+  for (const char* name : {"sightings.csv", "survey.csv", "truth.csv", "fixes.csv", "loops.csv"}) {
     const bool written = std::any_of(whole.files.begin(), whole.files.end(),
                                      [name](const auto& file) { return file.first == name; });
     if (!written) whole.gone.emplace_back(name);

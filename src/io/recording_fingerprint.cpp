@@ -47,6 +47,10 @@ std::string fingerprint(const Recording& recording) {
     hash.take(one.landmark);
     hash.take({one.t, one.range, one.bearing});
   }
+  for (const Fix& one : recording.fixes) hash.take({one.t, one.x, one.y, one.sd});
+  for (const Loop& one : recording.loops) {
+    hash.take({one.t, one.t2, one.dx, one.dy, one.dtheta, one.sd, one.sd_heading});
+  }
   return hash.digits();
 }
 

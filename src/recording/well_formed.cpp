@@ -94,11 +94,39 @@ void require_sightings(const Recording& recording) {
   }
 }
 
+/// Absent, or one.
+bool is_sd(double sd) {
+  return std::isnan(sd) || (sd > 0.0 && std::isfinite(sd));
+}
+
+void require_loops(const Recording& recording) {
+  const Drive& drive = recording.drive;
+  const double slack = clock_slack(drive);
+  const auto inside = [&](double t) {
+    return t >= drive.start() - slack && t <= drive.t.back() + slack;
+  };
+  for (const Loop& loop : recording.loops) {
+    const bool finite =
+        std::isfinite(loop.dx) && std::isfinite(loop.dy) && std::isfinite(loop.dtheta);
+    const bool sds = is_sd(loop.sd) && is_sd(loop.sd_heading);
+    if (inside(loop.t) && inside(loop.t2) && loop.t != loop.t2 && finite && sds) continue;
+    refuse(recording,
+           joined("the loop from t = ", short_text(loop.t), " s to ", short_text(loop.t2),
+                  " s is not finite, or not between two instants of the drive"));
+  }
+}
+
 void require_places(const Recording& recording) {
   require_order(recording, "truth rows", recording.truth);
   for (const TruthRow& row : recording.truth) {
     if (std::isfinite(row.x) && std::isfinite(row.y) && std::isfinite(row.heading)) continue;
     refuse(recording, joined("the truth at t = ", short_text(row.t), " s is not finite"));
+  }
+  require_order(recording, "fixes", recording.fixes);
+  for (const Fix& fix : recording.fixes) {
+    if (std::isfinite(fix.x) && std::isfinite(fix.y) && is_sd(fix.sd)) continue;
+    refuse(recording, joined("the fix at t = ", short_text(fix.t),
+                             " s is not finite, or its sd not more than 0"));
   }
   for (const SurveyPoint& point : recording.survey) {
     if (std::isfinite(point.x) && std::isfinite(point.y)) continue;
@@ -116,6 +144,7 @@ void require_well_formed(const Recording& recording) {
   require_drive(recording);
   require_sightings(recording);
   require_places(recording);
+  require_loops(recording);
 }
 
 void require_well_formed(const std::vector<Recording>& recordings) {

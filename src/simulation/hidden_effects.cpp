@@ -91,7 +91,10 @@ class Draw {
     const bool needs_survey = is_among(kNeedSurvey, entry.name);
     const bool needs_compass = entry.channel == Channel::compass || entry.name == "constant creep";
     // A robot that stands still as it looks shows no delay, and a late stamp shows at a glance.
-    return entry.detectable > 0.0 && entry.channel != Channel::delay &&
+    const bool of_fixes = entry.channel == Channel::antenna ||
+                          entry.channel == Channel::antenna_left ||
+                          entry.channel == Channel::fix_delay;
+    return entry.detectable > 0.0 && entry.channel != Channel::delay && !of_fixes &&
            !is_among(kMisleading, entry.name) && (robot_.compass || !needs_compass) &&
            (robot_.gyro || !of_gyro) && (robot_.range_sensor || !ranged) &&
            (surveyed_ || !needs_survey);

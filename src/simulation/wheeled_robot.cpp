@@ -145,16 +145,62 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
   return sightings;
 }
 
+/// Within a row all speeds are constant in the robot's axes.
+Pose part_of_row(const Pose& begin, const TrueRow& row, double time) {
+  const double turned = row.turn_rate * time;
+  // Mean of the way ahead, and of the way to the left, over the angles turned through.
+  const double ahead = turned == 0.0 ? 1.0 : std::sin(turned) / turned;
+  const double aside = turned == 0.0 ? 0.0 : 2.0 * std::pow(std::sin(0.5 * turned), 2) / turned;
+  const Vector2 moved = time * Vector2(row.speed + row.jump / row.duration, row.slip_speed);
+  const Vector2 way(ahead * moved.x() - aside * moved.y(), aside * moved.x() + ahead * moved.y());
+  const Vector2 place = begin.position() + rotation(begin.heading) * way;
+  return {place.x(), place.y(), begin.heading + turned};
+}
+
+std::vector<Fix> fixes_of(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
+                          const ChannelGains& gains) {
+  std::vector<Fix> fixes;
+  if (!(robot.fix_rate > 0.0)) return fixes;
+  Dice dice(seed, Stream::fixes);
+  Pose begin = motion.start;
+  double since = 0.0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < motion.rows.size(); ++k) {
+    const TrueRow& row = motion.rows[k];
+    const auto g = [&](Channel channel) { return gain(gains, channel, k); };
+    for (;; ++count) {
+      // In whole nanoseconds, as all times of a path.
+      const double t = std::round(static_cast<double>(count) / robot.fix_rate * 1e9) / 1e9;
+      if (t > row.t) break;
+      const Pose pose = part_of_row(begin, row, t - since);
+      const Vector2 antenna =
+          pose.position() +
+          rotation(pose.heading) * Vector2(g(Channel::antenna), g(Channel::antenna_left));
+      const double dx = g(Channel::fix_x) + dice.deviation(robot.noise.fix);
+      const double dy = g(Channel::fix_y) + dice.deviation(robot.noise.fix);
+      const double stamp = std::round((t + g(Channel::fix_delay)) * 1e9) / 1e9;
+      if (!fixes.empty() && stamp <= fixes.back().t) continue;
+      fixes.push_back({stamp, antenna.x() + dx, antenna.y() + dy});
+    }
+    begin = row.pose;
+    since = row.t;
+  }
+  return fixes;
+}
+
 void check(const WheeledRobot& robot) {
   const SensorNoise& noise = robot.noise;
   for (const double sd : {noise.left, noise.right, noise.compass, noise.range, noise.bearing,
-                          noise.gyro, noise.gyro_walk}) {
+                          noise.fix, noise.gyro, noise.gyro_walk}) {
     if (!std::isfinite(sd) || sd < 0.0) {
       throw std::invalid_argument("a sensor's noise must be a number of 0 or more");
     }
   }
   if (!std::isfinite(robot.wheelbase) || robot.wheelbase <= 0.0) {
     throw std::invalid_argument("the wheelbase must be above 0 m");
+  }
+  if (!(robot.fix_rate >= 0.0) || !(robot.fix_rate <= 1e3)) {
+    throw std::invalid_argument("the rate of fixes must be 0 to 1000 Hz");
   }
   if (!(robot.reach > 0.0) || !(robot.recognition >= 0.0 && robot.recognition <= 1.0)) {
     throw std::invalid_argument("the range sensor must reach above 0 m and recognise 0 to 1");
@@ -180,6 +226,7 @@ Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot&
       recording.sightings.push_back(sighting);
     }
   }
+  recording.fixes = fixes_of(motion, robot, seed, gains);
   if (gains.contains(Channel::delay)) {
     std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
                      [](const Sighting& a, const Sighting& b) { return a.t < b.t; });

@@ -32,9 +32,13 @@ std::vector<double> weights_without_block(const FitState& fit, const TimeBlocks&
       weights_without(fit.adjustment.left_out, problem.measurements.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (!is_sighting(one.kind) && one.kind != MeasurementKind::truth) continue;
-    const PoseNode& pose = problem.poses[idx(one.from - problem.landmark_count())];
-    if (blocks.at(pose.session, pose.t) == block) weights[k] *= kFaint;
+    if (!may_be_wrong(one.kind) && one.kind != MeasurementKind::truth) continue;
+    const auto in_block = [&](int node) {
+      const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
+      return blocks.at(pose.session, pose.t) == block;
+    };
+    const bool loop = one.kind == MeasurementKind::loop;
+    if (in_block(one.from) || (loop && in_block(one.to))) weights[k] *= kFaint;
   }
   return weights;
 }

@@ -19,6 +19,11 @@ constexpr double kLeastChord = 0.1;  // m
 /// that truth tracks. Nothing where only a range was measured.
 std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
                                  const ViewPattern& view) {
+  if (one.kind == MeasurementKind::fix) {
+    return pose.position() +
+           rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left) +
+           Vector2(view.x, view.y);
+  }
   const Vector2 sensor = pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
   if (one.kind == MeasurementKind::view) {
     if (one.rows < 2) return std::nullopt;
@@ -102,7 +107,9 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
               trained.covariances) {
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::gyro) continue;
+    // What lies ahead is not known yet, and a loop ties it to what lies behind.
+    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::loop) continue;
+    if (one.kind == MeasurementKind::gyro) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
     if (one.kind == MeasurementKind::segment) {
       here.segment = static_cast<int>(k);
@@ -185,7 +192,7 @@ LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter
   // From errors, "expected - measured", to "seen - true" in the map.
   Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
   const Matrix2 R = rotation(pose.heading + view.heading);
-  if (one.kind == MeasurementKind::truth) {
+  if (one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix) {
     T.leftCols<2>().setIdentity();
   } else if (one.kind == MeasurementKind::view) {
     const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);

@@ -4,6 +4,7 @@
 
 #include "recording/legs.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace trussmap {
@@ -32,15 +33,22 @@ void add_sighted_legs(const Recording& recording, int session, const RecordingPr
   }
 }
 
-void add_truth_legs(const Recording& recording, int session, const RecordingProblem& problem,
+/// Between truth rows, or between fixes where there is no truth.
+void add_place_legs(const Recording& recording, int session, const RecordingProblem& problem,
                     const LegOptions& options, std::vector<LegSpan>& legs) {
+  const auto is_truth = [session](const Measurement& one) {
+    return one.kind == MeasurementKind::truth && one.session == session;
+  };
+  const bool truth =
+      std::any_of(problem.measurements.begin(), problem.measurements.end(), is_truth);
+  const MeasurementKind ends = truth ? MeasurementKind::truth : MeasurementKind::fix;
   const std::vector<double> path = driven_path(recording.drive);
   bool any = false;
   LegSpan leg;
   double begun = 0.0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::truth || one.session != session) continue;
+    if (one.kind != ends || one.session != session) continue;
     const double t = pose_time(problem, one.from);
     const double driven = path_at(recording.drive, path, t);
     if (any && driven - begun < options.leg) continue;
@@ -63,7 +71,7 @@ std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
   for (std::size_t s = 0; s < recordings.size(); ++s) {
     const int session = static_cast<int>(s);
     if (stops_of(recordings[s].sightings).empty()) {
-      add_truth_legs(recordings[s], session, problem, options, legs);
+      add_place_legs(recordings[s], session, problem, options, legs);
     } else {
       add_sighted_legs(recordings[s], session, problem, options, legs);
     }

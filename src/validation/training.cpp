@@ -94,8 +94,13 @@ void undo_delays(const std::vector<Recording>& recordings, const Model& model,
     std::vector<double> recorded;
     for (const Sighting& sighting : recordings[s].sightings) recorded.push_back(sighting.t);
     for (const TruthRow& row : recordings[s].truth) recorded.push_back(row.t);
+    const Channel delay = delay_of_legs(recordings[s]);
+    if (delay == Channel::fix_delay) {
+      for (const Fix& fix : recordings[s].fixes) recorded.push_back(fix.t);
+    }
+    if (recorded.empty()) continue;  // no leg ends anywhere
     const std::vector<double> moved =
-        retimed(recorded, recordings[s], s, recordings.size(), model.effects, model.robot);
+        retimed(recorded, recordings[s], s, recordings.size(), model.effects, model.robot, delay);
     std::map<double, double> back;
     for (std::size_t k = 0; k < moved.size(); ++k) back[moved[k]] = recorded[k];
     // The nearest: the fit's coefficients have moved a little since it took its delays out.

@@ -25,6 +25,10 @@ Scale scale_of(Channel channel) {
     case Channel::lever:
     case Channel::lever_left:
     case Channel::range:
+    case Channel::antenna:
+    case Channel::antenna_left:
+    case Channel::fix_x:
+    case Channel::fix_y:
       return {1e3, " mm"};
     case Channel::rotate:
     case Channel::compass:
@@ -32,6 +36,7 @@ Scale scale_of(Channel channel) {
     case Channel::truth_heading:
       return {kDegrees, " deg"};
     case Channel::delay:
+    case Channel::fix_delay:
       return {1e3, " ms"};
     default:
       return {100.0, " %"};
@@ -80,6 +85,17 @@ Phrase phrase_of(Channel channel) {
       return {"sightings and truth are stamped", "late", "early"};
     case Channel::truth_heading:
       return {"the truth's heading is turned", "to the left", "to the right"};
+    case Channel::antenna:
+      return {"the antenna sits", "ahead of the axle", "behind the axle"};
+    case Channel::antenna_left:
+      return {"the antenna sits", "to the left of the axle's centre",
+              "to the right of the axle's centre"};
+    case Channel::fix_delay:
+      return {"fixes are stamped", "late", "early"};
+    case Channel::fix_x:
+      return {"fixes lie", "too far along x", "too far against x"};
+    case Channel::fix_y:
+      return {"fixes lie", "too far along y", "too far against y"};
   }
   return {"", "", ""};
 }
@@ -126,6 +142,16 @@ const char* noun_of(Channel channel) {
       return "delay of sightings";
     case Channel::truth_heading:
       return "error of the truth's heading";
+    case Channel::antenna:
+      return "antenna's place ahead";
+    case Channel::antenna_left:
+      return "antenna's place to the left";
+    case Channel::fix_delay:
+      return "delay of fixes";
+    case Channel::fix_x:
+      return "error of fixes along x";
+    case Channel::fix_y:
+      return "error of fixes along y";
   }
   return "";
 }
@@ -171,6 +197,16 @@ std::string channel_in_words(Channel channel) {
       return "sightings stamped late by";
     case Channel::truth_heading:
       return "truth's heading turned left by";
+    case Channel::antenna:
+      return "antenna ahead by";
+    case Channel::antenna_left:
+      return "antenna to the left by";
+    case Channel::fix_delay:
+      return "fixes stamped late by";
+    case Channel::fix_x:
+      return "fixes too far along x by";
+    case Channel::fix_y:
+      return "fixes too far along y by";
   }
   return "";
 }

@@ -166,7 +166,8 @@ std::string stop_in_words(const Discovery& result) {
 }
 
 std::string in_words(const HeldOut& held_out) {
-  if (held_out.legs.empty()) return "no leg could be held out: too few, or --holdout 0";
+  if (held_out.legs.empty())
+    return "no leg could be held out: too few, none that ends at a known place, or --holdout 0";
   return fmt::format(
       "{} legs not used in the fit end {:.1f} mm off (rms), stretched by {:.2f} %, turned by "
       "{:.2f} "

@@ -124,16 +124,32 @@ TEST_P(EveryChannel, AddsToARowWithAGyroWhatBothSay) {
   }
 }
 
+TEST(ChannelPhysics, FixesHaveAnAntennaAndAClockOfTheirOwn) {
+  const ViewVector all = view_pattern(Channel::antenna, 0.2, 0.6, -0.3).vector() +
+                         view_pattern(Channel::antenna_left, -0.1, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_delay, 0.5, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_x, 3.0, 0.6, -0.3).vector() +
+                         view_pattern(Channel::fix_y, 4.0, 0.6, -0.3).vector();
+  const ViewVector expected =
+      (ViewVector() << 0.2 - 0.3, -0.1, 0.15, 0.0, 0.0, 0.0, 3.0, 4.0).finished();
+  EXPECT_LT((all - expected).norm(), 1e-15);
+  for (const ChannelFacts& one : channels()) {
+    if (!acts_on_fixes(one.channel)) continue;
+    EXPECT_FALSE(acts_on_sightings(one.channel)) << one.name;
+    EXPECT_FALSE(acts_on_truth(one.channel)) << one.name;
+    EXPECT_FALSE(is_recordable(one.channel)) << one.name;
+  }
+}
+
 TEST(ChannelPhysics, ATruthsHeadingIsNothingThatSightingsKnow) {
   EXPECT_FALSE(acts_on_sightings(Channel::truth_heading));
   EXPECT_EQ(acts_on(Channel::truth_heading), ActsOn::views);
   const ViewPattern found = view_pattern(Channel::truth_heading, 0.2, 0.6, -0.3);
-  EXPECT_EQ(found.vector(),
-            (Eigen::Matrix<double, 6, 1>() << 0.0, 0.0, 0.2, 0.0, 0.0, 0.0).finished());
+  EXPECT_EQ(found.vector(), (ViewVector() << 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
 }
 
 TEST_P(EveryChannel, AddsToAViewWhatTheTableSays) {
-  if (GetParam() == Channel::truth_heading) return;  // above
+  if (GetParam() == Channel::truth_heading || acts_on_fixes(GetParam())) return;  // above
   const double speed = 0.6;
   const double turn_rate = -0.3;
   const double step = 1e-4;
@@ -181,7 +197,7 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 20U);
+  EXPECT_EQ(channels().size(), 25U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);

@@ -42,7 +42,8 @@ Everything random_values(std::uint64_t seed) {
   Everything all;
   all.state.landmarks = {{draw(), draw()}, {draw(), draw()}};
   all.state.poses = {{draw(), draw(), 2.0 * draw()}, {draw(), draw(), 2.0 * draw()}};
-  all.view = {0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw()};
+  all.view = {0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(),
+              0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw()};
   return all;
 }
 
@@ -54,8 +55,8 @@ double* coordinate(Everything& all, int node, int k) {
 
 double* view_entry(Everything& all, int k) {
   ViewPattern& view = all.view;
-  double* const entries[] = {&view.ahead, &view.left,        &view.heading,
-                             &view.range, &view.range_scale, &view.bearing};
+  double* const entries[] = {&view.ahead,       &view.left,    &view.heading, &view.range,
+                             &view.range_scale, &view.bearing, &view.x,       &view.y};
   return entries[k];
 }
 
@@ -77,7 +78,8 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
       measurement(Kind::segment, 2, 3, 4),  measurement(Kind::segment, 3, 2, 3),
       measurement(Kind::standing, 2, 1, 2), measurement(Kind::view, 3, 0, 2),
       measurement(Kind::view, 3, 1, 1),     measurement(Kind::cartesian_view, 2, 0, 2),
-      measurement(Kind::survey, 1, -1, 2),  measurement(Kind::truth, 3, -1, 3)};
+      measurement(Kind::survey, 1, -1, 2),  measurement(Kind::truth, 3, -1, 3),
+      measurement(Kind::fix, 2, -1, 2),     measurement(Kind::loop, 3, 2, 3)};
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Everything all = random_values(seed);
     for (const Measurement& one : kinds) {
@@ -94,7 +96,7 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
         check(one.from, rows.by_from);
         check(one.to, rows.by_to);
       }
-      for (int k = 0; k < 6; ++k) {
+      for (int k = 0; k < 8; ++k) {
         const Vector4 expected =
             difference(one, all, [&](Everything& at) { return view_entry(at, k); });
         EXPECT_LT((rows.by_view.col(k) - expected).norm(), 1e-7)

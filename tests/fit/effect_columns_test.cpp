@@ -59,6 +59,10 @@ class World {
       made_.recording.truth.push_back(
           {drive().t[row], place.real(), place.imag(), made_.headings[row]});
     }
+    for (std::size_t row = 11; row < made_.places.size(); row += 19) {
+      const Point place = made_.places[row];
+      made_.recording.fixes.push_back({drive().t[row], place.real() + 0.02, place.imag() - 0.01});
+    }
     SessionPath path;
     path.start = pose_of(at_end(-1));
     for (std::size_t row = 0; row < made_.places.size(); ++row) {
@@ -195,7 +199,18 @@ class World {
             last.heading - first.heading - pose.heading, -innovations / readings};
   }
 
+  [[nodiscard]] Vector4 fix(const Measurement& one, Channel channel, double g) const {
+    const TruePose pose = at(time_of(one.from) - (channel == Channel::fix_delay ? g : 0.0));
+    const Point lever(channel == Channel::antenna ? g : 0.0,
+                      channel == Channel::antenna_left ? g : 0.0);
+    const Point off(channel == Channel::fix_x ? g : 0.0, channel == Channel::fix_y ? g : 0.0);
+    const Point found = pose.place + lever * std::polar(1.0, pose.heading) + off;
+    return {found.real() - one.value[0], found.imag() - one.value[1], 0.0, 0.0};
+  }
+
   [[nodiscard]] Vector4 view(const Measurement& one, Channel channel, double g) const {
+    if (one.kind == MeasurementKind::fix) return fix(one, channel, g);
+    if (acts_on_fixes(channel)) g = 0.0;
     const TruePose pose = at(time_of(one.from) - (channel == Channel::delay ? g : 0.0));
     const Point lever(channel == Channel::lever ? g : 0.0,
                       channel == Channel::lever_left ? g : 0.0);
@@ -239,7 +254,7 @@ Vector4 slope(const Measurement& one, Channel channel, const KnownShape& shape, 
   const auto errors = [&](double steps) {
     return world().errors(one, channel, shape, at + steps * step);
   };
-  if (channel == Channel::delay) {
+  if (is_delay(channel)) {
     const double back = world().shape_at(one, shape) < 0.0 ? -1.0 : 1.0;
     const Vector4 rise = -25.0 * errors(0.0) + 48.0 * errors(back) - 36.0 * errors(2.0 * back) +
                          16.0 * errors(3.0 * back) - 3.0 * errors(4.0 * back);
@@ -257,7 +272,7 @@ TEST_P(EachChannel, ColumnsAreThoseOfDifferences) {
   bool acts_on_view = false;
   for (const KnownShape& shape : shapes()) {
     // Shapes grow to 20 (kg) and a delay is exact at its reference alone.
-    const double at = channel == Channel::delay ? 0.0 : 0.001;
+    const double at = is_delay(channel) ? 0.0 : 0.001;
     const EffectParameters border = {effect_column(channel, shape.text, -1, context)};
     RecordingSystem system(world().problem(), border);
     system.linearise(world().state(), Eigen::VectorXd::Constant(1, at));

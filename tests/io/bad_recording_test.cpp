@@ -64,7 +64,42 @@ TEST_P(BadRecording, IsRefusedInOneClearLine) {
 const Spoilt kSpoilt[] = {
     {"NoDrive", "drive.csv", nullptr, "drive.csv: is missing, a recording needs it"},
     {"NoSightings", "sightings.csv", nullptr,
-     "sightings.csv: is missing, a recording without truth.csv needs it"},
+     "sightings.csv: is missing, a recording without truth.csv, fixes.csv or loops.csv needs it"},
+    {"FixWithoutPlace", "fixes.csv", "t,x\n0.1,0\n",
+     "fixes.csv:1: column \"y\" is missing, found \"t,x\""},
+    {"FixWithAHeading", "fixes.csv", "t,x,y,heading\n0.1,0,0,0\n",
+     "fixes.csv:1: column \"heading\" is unknown, expected t,x,y,sd,quality"},
+    {"FixThatIsText", "fixes.csv", "t,x,y\n0.1,here,0\n",
+     "fixes.csv:2: column x is \"here\", expected a number"},
+    {"FixFarAway", "fixes.csv", "t,x,y\n0.1,0,2e9\n",
+     "fixes.csv:2: column y is \"2e9\", expected a number of at most 1e+09 in size"},
+    {"FixOfNoSpread", "fixes.csv", "t,x,y,sd\n0.1,0,0,\n0.2,0,0,0\n",
+     "fixes.csv:3: sd is 0, expected more than 0"},
+    {"FixQualityInWords", "fixes.csv", "t,x,y,quality\n0.1,0,0,good\n",
+     "fixes.csv:2: column quality is \"good\", expected a number"},
+    {"FixesBackwards", "fixes.csv", "t,x,y\n0.2,0,0\n0.1,0,0\n",
+     "fixes.csv:3: time runs backwards from 0.2 to 0.1, expected a later time"},
+    {"FixTwice", "fixes.csv", "t,x,y\n0.2,0,0\n0.2,0,0\n",
+     "fixes.csv:3: time 0.2 is repeated, expected a later time"},
+    {"NoFix", "fixes.csv", "t,x,y\n", "fixes.csv:1: no fix, expected one row at least"},
+    {"LoopWithoutTurn", "loops.csv", "t,t2,dx,dy\n0.1,0.2,0,0\n",
+     "loops.csv:1: column \"dtheta\" is missing, found \"t,t2,dx,dy\""},
+    {"LoopOfALandmark", "loops.csv", "t,t2,dx,dy,dtheta,landmark\n0.1,0.2,0,0,0,A\n",
+     "loops.csv:1: column \"landmark\" is unknown, expected t,t2,dx,dy,dtheta,sd,sd_heading"},
+    {"LoopThatIsText", "loops.csv", "t,t2,dx,dy,dtheta\n0.1,0.2,0,0,left\n",
+     "loops.csv:2: column dtheta is \"left\", expected a number"},
+    {"LoopOfNoSpread", "loops.csv", "t,t2,dx,dy,dtheta,sd\n0.1,0.2,0,0,0,-1\n",
+     "loops.csv:2: sd is -1, expected more than 0"},
+    {"LoopOfNoTurnSpread", "loops.csv", "t,t2,dx,dy,dtheta,sd_heading\n0.1,0.2,0,0,0,0\n",
+     "loops.csv:2: sd_heading is 0, expected more than 0"},
+    {"LoopBeforeTheDrive", "loops.csv", "t,t2,dx,dy,dtheta\n-1,0.2,0,0,0\n",
+     "loops.csv:2: time t -1 is outside the drive, expected 0 to 0.3"},
+    {"LoopAfterTheDrive", "loops.csv", "t,t2,dx,dy,dtheta\n0.1,0.4,0,0,0\n",
+     "loops.csv:2: time t2 0.4 is outside the drive, expected 0 to 0.3"},
+    {"LoopOntoItself", "loops.csv", "t,t2,dx,dy,dtheta\n0.1,0.1,0,0,0\n",
+     "loops.csv:2: t2 is t, 0.1, expected another time"},
+    {"NoLoop", "loops.csv", "t,t2,dx,dy,dtheta\n",
+     "loops.csv:1: no loop, expected one row at least"},
     {"EmptyFile", "drive.csv", "", "drive.csv:1: the file is empty, expected a header row"},
     {"OnlyComments", "drive.csv", "# nothing\n\n",
      "drive.csv:1: the file is empty, expected a header row"},
@@ -182,8 +217,8 @@ TEST(BadRecordingFolder, SightingsWithoutARowMayBeLeftOutBesideATruth) {
   scratch.write("r/truth.csv", "t,x,y,heading\n0.1,0,0,0\n");
   scratch.write("r/sightings.csv", "t,landmark\n");
   EXPECT_EQ(message_of(scratch.path() / "r"),
-            "sightings.csv:1: no sighting, expected one row at least; beside a truth.csv the file "
-            "may be left out");
+            "sightings.csv:1: no sighting, expected one row at least; beside a truth.csv, "
+            "fixes.csv or loops.csv the file may be left out");
   std::filesystem::remove(scratch.path() / "r/sightings.csv");
   EXPECT_EQ(read_recording(scratch.path() / "r").truth.size(), 1U);
 }

@@ -46,6 +46,39 @@ Recording random_recording() {
   return r;
 }
 
+TEST(RecordingCsv, FixesAndLoopsComeBackAndNeedNoSightings) {
+  const ScratchFolder scratch;
+  Recording out = random_recording();
+  out.sightings.clear();
+  out.truth.clear();
+  out.fixes = {{1e9 - 5.0, 1.0 / 3.0, -2.0, 0.5, 4.0}, {1e9 + 0.25, 0.1, 1e-17, kAbsent, kAbsent}};
+  out.loops = {{1e9 + 3.0, 1e9 + 0.1, 0.1, -0.2, 3.0, 0.02, kAbsent},
+               {1e9 + 0.1, 1e9 + 5.0, 1.0, 2.0, -3.0, kAbsent, 0.001}};
+  write_recording(scratch.path() / "r", out);
+  const Recording in = read_recording(scratch.path() / "r");
+  EXPECT_TRUE(in.sightings.empty());
+  ASSERT_EQ(in.fixes.size(), 2U);
+  ASSERT_EQ(in.loops.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Fix& a = in.fixes[k];
+    const Fix& b = out.fixes[k];
+    EXPECT_TRUE(a.t == b.t && a.x == b.x && a.y == b.y);
+    EXPECT_TRUE(same(a.sd, b.sd) && same(a.quality, b.quality));
+    const Loop& c = in.loops[k];
+    const Loop& d = out.loops[k];
+    EXPECT_TRUE(c.t == d.t && c.t2 == d.t2 && c.dx == d.dx && c.dy == d.dy);
+    EXPECT_TRUE(c.dtheta == d.dtheta && same(c.sd, d.sd) && same(c.sd_heading, d.sd_heading));
+  }
+  EXPECT_EQ(fingerprint(in), fingerprint(out));
+  Recording other = in;
+  other.loops[0].dx += 1e-12;
+  EXPECT_NE(fingerprint(in), fingerprint(other));
+  // An earlier recording's streams go with it.
+  out.loops.clear();
+  write_recording(scratch.path() / "r", out);
+  EXPECT_TRUE(read_recording(scratch.path() / "r").loops.empty());
+}
+
 TEST(RecordingCsv, ReadsBackExactlyWhatItWrote) {
   const ScratchFolder scratch;
   const Recording out = random_recording();

@@ -3,6 +3,7 @@
 //
 // Effects of the catalogue in simulated recordings, undone by the definitions of the channels: a
 // slow integration of a few lines, which shares nothing with the simulator or the adjustment.
+#include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
 #include "recording/row_variables.hpp"
 #include "simulation/tours.hpp"
@@ -217,6 +218,7 @@ TEST(EffectPhysics, EveryCatalogueEffectIsTriedHere) {
   for (const Case& one : cases()) tried.insert(find_entry(one.name));
   for (const CatalogueEntry& entry : catalogue()) {
     if (entry.channel == Channel::truth_heading) continue;  // of a tracker, not of a robot
+    if (acts_on_fixes(entry.channel)) continue;             // tests of fixes
     if (entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale) {
       continue;  // this robot has none: fit/gyro_test.cpp
     }

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Drives of the simulated robot that nothing but fixes or loops ties to a place.
+#pragma once
+
+#include "estimation/simulated_recordings.hpp"
+#include "fit/fit_state.hpp"
+#include "trussmap/fit_model.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace trussmap::testing {
+
+struct PlacedOptions {
+  bool compass = false;
+  bool noise = true;
+  double fix_rate = 0.0;  ///< Hz
+  double fix_sd = 0.05;   ///< m
+  bool landmarks = false;
+  std::vector<Effect> effects = {};
+  int tours = 1;
+};
+
+struct PlacedDrive {
+  Recording recording;
+  TrueMotion motion;
+  Model model;  ///< nominal, its noise as it was drawn
+};
+
+inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed) {
+  const Mesh mesh = mesh_of_lines({0.0, 4.0, 9.0}, {0.0, 3.0, 7.0});
+  std::mt19937_64 random = random_stream(seed, Stream::walk);
+  const Tours tours = make_tours(mesh, WalkKind::euler, options.tours, random);
+  WheeledRobot robot;
+  robot.compass = options.compass;
+  robot.fix_rate = options.fix_rate;
+  robot.noise.fix = options.fix_sd;
+  DrivingStyle style;
+  if (!options.noise) {
+    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    style.standing = 0.0;
+  }
+  SimulatedDrive drive =
+      simulate_drive(mesh, tours.walk, style, robot, seed, SimulatedEffects{options.effects});
+  PlacedDrive result;
+  result.recording = std::move(drive.recording);
+  result.motion = std::move(drive.motion);
+  result.recording.survey.clear();
+  if (!options.landmarks) result.recording.sightings.clear();
+  result.model.noise.fix = options.fix_sd;
+  return result;
+}
+
+/// Root mean square distance of a fit's poses from the true ones, at the ends of rows, after
+/// `first` (where the map has the true start) moves the truth there; m.
+inline double path_error(const PlacedDrive& drive, const ModelFit& fit, const Pose& first = {}) {
+  double squares = 0.0;
+  const std::vector<TimedPose> poses = adjusted_poses(fit);
+  for (std::size_t row = 0; row < drive.motion.rows.size(); ++row) {
+    const Pose truth = compose(first, relative(drive.motion.start, drive.motion.rows[row].pose));
+    squares += (poses[row + 1].estimate.pose.position() - truth.position()).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(drive.motion.rows.size()));
+}
+
+/// Within so many standard deviations of its mean, a mean of independent chi^2/dof.
+inline bool is_mean_of_right_ones(double mean, int count, int dof, double sds = 4.0) {
+  return std::abs(mean - 1.0) < sds * std::sqrt(2.0 / dof / count);
+}
+
+}  // namespace trussmap::testing
