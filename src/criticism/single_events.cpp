@@ -214,7 +214,6 @@ class Collector {
     for (int session = 0; count > 1 && session < count; ++session) {
       std::vector<Channel> channels{Channel::travel, Channel::turn};
       if (fit_.recordings[idx(session)].drive.has_compass()) channels.push_back(Channel::compass);
-      if (fit_.recordings[idx(session)].drive.has_gyro()) channels.push_back(Channel::gyro);
       channels.push_back(Channel::delay);
       Eigen::MatrixXd M(tests_.residuals().size(), static_cast<Eigen::Index>(channels.size()));
       Eigen::VectorXd prior_sd(static_cast<Eigen::Index>(channels.size()));

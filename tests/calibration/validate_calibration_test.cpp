@@ -67,6 +67,18 @@ TEST(ValidateCalibration, AFewShortRunsAreHeldOutOneByOne) {
   EXPECT_LT(3.0 * found.calibrated.rms(), found.nominal.rms());
 }
 
+/// The clock of a held-out run is set by that of the others.
+TEST(ValidateCalibration, ALateClockIsTakenFromTheOtherRuns) {
+  std::vector<Recording> runs;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    runs.push_back(short_run(robot_with(1.02), seed));
+    for (TruthRow& row : runs.back().truth) row.t += 0.2;
+  }
+  const CalibrationValidation found = validate_calibration(runs, nominal());
+  ASSERT_EQ(found.scheme, HoldoutScheme::recordings);
+  EXPECT_LT(found.calibrated.rms(), 0.01);
+}
+
 TEST(ValidateCalibration, AHeldOutRunHasNoPartInItsPrediction) {
   // The first run's wheels measure 8 % less than those of all others. A calibration that has seen
   // it would share that out; by the others alone its legs end 8 % short.

@@ -337,6 +337,9 @@ TEST(NoiseChecks, DoubtsNameTheirCause) {
   EndErrors uncorrelated = good;
   for (std::size_t k = 0; k < good.size(); ++k) uncorrelated[k][2] = good[(k + 7) % 60][2];
   EXPECT_NE(doubts(uncorrelated).find("check the path"), std::string::npos) << doubts(uncorrelated);
+  EndErrors slipped = good;
+  slipped[11].head<2>() += Vector2(1.0, -2.0);
+  EXPECT_NE(doubts(slipped).find("run 12 ends far outside"), std::string::npos) << doubts(slipped);
 }
 
 }  // namespace

@@ -127,6 +127,22 @@ TEST(EventTests, ASessionWithAnotherScaleIsOutOfLine) {
   EXPECT_LT(found.front().p_adjusted, 1e-3);
 }
 
+/// Travel, turn, compass, delay: a robot without a compass has none of the third.
+TEST(EventTests, ASessionsSizesHaveTheirPlaces) {
+  for (const bool compass : {true, false}) {
+    NoisyDrive world = simulate_world({compass, true, false, 1, 3}, 6);
+    Drive& drive = world.recordings[1].drive;
+    for (double& left : drive.left) left *= 1.02;
+    for (double& right : drive.right) right *= 1.02;
+    const std::vector<TestedEvent> found = events_of(world);
+    ASSERT_EQ(found.front().kind, EventKind::session);
+    ASSERT_EQ(found.front().size.size(), 4U);
+    EXPECT_NEAR(found.front().size[0], -0.02, 0.01);
+    EXPECT_EQ(std::isnan(found.front().size[2]), !compass);
+    EXPECT_TRUE(std::isfinite(found.front().size[3]));
+  }
+}
+
 TEST(EventTests, WhatItIsConditionedOnIsNotFoundAgain) {
   const Bump one = bumped({true, true, false, 1}, 9.0, 4);
   const FitState fit = fit_recordings(one.world.recordings, one.world.model);

@@ -196,6 +196,14 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
   EXPECT_EQ(freed(Channel::range, 2.7, 3.0).bearing, truth.bearing);
 }
 
+/// An effect of one wheel is believed to be as large as one of both, or of all travel.
+TEST(Channels, ProportionsHaveOnePrior) {
+  using enum Channel;
+  for (const Channel channel : {travel, left, right, wheels, difference, turn, gyro_scale}) {
+    EXPECT_EQ(facts_of(channel).prior_sd, 0.1) << name_of(channel);
+  }
+}
+
 TEST(Channels, HaveOneNameEach) {
   EXPECT_EQ(channels().size(), 25U);
   for (const ChannelFacts& one : channels()) {

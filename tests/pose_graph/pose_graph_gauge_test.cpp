@@ -4,6 +4,7 @@
 // What is held, and what is refused: graphs without a single best fit.
 #include "pose_graph/pose_graph_gauge.hpp"
 
+#include "pose_graph/pose_graph_chain.hpp"
 #include "pose_graph/synthetic_graph.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/pose_graph.hpp"
@@ -148,6 +149,24 @@ TEST(Adjust, NamesASecondPartThatHangsOnOnePoint) {
   const std::string message = refusal(world.graph);
   EXPECT_TRUE(contains(message, "can still move")) << message;
   for (const char* name : {"3", "4", "5"}) EXPECT_TRUE(contains(message, name)) << message;
+}
+
+/// Points that only displacements tie to one another, either way round.
+TEST(Chains, LeadThroughDisplacementsToWhereTheyPoint) {
+  SyntheticGraph world;
+  Measurer measure({}, 1);
+  add_vertex(world, VertexKind::pose, {0.0, 0.0, 0.0});
+  add_vertex(world, VertexKind::point, {3.0, 1.0, 0.0});
+  add_vertex(world, VertexKind::point, {5.0, -2.0, 0.0});
+  add_vertex(world, VertexKind::point, {4.0, 6.0, 0.0});
+  world.graph.point_edges.push_back(measure.point_edge(world.truth, 0, 1));
+  world.graph.displacement_edges.push_back(measure.displacement_edge(world.truth, 1, 2));
+  world.graph.displacement_edges.push_back(measure.displacement_edge(world.truth, 3, 2));
+  const std::vector<Pose> found =
+      chain_measurements(world.graph, choose_gauge(world.graph), Tree::nearest);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_NEAR((found[k].position() - world.truth[k].position()).norm(), 0.0, 1e-12) << k;
+  }
 }
 
 }  // namespace
