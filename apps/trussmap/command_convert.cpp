@@ -73,6 +73,18 @@ void convert_radio_ranges(const fs::path& in, const fs::path& out) {
   count(foreign.unordered_ranges, "ranges were out of order in time");
 }
 
+void convert_place_loops(const fs::path& in, const fs::path& out) {
+  const PlaceLoopRecording foreign = read_place_loops(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("places that look alike, {}", in.string()),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: places that look alike {} to the recording {}\n\n", in.string(),
+             out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
+  count(static_cast<int>(recording.loops.size()), "loops");
+  count(foreign.outside_drive, "loops outside of the drive dropped");
+}
+
 /// A recording is a folder; a map's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
@@ -83,7 +95,8 @@ void check_folder(const fs::path& out) {
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
-  if (is_mrclam(in) || is_optiodom(in) || is_radio_ranges(in)) check_folder(out);
+  const bool loops = is_place_loops(in);
+  if (is_mrclam(in) || is_optiodom(in) || is_radio_ranges(in) || loops) check_folder(out);
   if (is_mrclam(in)) {
     convert_mrclam(in, out);
     return;
@@ -96,12 +109,16 @@ void run_convert(const ConvertOptions& options) {
     convert_radio_ranges(in, out);
     return;
   }
+  if (loops) {
+    convert_place_loops(in, out);
+    return;
+  }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
-    throw UsageError(
-        "cannot tell what " + in.string() +
-        " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
-        "an OptiOdom run (..._run-NN.csv, plain or .xz), or DIR/NAME of ranges to radio "
-        "beacons (NAME_DR.txt, NAME_TD.txt)");
+    throw UsageError("cannot tell what " + in.string() +
+                     " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
+                     "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
+                     "beacons (NAME_DR.txt, NAME_TD.txt), or DIR/NAME of places that look alike "
+                     "(NAME_Input.txt)");
   }
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
   if (is_map_store(out)) {
@@ -122,7 +139,8 @@ void setup_convert(const Command& app) {
   command
       .add_option("IN", options->in,
                   "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
-                  "..._run-NN.csv, or DIR/NAME of ranges to radio beacons (plain or .xz files)")
+                  "..._run-NN.csv, or DIR/NAME of ranges to radio beacons or of places that look "
+                  "alike (TUC SLAM; plain or .xz files)")
       .required()
       .type_name("FILE");
   command

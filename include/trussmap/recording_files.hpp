@@ -120,6 +120,29 @@ struct RangeRecording {
 /// Throws InputError, with the line where there is one.
 [[nodiscard]] RangeRecording read_radio_ranges(const std::filesystem::path& prefix);
 
+// ----------------------------------------
+// Drives with places that look alike (TUC SLAM: Neubert, Schubert & Protzel, 2019) as recordings.
+//
+//   PREFIX_Input.txt   odom2 time [s], velocity ahead and to the left [m/s], turn rate [rad/s],
+//                      three variances; loop time, time [s], similarity
+//
+// Plain or .xz. A velocity holds from its row's time until the next row's; what is to the left is
+// the motion of a point off the axle, and passed over. A loop says that the robot is at the same
+// pose, to what its model says; many are wrong. Of wheels nothing is stated, as above.
+
+struct PlaceLoopRecording {
+  Recording recording;
+  Model model;  ///< that wheelbase, and noise that suits such loops
+
+  int outside_drive = 0;  ///< loops with an end before or after the odometry, dropped
+};
+
+/// True if `prefix` (DIR/NAME) names such a file.
+[[nodiscard]] bool is_place_loops(const std::filesystem::path& prefix);
+
+/// Throws InputError, with the line where there is one.
+[[nodiscard]] PlaceLoopRecording read_place_loops(const std::filesystem::path& prefix);
+
 /// 16 hexadecimal digits that two recordings share only if their wheels, compass, sightings, fixes
 /// and loops are the same, to the last bit: whatever the folders are called.
 [[nodiscard]] std::string fingerprint(const Recording& recording);

@@ -243,6 +243,7 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   if (std::isfinite(options.gate) && loops) {
     system.linearise(fit.state, fit.coefficients);
     RobustFit robust{fit.state, fit.coefficients, {}, options.gate};
+    robust.weights.reserve(part.problem.measurements.size());
     for (std::size_t k = 0; k < part.problem.measurements.size(); ++k) {
       const bool out = may_be_wrong(part.problem.measurements[k].kind) &&
                        system.squared_errors()[k] > options.gate;
@@ -300,6 +301,8 @@ SessionFixes fixes_of(const RecordingProblem& session) {
     fixes[one.from - session.landmark_count()] = &one;
     sds.push_back(1.0 / one.whitener(0, 0));
   }
+  result.poses.reserve(fixes.size());
+  result.places.reserve(fixes.size());
   for (const auto& [pose, one] : fixes) {
     result.poses.push_back(pose);
     result.places.emplace_back(one->value.head<2>());

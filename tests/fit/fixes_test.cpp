@@ -6,6 +6,7 @@
 #include "fit/replicated_recording.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/check.hpp"
 #include "trussmap/compare.hpp"
 #include "trussmap/diagnose.hpp"
 
@@ -177,6 +178,21 @@ TEST(Fixes, GiveTheMapTheirFrame) {
     const BuiltMap built = build_map({drive.recording}, drive.model);
     EXPECT_EQ(built.map.landmarks(), 9);
   }
+}
+
+/// Latitude and longitude in degrees are no metres; metres are.
+TEST(Fixes, InDegreesAreNoticed) {
+  PlacedOptions options;
+  options.fix_rate = 1.0;
+  PlacedDrive drive = placed_drive(options, 14);
+  EXPECT_TRUE(check_recordings({drive.recording}, &drive.model).empty());
+  for (Fix& fix : drive.recording.fixes) {
+    fix.x = 12.9 + fix.x / 70e3;
+    fix.y = 50.8 + fix.y / 111e3;
+  }
+  const std::vector<CheckFinding> findings = check_recordings({drive.recording}, &drive.model);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].kind, "fix unit");
 }
 
 /// Without them a drive of fixes alone has nothing to go by.

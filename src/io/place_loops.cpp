@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "io/csv.hpp"
+#include "io/number_rows.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNominalWheelbase = 1.0;  // m: the data state none
+
+struct TaggedRow {
+  std::string_view tag;
+  std::vector<double> numbers;
+  std::size_t line = 0;
+};
+
+/// A word, then numbers.
+std::vector<TaggedRow> tagged_rows(std::string_view text, const std::string& file) {
+  std::vector<TaggedRow> rows;
+  std::size_t line = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view content = text.substr(at, end - at);
+    at = end + 1;
+    ++line;
+    TaggedRow row;
+    row.line = line;
+    for (std::size_t k = content.find_first_not_of(kWhiteSpace); k != std::string_view::npos;) {
+      const std::size_t stop = std::min(content.find_first_of(kWhiteSpace, k), content.size());
+      const std::string_view word = content.substr(k, stop - k);
+      k = content.find_first_not_of(kWhiteSpace, stop);
+      if (row.tag.empty()) {
+        row.tag = word;
+        continue;
+      }
+      double value = 0.0;
+      const auto [rest, status] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (status != std::errc() || rest != word.data() + word.size() || !std::isfinite(value)) {
+        throw InputError(file, line, "\"" + std::string(word) + "\", expected a finite number");
+      }
+      row.numbers.push_back(value);
+    }
+    if (!row.tag.empty()) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void require_numbers(const TaggedRow& row, std::size_t count, const std::string& file) {
+  if (row.numbers.size() == count) return;
+  throw InputError(file, row.line,
+                   std::to_string(row.numbers.size()) + " numbers after " + std::string(row.tag) +
+                       ", expected " + std::to_string(count));
+}
+
+/// A velocity holds from its row's time until the next row's.
+void add_velocity(const TaggedRow& row, const std::string& file, TaggedRow& before, Drive& drive) {
+  if (!before.numbers.empty()) {
+    const double t = row.numbers[0];
+    const double duration = t - before.numbers[0];
+    if (!(duration > 0.0)) {
+      throw InputError(file, row.line, "time repeats or runs backwards at " + csv_number(t));
+    }
+    const double path = duration * before.numbers[1];
+    const double apart = 0.5 * kNominalWheelbase * duration * before.numbers[3];
+    drive.t.push_back(t);
+    drive.left.push_back(path - apart);
+    drive.right.push_back(path + apart);
+  }
+  before = row;
+}
+
+}  // namespace
+
+bool is_place_loops(const fs::path& prefix) {
+  return !plain_or_xz(beside(prefix, "_Input.txt")).empty();
+}
+
+PlaceLoopRecording read_place_loops(const fs::path& prefix) {
+  const fs::path file = require_plain_or_xz(beside(prefix, "_Input.txt"));
+  const std::string text = read_file(file);
+  PlaceLoopRecording result;
+  result.recording.name = prefix.string();
+  Drive& drive = result.recording.drive;
+  std::vector<Loop> loops;
+  TaggedRow before;
+  for (const TaggedRow& row : tagged_rows(text, file.string())) {
+    if (row.tag == "odom2") {
+      require_numbers(row, 7, file.string());
+      add_velocity(row, file.string(), before, drive);
+    } else if (row.tag == "loop") {
+      require_numbers(row, 3, file.string());
+      loops.push_back({row.numbers[0], row.numbers[1], 0.0, 0.0, 0.0});
+    } else {
+      throw InputError(file.string(), row.line,
+                       "\"" + std::string(row.tag) + "\", expected odom2 or loop");
+    }
+  }
+  if (drive.rows() < 2) throw InputError(file.string(), 0, "no drive, expected rows of odom2");
+  for (const Loop& loop : loops) {
+    const auto inside = [&drive](double t) { return t >= drive.start() && t <= drive.t.back(); };
+    if (inside(loop.t) && inside(loop.t2) && loop.t != loop.t2) {
+      result.recording.loops.push_back(loop);
+    } else {
+      ++result.outside_drive;
+    }
+  }
+  if (result.recording.loops.empty()) {
+    throw InputError(file.string(), 0, "no loop lies within the drive");
+  }
+  result.model.robot.wheelbase = kNominalWheelbase;
+  result.model.noise.left = result.model.noise.right = 0.02;
+  result.model.noise.heading_per_s = 0.003;
+  // What looks alike lies within a metre, and is looked at from about the same side.
+  result.model.noise.loop = 1.0;
+  result.model.noise.loop_heading = 0.5;
+  return result;
+}
+
+}  // namespace trussmap
