@@ -100,6 +100,7 @@ enum class EventChange {
   motion,        ///< the robot was moved: m ahead, m to the left, rad
   position_off,  ///< a sighting is off: m, m
   range_off,     ///< a reading is off: m
+  bearing_off,   ///< the same: rad
   view_off,      ///< a reading is off: m and rad
   survey_off,    ///< a landmark is not where the survey has it: m along x, m along y
   moved,         ///< a landmark was moved: m along x, m along y

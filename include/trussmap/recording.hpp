@@ -77,12 +77,15 @@ struct Drive {
 struct Sighting {
   double t = 0.0;  ///< s
   std::string landmark;
-  double range = kAbsent;    ///< m; NaN: the robot stands on the landmark
+  double range = kAbsent;    ///< m; NaN beside a bearing: a camera's
   double bearing = kAbsent;  ///< rad, from the robot's forward axis; NaN beside a range: a beacon's
 
-  [[nodiscard]] bool standing() const { return range != range; }
-  /// Whether it says where the landmark is from the robot: a range alone does not.
-  [[nodiscard]] bool locates() const { return standing() || bearing == bearing; }
+  /// Neither: the robot stands on the landmark.
+  [[nodiscard]] bool standing() const { return range != range && bearing != bearing; }
+  /// Whether it says where the landmark is from the robot: a range or a bearing alone does not.
+  [[nodiscard]] bool locates() const {
+    return standing() || (range == range && bearing == bearing);
+  }
 };
 
 /// A position without a heading.

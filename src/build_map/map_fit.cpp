@@ -65,6 +65,10 @@ double misfit_of(const FitState& fit, const Measurement& one) {
   if (one.kind == MeasurementKind::cartesian_view) {
     return (to - R * rotation(view.heading) * one.value.head<2>()).norm();
   }
+  if (one.kind == MeasurementKind::direction) {
+    const double sight = pose.heading + view.heading - view.bearing + one.value[0];
+    return to.norm() * std::abs(wrap_angle(direction(to) - sight));
+  }
   const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
   if (one.rows == 1) return std::abs(to.norm() - range);
   const double bearing = one.value[1] - view.bearing + view.heading;

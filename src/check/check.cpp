@@ -194,7 +194,7 @@ int degrees_of_freedom(const Recording& recording, std::set<std::string_view>& l
   for (const Sighting& one : recording.sightings) {
     instants.insert(one.t);
     landmarks.insert(one.landmark);
-    rows += one.standing() || std::isfinite(one.bearing) ? 2 : 1;
+    rows += one.locates() ? 2 : 1;
   }
   for (const TruthRow& one : recording.truth) {
     instants.insert(one.t);

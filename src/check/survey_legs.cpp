@@ -52,7 +52,7 @@ std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPla
   std::vector<SurveyLeg> legs;
   const Sighting* before = nullptr;
   for (const Sighting& one : recording.sightings) {
-    if (one.standing() || std::isnan(one.bearing) || !places.contains(one.landmark)) continue;
+    if (one.standing() || !one.locates() || !places.contains(one.landmark)) continue;
     if (before != nullptr && before->t == one.t && before->landmark != one.landmark) {
       const Pose pose = track.at(one.t);
       legs.push_back({before->landmark, one.landmark,

@@ -38,7 +38,7 @@ struct Pair {
 };
 
 bool is_view(const Sighting& one) {
-  return !one.standing() && std::isfinite(one.bearing);
+  return std::isfinite(one.range) && std::isfinite(one.bearing);
 }
 
 std::vector<Pair> pairs_of(const Recording& recording, const Track& track) {
@@ -97,7 +97,7 @@ Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_un
 void check_bearing_unit(Checked& checked) {
   std::vector<double> sizes;
   for (const Sighting& one : checked.recording.sightings) {
-    if (is_view(one)) sizes.push_back(std::abs(one.bearing));
+    if (std::isfinite(one.bearing)) sizes.push_back(std::abs(one.bearing));
   }
   if (sizes.empty()) return;
   const auto beyond = std::count_if(

@@ -46,6 +46,7 @@ class Gatherer {
       has_gyro_ |= one.kind == MeasurementKind::gyro;
       has_views_ |=
           one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
+      has_bearings_ |= one.kind == MeasurementKind::direction;
       has_truth_ |= one.kind == MeasurementKind::truth;
       has_fixes_ |= one.kind == MeasurementKind::fix;
       has_points_ |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
@@ -104,10 +105,8 @@ class Gatherer {
     if (channel == Channel::truth_heading) return has_truth_;
     if (acts_on_fixes(channel)) return has_fixes_;
     if (acts_on(channel) == ActsOn::views && !has_points_) return false;
-    if (channel == Channel::range || channel == Channel::range_scale ||
-        channel == Channel::bearing) {
-      return has_views_;
-    }
+    if (channel == Channel::bearing) return has_views_ || has_bearings_;
+    if (channel == Channel::range || channel == Channel::range_scale) return has_views_;
     return true;
   }
 
@@ -332,6 +331,7 @@ class Gatherer {
   bool has_compass_ = false;
   bool has_gyro_ = false;
   bool has_views_ = false;
+  bool has_bearings_ = false;  ///< alone
   bool has_truth_ = false;
   bool has_fixes_ = false;
   bool has_points_ = false;  ///< sightings or truth

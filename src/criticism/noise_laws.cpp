@@ -152,7 +152,8 @@ std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& contex
     return std::isnan(fit.recordings[idx(one.session)].fixes[one.source].sd) ? 1.0 : 0.0;
   });
   add("bearing", "rad", [](const Measurement& one, int row) {
-    return one.kind == MeasurementKind::view && row == 1 ? 1.0 : 0.0;
+    const bool alone = one.kind == MeasurementKind::direction;
+    return alone || (one.kind == MeasurementKind::view && row == 1) ? 1.0 : 0.0;
   });
   std::erase_if(laws, [](const NoiseLaw& law) {
     for (const Matrix4& added : law.added) {

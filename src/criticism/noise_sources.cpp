@@ -42,6 +42,8 @@ const char* noise_source(MeasurementKind kind, Eigen::Index row) {
       return "sighting";
     case MeasurementKind::view:
       return row == 0 ? "range" : "bearing";
+    case MeasurementKind::direction:
+      return "bearing";
     case MeasurementKind::cartesian_view:
       return "range";
     case MeasurementKind::survey:

@@ -120,9 +120,10 @@ class Collector {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
       if (projection_.left_out(k) || one.to < 0 || !problem_.is_landmark(one.to)) continue;
-      const EventChange change = one.kind != MeasurementKind::view ? EventChange::position_off
-                                 : one.rows > 1                    ? EventChange::view_off
-                                                                   : EventChange::range_off;
+      const EventChange change = one.kind == MeasurementKind::direction ? EventChange::bearing_off
+                                 : one.kind != MeasurementKind::view    ? EventChange::position_off
+                                 : one.rows > 1                         ? EventChange::view_off
+                                                                        : EventChange::range_off;
       events_.push_back(
           {EventKind::sighting,
            describe(problem_, one),

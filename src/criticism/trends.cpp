@@ -136,6 +136,9 @@ std::vector<Kind> kinds_of(const FitState& fit) {
     kinds.push_back({"sighting range", Channel::range});
     kinds.push_back({"sighting bearing", Channel::bearing});
   }
+  if (has([](const Measurement& one) { return one.kind == MeasurementKind::direction; })) {
+    kinds.push_back({"bearing", Channel::bearing});
+  }
   kinds.push_back({"sighting ahead", Channel::lever});
   kinds.push_back({"sighting to the left", Channel::lever_left});
   return kinds;

@@ -7,6 +7,7 @@
 #include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace trussmap {
@@ -46,7 +47,7 @@ void free_sightings(Channel channel, const std::vector<double>& g, Recording& re
   for (Sighting& sighting : recording.sightings) {
     if (sighting.standing()) continue;
     sighting = without(channel, g[row_at(recording.drive, sighting.t)], sighting);
-    if (!(sighting.range > 0.0)) {
+    if (!std::isnan(sighting.range) && !(sighting.range > 0.0)) {
       throw std::invalid_argument("leaves a range of " + short_text(sighting.range) +
                                   " m at t = " + short_text(sighting.t) + " s");
     }

@@ -68,6 +68,22 @@ MeasurementRows view_rows(const Measurement& one, const Pose& pose, const Vector
   return rows;
 }
 
+/// Of a view its bearing alone.
+MeasurementRows direction_rows(const Measurement& one, const Pose& pose, const Vector2& landmark,
+                               const Vector4& value, const ViewPattern& view) {
+  Measurement both = one;
+  both.rows = 2;
+  MeasurementRows rows = view_rows(both, pose, landmark, Vector4(0.0, value[0], 0.0, 0.0), view);
+  rows.error.head<2>() << rows.error[1], 0.0;
+  for (auto* part : {&rows.by_from, &rows.by_to}) {
+    part->row(0) = part->row(1);
+    part->row(1).setZero();
+  }
+  rows.by_view.row(0) = rows.by_view.row(1);
+  rows.by_view.row(1).setZero();
+  return rows;
+}
+
 MeasurementRows cartesian_view_rows(const Pose& pose, const Vector2& landmark, const Vector4& value,
                                     const ViewPattern& view) {
   MeasurementRows rows;
@@ -179,6 +195,9 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
       return standing_rows(pose(measurement.from), landmark(measurement.to), view);
     case MeasurementKind::view:
       return view_rows(measurement, pose(measurement.from), landmark(measurement.to), value, view);
+    case MeasurementKind::direction:
+      return direction_rows(measurement, pose(measurement.from), landmark(measurement.to), value,
+                            view);
     case MeasurementKind::cartesian_view:
       return cartesian_view_rows(pose(measurement.from), landmark(measurement.to), value, view);
     case MeasurementKind::truth:

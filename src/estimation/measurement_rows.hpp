@@ -11,6 +11,7 @@
 //   gyro       -value: nothing is predicted of an excess
 //   standing   R(theta)' delta
 //   view       |delta| - range,  direction(delta) - theta - bearing
+//   direction  direction(delta) - theta - bearing
 //   cartesian_view  R(theta)' delta - offset
 //   survey     l - s
 //   truth      q - t,  theta - h

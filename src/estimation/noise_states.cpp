@@ -207,7 +207,8 @@ class ProcessLayout {
       const double size = channel_ == Channel::range ? 1.0 : one.value.head<2>().norm();
       variance(0, 0) = variance(1, 1) = size * size;
     } else if (channel_ == Channel::bearing) {
-      variance(1, 1) = 1.0;
+      const int row = one.kind == MeasurementKind::direction ? 0 : 1;
+      variance(row, row) = 1.0;
     } else {
       variance(0, 0) = channel_ == Channel::range ? 1.0 : one.value[0] * one.value[0];
     }
@@ -226,7 +227,8 @@ class ProcessLayout {
       case Channel::range_scale:
         return one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
       case Channel::bearing:
-        return one.kind == MeasurementKind::view && one.rows == 2;
+        return one.kind == MeasurementKind::direction ||
+               (one.kind == MeasurementKind::view && one.rows == 2);
       case Channel::truth_heading:
         return one.kind == MeasurementKind::truth;
       default:

@@ -257,7 +257,12 @@ class Collector {
       one.whitener = whitener_of_sds({noise.sighting, noise.sighting});
     } else {
       const double sd_range = std::hypot(noise.range, noise.range_relative * sighting.range);
-      if (std::isnan(sighting.bearing)) {
+      if (std::isnan(sighting.range)) {
+        one.kind = MeasurementKind::direction;
+        one.rows = 1;
+        one.value[0] = sighting.bearing;
+        one.whitener = whitener_of_sds({noise.bearing});
+      } else if (std::isnan(sighting.bearing)) {
         one.kind = MeasurementKind::view;
         one.rows = 1;
         one.value[0] = sighting.range;
@@ -378,6 +383,7 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
              " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::view:
     case MeasurementKind::cartesian_view:
+    case MeasurementKind::direction:
       return "sight of landmark " + problem.landmarks[idx(measurement.to)] +
              " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::survey:
@@ -394,7 +400,8 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
 }
 
 bool locates(const Measurement& one) {
-  return is_sighting(one.kind) && !(one.kind == MeasurementKind::view && one.rows == 1);
+  return is_sighting(one.kind) && one.kind != MeasurementKind::direction &&
+         !(one.kind == MeasurementKind::view && one.rows == 1);
 }
 
 }  // namespace trussmap

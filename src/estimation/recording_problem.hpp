@@ -19,6 +19,7 @@
 //     cartesian_view          pose, landmark         the same in robot axes (2): a range within
 //     three
 //                                               of its sds says nothing of a direction      m
+//     direction          pose, landmark         bearing alone (1)                           rad
 //     survey             landmark               x, y (2)                                    m
 //     truth              pose                   x, y, heading (3)                           m, rad
 //     fix                pose                   x, y of the antenna (2)                     m
@@ -46,6 +47,7 @@ enum class MeasurementKind {
   standing,
   view,
   cartesian_view,
+  direction,
   survey,
   truth,
   fix,
@@ -60,7 +62,7 @@ enum class MeasurementKind {
 /// Of a landmark: standing on it, or seeing it.
 [[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
   return kind == MeasurementKind::standing || kind == MeasurementKind::view ||
-         kind == MeasurementKind::cartesian_view;
+         kind == MeasurementKind::cartesian_view || kind == MeasurementKind::direction;
 }
 
 /// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
@@ -71,7 +73,8 @@ enum class MeasurementKind {
 
 struct Measurement;
 
-/// Whether a sighting says where its landmark is from the robot: a range alone does not.
+/// Whether a sighting says where its landmark is from the robot: a range or a bearing alone does
+/// not.
 [[nodiscard]] bool locates(const Measurement& one);
 
 struct Measurement {

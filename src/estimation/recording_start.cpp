@@ -6,6 +6,7 @@
 #include "estimation/pose_reckoner.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
+#include "estimation/triangulation.hpp"
 #include "statistics/thinned.hpp"
 #include "trussmap/planar.hpp"
 
@@ -89,15 +90,24 @@ class Layer {
     }
   }
 
-  /// Landmarks of which the first `count` poses have ranges alone: those that these tell, or at
-  /// last all that have some.
-  void place_by_ranges(int count, bool at_last) {
+  /// Landmarks of which the first `count` poses have ranges or bearings alone: those that these
+  /// tell, or at last all that have some.
+  void place_from_afar(int count, bool at_last) {
     std::map<int, std::vector<RangeReading>> readings;
+    std::map<int, std::vector<DirectionReading>> sights;
     for (int k = 0; k < count; ++k) {
+      const Pose& pose = poses_[idx(k)];
       for (const Measurement* one : seen_at(k)) {
         if (!is_sighting(one->kind) || locates(*one) || landmarks_[idx(one->to)]) continue;
-        const double sd = std::hypot(std::sqrt(covariance_of(*one)(0, 0)), options_.map_sd);
-        readings[one->to].push_back({poses_[idx(k)].position(), one->value[0], sd});
+        const double own = std::sqrt(covariance_of(*one)(0, 0));
+        if (one->kind == MeasurementKind::direction) {
+          constexpr double kHeadingSd = 0.05;  // rad, of the path so far
+          sights[one->to].push_back(
+              {pose.position(), pose.heading + one->value[0], std::hypot(own, kHeadingSd)});
+          continue;
+        }
+        const double sd = std::hypot(own, options_.map_sd);
+        readings[one->to].push_back({pose.position(), one->value[0], sd});
       }
     }
     for (const auto& [landmark, of_it] : readings) {
@@ -106,6 +116,14 @@ class Layer {
       } else if (at_last) {
         // Anywhere but along an axis, so that rounding shows which unknown is free.
         landmarks_[idx(landmark)] = of_it.front().from + of_it.front().range * rotation(1.0).col(0);
+      }
+    }
+    for (const auto& [landmark, of_it] : sights) {
+      if (landmarks_[idx(landmark)]) continue;
+      if (const std::optional<Triangulation> found = triangulate(of_it)) {
+        if (found->certain || at_last) landmarks_[idx(landmark)] = found->place;
+      } else if (at_last) {
+        landmarks_[idx(landmark)] = of_it.front().from + rotation(of_it.front().direction).col(0);
       }
     }
   }
@@ -355,7 +373,7 @@ void lay_along_fixes(const SessionFixes& fixes, bool compass, Layer& layer) {
   const Matrix3 covariance =
       Eigen::Vector3d(sd * sd, sd * sd, kHeadingSd * kHeadingSd).asDiagonal();
   layer.lay(0, poses - 1, start, covariance, true);
-  layer.place_by_ranges(poses, true);
+  layer.place_from_afar(poses, true);
 }
 
 /// All of a session that lies in a frame of its own.
@@ -381,7 +399,7 @@ void lay_freely(const RecordingProblem& session, const StartOptions& options, La
       const Pose pose{truth->value[0], truth->value[1], truth->value[2]};
       layer.lay(k, poses - 1, pose, covariance_of(*truth), true);
       layer.lay_backwards(k);
-      layer.place_by_ranges(poses, true);
+      layer.place_from_afar(poses, true);
       return;
     }
   }
@@ -390,7 +408,7 @@ void lay_freely(const RecordingProblem& session, const StartOptions& options, La
   const Matrix3 adjusted = Eigen::Vector3d(1e-2, 1e-2, 1e-3).asDiagonal();
   int laid = std::min(poses, options.first_stretch);
   layer.lay(0, laid - 1, layer.first_pose(), unknown_heading, true);
-  layer.place_by_ranges(laid, laid == poses);
+  layer.place_from_afar(laid, laid == poses);
   if (laid < poses) adjust_stretch(session, options, laid, layer);
   int longest = poses;
   while (laid < poses) {
@@ -398,7 +416,7 @@ void lay_freely(const RecordingProblem& session, const StartOptions& options, La
     const int stretch = std::min(longest, std::max(2 * options.first_stretch / 3, laid / 3));
     const int next = std::min(poses, laid + stretch);
     layer.lay(laid - 1, next - 1, layer.poses()[idx(laid - 1)], adjusted, true);
-    layer.place_by_ranges(next, next == poses);
+    layer.place_from_afar(next, next == poses);
     if (next == poses && !options.careful) return;
     const double lost = adjust_stretch(session, options, next, layer);
     if (options.careful && lost > kLost && stretch > kShortestStretch) {

@@ -98,7 +98,8 @@ std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& n
   add("sighting", "m", &Noise::sighting, any_of_kind(fit, MeasurementKind::standing));
   add("range", "m", &Noise::range, has_views(fit));
   add("fix", "m", &Noise::fix, has_unstated_fixes(fit));
-  add("bearing", "rad", &Noise::bearing, any_of_kind(fit, MeasurementKind::view));
+  add("bearing", "rad", &Noise::bearing,
+      any_of_kind(fit, MeasurementKind::view) || any_of_kind(fit, MeasurementKind::direction));
   add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
   add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
   add("travel_per_s", "m/s^1/2", &Noise::travel_per_s, true);
@@ -209,6 +210,8 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
     } else if (one.kind == MeasurementKind::view) {
       added(0, 0) = unit.range * unit.range;
       if (one.rows == 2) added(1, 1) = unit.bearing * unit.bearing;
+    } else if (one.kind == MeasurementKind::direction) {
+      added(0, 0) = unit.bearing * unit.bearing;
     } else if (one.kind == MeasurementKind::cartesian_view) {
       added.diagonal().head<2>().setConstant(unit.range * unit.range);
     } else if (is_unstated_fix(fit_, one)) {
@@ -270,6 +273,7 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
     }
     case MeasurementKind::gyro:
     case MeasurementKind::standing:
+    case MeasurementKind::direction:
       break;
     case MeasurementKind::view:
       fixed(0, 0) = std::pow(relative * one.value[0], 2);

@@ -199,13 +199,15 @@ class Replicator {
 
   void see_landmarks() {
     for (const Measurement& one : fit_.problem.measurements) {
-      if (one.kind != MeasurementKind::view && one.kind != MeasurementKind::cartesian_view) {
-        continue;
-      }
+      if (!is_sighting(one.kind) || one.kind == MeasurementKind::standing) continue;
       Sighting& sighting = timed_[idx(one.session)].sightings[one.source];
       const Vector4 seen = one.value + measurement_rows(fit_.problem, one, state_, one.value,
                                                         view_of(border_, offsets_, one))
                                            .error;
+      if (one.kind == MeasurementKind::direction) {
+        sighting.bearing = wrap_angle(seen[0] + drawn(noise_.bearing));
+        continue;
+      }
       const bool offset = one.kind == MeasurementKind::cartesian_view;
       const double range = offset ? seen.head<2>().norm() : seen[0];
       const double bearing = offset ? direction(seen.head<2>()) : seen[1];

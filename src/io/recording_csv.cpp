@@ -148,9 +148,6 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   const int range = csv.find("range");
   const int bearing = csv.find("bearing");
   refuse_other_columns(csv, {"t", "landmark", "range", "bearing"});
-  if (range < 0 && bearing >= 0) {
-    csv.fail("column \"bearing\" without \"range\", expected a range");
-  }
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
@@ -160,9 +157,6 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
       sighting.range = csv.number_or_absent(range, kLargestRange);
     }
     if (bearing >= 0) sighting.bearing = csv.number_or_absent(bearing, kLargestAngle);
-    if (std::isnan(sighting.range) && !std::isnan(sighting.bearing)) {
-      csv.fail("a bearing without a range, expected a range");
-    }
     if (sighting.range < 0.0) csv.fail("the range is negative, expected 0 or more");
     require_inside(csv, drive, sighting.t, "time ");
     if (!sightings.empty()) require_forward(csv, sightings.back().t, sighting.t, true);

@@ -85,9 +85,6 @@ void require_sightings(const Recording& recording) {
       refuse_it(joined("is outside the drive, expected ", short_text(drive.start()), " to ",
                        short_text(drive.t.back()), " s"));
     }
-    if (std::isnan(one.range) && !std::isnan(one.bearing)) {
-      refuse_it("has a bearing without a range");
-    }
     if (std::isinf(one.range) || one.range < 0.0 || std::isinf(one.bearing)) {
       refuse_it("has a range or a bearing that is negative or infinite");
     }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastChord = 0.1;  // m
 
 /// Where a measurement says that what it measures lies, from a pose: the landmark, or the point
-/// that truth tracks. Nothing where only a range was measured.
+/// that truth tracks. Nothing where only a range or a bearing was measured.
 std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
                                  const ViewPattern& view) {
   if (one.kind == MeasurementKind::fix) {
@@ -24,9 +24,9 @@ std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
            rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left) +
            Vector2(view.x, view.y);
   }
+  if (is_sighting(one.kind) && !locates(one)) return std::nullopt;
   const Vector2 sensor = pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
   if (one.kind == MeasurementKind::view) {
-    if (one.rows < 2) return std::nullopt;
     const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
     const double way = pose.heading + view.heading - view.bearing + one.value[1];
     return sensor + range * rotation(way).col(0);

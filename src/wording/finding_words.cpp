@@ -97,6 +97,8 @@ std::string in_words(const EventTest& event) {
       return fmt::format("{} is off by {:.1f} cm", event.name, cm(std::hypot(size[0], size[1])));
     case EventChange::range_off:
       return fmt::format("{} is off by {:.1f} cm", event.name, cm(size[0]));
+    case EventChange::bearing_off:
+      return fmt::format("{} is off by {:.1f} deg", event.name, kDegrees * size[0]);
     case EventChange::view_off:
       return fmt::format("{} is off by {:.1f} cm and {:.1f} deg", event.name, cm(size[0]),
                          kDegrees * size[1]);
