@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -237,6 +238,31 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     }
     EXPECT_LT(std::sqrt(off), 0.1 * std::sqrt(change)) << name_of(channel);
   }
+}
+
+/// Wheels twice as noisy as stated, and a wheelbase that is wrong: what is missing says why errors
+/// are large, and no warning blames the noise that was estimated anyway. Seed 5.
+TEST(Diagnosis, UnderNoiseThatItEstimatedNoWarningBlamesTheStated) {
+  testing::SimulatedRecording world = testing::simulate_recording({}, 5);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  Drive& drive = world.recording.drive;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    for (std::vector<double>* wheel : {&drive.left, &drive.right}) {
+      double& travel = (*wheel)[row];
+      travel += 0.009 * std::sqrt(std::abs(travel)) * normal(random);
+    }
+    const double apart = 0.02 * (drive.right[row] - drive.left[row]);
+    drive.left[row] -= apart;
+    drive.right[row] += apart;
+  }
+  const ModelFit fit = fit_model({world.recording}, world.model);
+  const auto blames = [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; };
+  ASSERT_TRUE(std::any_of(fit.warnings.begin(), fit.warnings.end(), blames));
+  const Diagnosis found = diagnose({world.recording}, fit);
+  ASSERT_EQ(found.verdict, Diagnosis::Verdict::missing);
+  ASSERT_TRUE(found.under->noise.changed());
+  EXPECT_TRUE(std::none_of(found.warnings.begin(), found.warnings.end(), blames));
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ void may_refuse(const Call& call) {
 }
 
 void fuzz_recording(std::string_view bytes) {
-  write_parts(bytes, {"drive.csv", "sightings.csv", "survey.csv", "truth.csv"});
+  write_parts(bytes,
+              {"drive.csv", "sightings.csv", "survey.csv", "truth.csv", "fixes.csv", "loops.csv"});
   may_refuse([] {
     const Recording recording = read_recording(folder().path());
     const Model model;
@@ -137,6 +138,16 @@ void fuzz_optiodom(std::string_view bytes) {
   may_refuse([] { static_cast<void>(read_optiodom(folder().path() / "a_run-01.csv")); });
 }
 
+void fuzz_ranges(std::string_view bytes) {
+  write_parts(bytes, {"a_DR.txt", "a_TD.txt", "a_GT.csv"});
+  may_refuse([] { static_cast<void>(read_radio_ranges(folder().path() / "a")); });
+}
+
+void fuzz_loops(std::string_view bytes) {
+  write_parts(bytes, {"a_Input.txt"});
+  may_refuse([] { static_cast<void>(read_place_loops(folder().path() / "a")); });
+}
+
 void fuzz_runs(std::string_view bytes) {
   const fs::path file = folder().write("runs.csv", bytes);
   may_refuse([&file] { static_cast<void>(read_square_runs(file, 16.0)); });
@@ -171,6 +182,8 @@ const std::map<std::string, Target>& targets() {
                                                          {"g2o", &fuzz_g2o},
                                                          {"mrclam", &fuzz_mrclam},
                                                          {"optiodom", &fuzz_optiodom},
+                                                         {"ranges", &fuzz_ranges},
+                                                         {"loops", &fuzz_loops},
                                                          {"runs", &fuzz_runs},
                                                          {"words", &fuzz_words},
                                                          {"xz", &fuzz_xz}};
