@@ -102,8 +102,8 @@ class NoiseReml {
     int readings = 0;
   };
   [[nodiscard]] Matrix4 segment_covariance(const Measurement& one, const Noise& noise) const;
-  /// What no component changes.
   [[nodiscard]] Matrix4 gyro_covariance(const Measurement& one, const Noise& noise) const;
+  /// What no component changes.
   [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
   /// Without nuisance; and with it, what its columns take away and log|their information|.
   struct Parts {

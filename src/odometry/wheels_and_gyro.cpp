@@ -15,8 +15,10 @@ double gyro_variance(const Noise& noise, double duration) {
   return noise.gyro * noise.gyro * duration;
 }
 
+/// As both say: of the wheels alone, rows that err towards a larger turn would count less than
+/// those that err the other way, and all turns seem larger than the wheels say.
 WheelTravel wheels_of(const Drive& drive, std::size_t row, double part) {
-  return {part * drive.wheel_left(row), part * drive.wheel_right(row)};
+  return {part * drive.left[row], part * drive.right[row]};
 }
 
 }  // namespace

@@ -345,7 +345,7 @@ TEST(NoiseStatesOfLegs, EndWithRests) {
 TEST(NoiseStatesOfLegs, EndWhereTheRobotStandsOnALandmark) {
   std::vector<Recording> recordings;
   views_only({{2.0, "a"}, {5.0, "a"}, {5.0, "b"}, {8.0, "a"}}, recordings);
-  recordings[0].sightings[2].range = kAbsent;
+  recordings[0].sightings[2].range = recordings[0].sightings[2].bearing = kAbsent;
   const RecordingProblem problem = make_problem(recordings, {});
   const ProcessLayer layer(problem, recordings, {});
   EXPECT_EQ(states_of(problem, layer.lay(Channel::bearing, ProcessKind::per_leg, 0.0),

@@ -187,10 +187,11 @@ TEST(Gyro, NoiseIsWhatIsStated) {
   EXPECT_GT(found.covered, 0.88);
 }
 
-/// Seeds 1000 to 1499; with a compass besides, and without a survey, a few hundred each.
+/// Seeds 1000 to 1499, two tours each.
 TEST(SlowGyro, NoiseIsWhatIsStated) {
   World world;
   world.noise.gyro = 0.0008;
+  world.tours = 2;
   const Statistics found = statistics(world, 500, 1000);
   std::printf("gyro: chi^2/dof %.4f +- %.4f, covered %.3f\n", found.chi2_per_dof, found.sd,
               found.covered);

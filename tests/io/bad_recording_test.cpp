@@ -114,7 +114,7 @@ const Spoilt kSpoilt[] = {
     {"YawRateInWords", "drive.csv", "t,left,right,yaw_rate\n0.1,0,0,\n0.2,0,0,fast\n",
      "drive.csv:3: column yaw_rate is \"fast\", expected a number"},
     {"YawRateOutOfThisWorld", "drive.csv", "t,left,right,yaw_rate\n0.1,0,0,1\n0.2,0,0,-2000\n",
-     "drive.csv:3: column yaw_rate is -2000, expected at most 1000 in size"},
+     "drive.csv:3: column yaw_rate is \"-2000\", expected a number of at most 1000 in size"},
     {"ReservedCovariate", "drive.csv", "t,left,right,speed\n0.1,0,0,0\n",
      "drive.csv:1: column \"speed\" is a reserved name, expected another for a covariate"},
     {"BadCovariateName", "drive.csv", "t,left,right,pay load\n0.1,0,0,0\n",
