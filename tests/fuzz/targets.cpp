@@ -137,6 +137,11 @@ void fuzz_optiodom(std::string_view bytes) {
   may_refuse([] { static_cast<void>(read_optiodom(folder().path() / "a_run-01.csv")); });
 }
 
+void fuzz_phil(std::string_view bytes) {
+  write_parts(bytes, {"kobuki_data.csv", "rio_data.csv", "mocap_robot.csv"});
+  may_refuse([] { static_cast<void>(read_phil(folder().path())); });
+}
+
 void fuzz_runs(std::string_view bytes) {
   const fs::path file = folder().write("runs.csv", bytes);
   may_refuse([&file] { static_cast<void>(read_square_runs(file, 16.0)); });
@@ -171,6 +176,7 @@ const std::map<std::string, Target>& targets() {
                                                          {"g2o", &fuzz_g2o},
                                                          {"mrclam", &fuzz_mrclam},
                                                          {"optiodom", &fuzz_optiodom},
+                                                         {"phil", &fuzz_phil},
                                                          {"runs", &fuzz_runs},
                                                          {"words", &fuzz_words},
                                                          {"xz", &fuzz_xz}};

@@ -80,13 +80,11 @@ TEST(WellFormed, WhatIsWrongIsNamed) {
        [](Recording& r) {
          r.survey = {{"A", 1.0, kAbsent}};
        }},
-      {"the sighting of C at t = 5 s has a bearing without a range",
-       [](Recording& r) { r.sightings[1].range = kAbsent; }},
       {"the sighting of C at t = 5 s has a range or a bearing that is negative",
        [](Recording& r) { r.sightings[1].range = -2.0; }},
       {"the drive has 1 rows, expected two at least",
        [](Recording& r) {
-         r.drive = {{1.0}, {0.5}, {0.5}};
+         r.drive = {{1.0}, {0.5}, {0.5}, {}, {}};
        }},
   };
   for (const Spoilt& one : all) {
