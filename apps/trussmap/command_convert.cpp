@@ -85,6 +85,31 @@ void convert_place_loops(const fs::path& in, const fs::path& out) {
   count(foreign.outside_drive, "loops outside of the drive dropped");
 }
 
+void convert_phil(const fs::path& in, const fs::path& out) {
+  const PhilRecording foreign = read_phil(in);
+  const Recording& recording = foreign.recording;
+  const std::string clocks =
+      foreign.aligned
+          ? fmt::format(
+                "the gyro's log is {:.3f} s later than the wheels', by their turns (correlation "
+                "{:.3f}): set back",
+                foreign.gyro_late, foreign.gyro_likeness)
+          : fmt::format(
+                "the gyro's clock stays as it is: its turns and the wheels' are too little alike "
+                "(correlation {:.2f})",
+                foreign.gyro_likeness);
+  write_recording(out, recording,
+                  fmt::format("t = 0 is {:.3f} s, Unix time\n{}", foreign.epoch, clocks),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: PHIL {} to the recording {}\n\n", in.string(), out.string());
+  count(foreign.tick_rows, "rows of ticks, of which were made");
+  count(static_cast<int>(recording.drive.rows()), "drive rows");
+  count(static_cast<int>(recording.truth.size()), "truth rows");
+  count(foreign.stale_samples, "rows that repeat a sample of the gyro skipped");
+  count(foreign.lost_frames, "frames without the robot, or where it jumps, left out");
+  fmt::print("  {}\n", clocks);
+}
+
 /// A recording is a folder; a map's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
@@ -95,8 +120,10 @@ void check_folder(const fs::path& out) {
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
+  const bool ranges = is_radio_ranges(in);
   const bool loops = is_place_loops(in);
-  if (is_mrclam(in) || is_optiodom(in) || is_radio_ranges(in) || loops) check_folder(out);
+  const bool phil = is_phil(in);
+  if (is_mrclam(in) || is_optiodom(in) || ranges || loops || phil) check_folder(out);
   if (is_mrclam(in)) {
     convert_mrclam(in, out);
     return;
@@ -105,7 +132,7 @@ void run_convert(const ConvertOptions& options) {
     convert_optiodom(in, out);
     return;
   }
-  if (is_radio_ranges(in)) {
+  if (ranges) {
     convert_radio_ranges(in, out);
     return;
   }
@@ -113,12 +140,17 @@ void run_convert(const ConvertOptions& options) {
     convert_place_loops(in, out);
     return;
   }
+  if (phil) {
+    convert_phil(in, out);
+    return;
+  }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
     throw UsageError("cannot tell what " + in.string() +
                      " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
                      "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
-                     "beacons (NAME_DR.txt, NAME_TD.txt), or DIR/NAME of places that look alike "
-                     "(NAME_Input.txt)");
+                     "beacons (NAME_DR.txt, NAME_TD.txt), DIR/NAME of places that look alike "
+                     "(NAME_Input.txt), or a trial of PHIL's Turtlebot (a folder with "
+                     "kobuki_data.csv)");
   }
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
   if (is_map_store(out)) {
@@ -139,8 +171,8 @@ void setup_convert(const Command& app) {
   command
       .add_option("IN", options->in,
                   "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
-                  "..._run-NN.csv, or DIR/NAME of ranges to radio beacons or of places that look "
-                  "alike (TUC SLAM; plain or .xz files)")
+                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons or of places that look "
+                  "alike (TUC SLAM), or DIR/trial_N of PHIL's Turtlebot (plain or .xz files)")
       .required()
       .type_name("FILE");
   command

@@ -143,8 +143,39 @@ struct PlaceLoopRecording {
 /// Throws InputError, with the line where there is one.
 [[nodiscard]] PlaceLoopRecording read_place_loops(const std::filesystem::path& prefix);
 
-/// 16 hexadecimal digits that two recordings share only if their wheels, compass, sightings, fixes
-/// and loops are the same, to the last bit: whatever the folders are called.
+// A Turtlebot's wheels and gyro under motion capture (PHIL, Worcester Polytechnic Institute, 2018)
+// as a recording.
+//
+//   FOLDER/kobuki_data.csv   left_ticks, right_ticks (65536 is 0 again), time_s, time_ns
+//   FOLDER/rio_data.csv      raw_gyro_z [deg/s, counter-clockwise], navx time [ms], and others
+//   FOLDER/mocap_robot.csv   frame (100 Hz), rotation vector [rad], position [mm]; # header
+//
+// Plain or .xz. Counts come late by up to 60 ms: rows are 0.2 s long, where the robot moves, and
+// end where a count is fresh. The gyro's clock is set to the wheels', by their turns alone; the
+// truth's stays as it is (effect `sighting delay`). Headings are the robot's, not the tracked
+// body's.
+
+struct PhilRecording {
+  Recording recording;
+  Model model;  ///< the maker's wheelbase, and noise that suits these trials
+
+  double epoch = 0.0;          ///< s, Unix time of t = 0
+  bool aligned = false;        ///< whether the clocks of wheels and gyro could be compared
+  double gyro_late = 0.0;      ///< s that the gyro's times were set back by
+  double gyro_likeness = 0.0;  ///< correlation of their turns over 0.3 s then, -1 to 1
+  int tick_rows = 0;           ///< rows of counts, of which several make one of the drive
+  int stale_samples = 0;       ///< rows that repeat a sample of the gyro
+  int lost_frames = 0;         ///< frames without the robot, or where it jumps, left out
+};
+
+/// True if the folder has such files, complete or not.
+[[nodiscard]] bool is_phil(const std::filesystem::path& folder);
+
+/// Throws InputError with file and line.
+[[nodiscard]] PhilRecording read_phil(const std::filesystem::path& folder);
+
+/// 16 hexadecimal digits that two recordings share only if their wheels, compass, gyro, sightings,
+/// fixes and loops are the same, to the last bit: whatever the folders are called.
 [[nodiscard]] std::string fingerprint(const Recording& recording);
 
 // ----------------------------------------

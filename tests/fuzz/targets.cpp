@@ -148,6 +148,11 @@ void fuzz_loops(std::string_view bytes) {
   may_refuse([] { static_cast<void>(read_place_loops(folder().path() / "a")); });
 }
 
+void fuzz_phil(std::string_view bytes) {
+  write_parts(bytes, {"kobuki_data.csv", "rio_data.csv", "mocap_robot.csv"});
+  may_refuse([] { static_cast<void>(read_phil(folder().path())); });
+}
+
 void fuzz_runs(std::string_view bytes) {
   const fs::path file = folder().write("runs.csv", bytes);
   may_refuse([&file] { static_cast<void>(read_square_runs(file, 16.0)); });
@@ -176,17 +181,13 @@ void fuzz_xz(std::string_view bytes) {
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> kTargets = {{"recording", &fuzz_recording},
-                                                         {"model", &fuzz_model},
-                                                         {"graphml", &fuzz_graphml},
-                                                         {"g2o", &fuzz_g2o},
-                                                         {"mrclam", &fuzz_mrclam},
-                                                         {"optiodom", &fuzz_optiodom},
-                                                         {"ranges", &fuzz_ranges},
-                                                         {"loops", &fuzz_loops},
-                                                         {"runs", &fuzz_runs},
-                                                         {"words", &fuzz_words},
-                                                         {"xz", &fuzz_xz}};
+  static const std::map<std::string, Target> kTargets = {
+      {"recording", &fuzz_recording}, {"model", &fuzz_model},
+      {"graphml", &fuzz_graphml},     {"g2o", &fuzz_g2o},
+      {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
+      {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
+      {"phil", &fuzz_phil},           {"runs", &fuzz_runs},
+      {"words", &fuzz_words},         {"xz", &fuzz_xz}};
   return kTargets;
 }
 
