@@ -61,7 +61,8 @@ class CorrectedOdometry::State {
     const bool twice = drives_.see_the_pose() || readings_.see_the_pose();
     const GyroShare gyro =
         gyro_share({row.left, row.right}, row.yaw_rate, row.duration, robot_, noise_);
-    ReckonedRow clear{together(gyro, robot_), row.duration, 0.0, row.compass, noise_of(row, gyro)};
+    ReckonedRow clear{together(gyro, robot_), row.duration, 0.0, row.compass};
+    clear.noise = noise_of(clear, gyro);
     Reckoning after = twice ? reckoned(clear) : now_;
     for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
       clear = cleared(row, gyro, facts, covariates, after);
@@ -162,9 +163,10 @@ class CorrectedOdometry::State {
   }
 
   /// Nothing without a gyro: then that of the wheels.
-  [[nodiscard]] std::optional<ArcNoise> noise_of(const WheelRow& row, const GyroShare& gyro) const {
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row,
+                                                 const GyroShare& gyro) const {
     if (!inputs_.gyro) return std::nullopt;
-    const ArcNoise wheels = arc_noise({row.left, row.right}, row.duration, robot_, noise_);
+    const ArcNoise wheels = arc_noise(row.travel, row.duration, robot_, noise_);
     return noise_together(gyro, wheels, row.duration, noise_);
   }
 
@@ -190,8 +192,8 @@ class CorrectedOdometry::State {
                        both.right + more.advance + 0.5 * wheelbase * more.turn},
                       row.duration,
                       more.slip,
-                      row.compass,
-                      noise_of(row, gyro)};
+                      row.compass};
+    clear.noise = noise_of(clear, gyro);
     if (std::isnan(row.compass)) return clear;
     readings_.fill(facts, end, covariates);
     for (const OnlineTerm& term : readings_.all()) {
