@@ -98,6 +98,7 @@ void add_effect_part(PageTable& table, EffectPart part, const SizedDiagnosis& si
   const bool unseen =
       std::any_of(diagnosis.unobservable.begin(), diagnosis.unobservable.end(),
                   [part](const Unobservable& one) { return part_of(one.effect) == part; });
+  if (!unseen && part == EffectPart::gyro) return;  // few robots have one
   table.rows.push_back({name_of(part),
                         unseen ? "cannot be seen in these data" : "not in these recordings", "-",
                         "-", "-", "-"});

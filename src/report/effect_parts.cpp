@@ -20,7 +20,7 @@ bool speaks_of(const Effect& effect, std::initializer_list<const char*> names) {
 }  // namespace
 
 const char* name_of(EffectPart part) {
-  constexpr std::array kNames{"wheels", "turning", "floor", "compass", "sighting"};
+  constexpr std::array kNames{"wheels", "turning", "floor", "compass", "gyro", "sighting"};
   return kNames.at(static_cast<std::size_t>(part));
 }
 
@@ -32,6 +32,9 @@ EffectPart part_of(const Effect& effect) {
       return EffectPart::sighting;
     case ActsOn::drives:
       break;
+  }
+  if (effect.channel == Channel::gyro || effect.channel == Channel::gyro_scale) {
+    return EffectPart::gyro;
   }
   if (effect.channel == Channel::creep || speaks_of(effect, {"x", "y", "heading"})) {
     return EffectPart::floor;

@@ -10,9 +10,10 @@
 
 namespace trussmap {
 
-enum class EffectPart { wheels, turning, floor, compass, sighting };
-inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning, EffectPart::floor,
-                                         EffectPart::compass, EffectPart::sighting};
+enum class EffectPart { wheels, turning, floor, compass, gyro, sighting };
+inline constexpr std::array kEffectParts{EffectPart::wheels, EffectPart::turning,
+                                         EffectPart::floor,  EffectPart::compass,
+                                         EffectPart::gyro,   EffectPart::sighting};
 
 [[nodiscard]] const char* name_of(EffectPart part);
 [[nodiscard]] EffectPart part_of(const Effect& effect);

@@ -82,7 +82,7 @@ TEST(Loops, ExactOnesLeaveNoError) {
     EXPECT_TRUE(fit.landmarks.empty());
     // The first pose is the map's frame; a compass gives its direction.
     EXPECT_LT(path_error(drive, fit), 1e-5);
-    const PoseEstimate& first = adjusted_poses(fit).front().estimate;
+    const PoseEstimate first = adjusted_poses(fit).front().estimate;
     const Matrix2 place = first.covariance.topLeftCorner(2, 2);
     EXPECT_LT(place.norm(), 1e-12);
   }
