@@ -33,13 +33,13 @@ struct SimulateOptions {
   bool noise_free = false;
   bool no_compass = false;
   bool gyro = false;
-  double gyro_noise = 0.0005;  // rad/s^1/2
   bool no_survey = false;
   bool range_sensor = false;
-  double reach = 8.0;       // m
-  double fix_rate = 0.0;    // Hz
-  double fix_noise = 0.05;  // m
   bool rests = false;
+  double gyro_noise = 0.0005;  // rad/s^1/2
+  double reach = 8.0;          // m
+  double fix_rate = 0.0;       // Hz
+  double fix_noise = 0.05;     // m
   int full_turns = 0;
   std::vector<double> speeds = {0.25, 0.9};     // m/s
   std::vector<double> turn_rates = {0.3, 1.1};  // rad/s
