@@ -2,74 +2,24 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/triangulation.hpp"
 
+#include "estimation/robust_place.hpp"
 #include "statistics/thinned.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 namespace trussmap {
+
+/// Found by robust_place through the reading's namespace.
+static ReadingPull pull_of(const DirectionReading& one, const Vector2& place) {
+  const Vector2 way = place - one.from;
+  return {wrap_angle(direction(way) - one.direction) / one.sd,
+          quarter_turn(way) / (std::max(way.squaredNorm(), 1e-12) * one.sd)};
+}
+
 namespace {
-
-constexpr std::size_t kMostReadings = 150;
-constexpr double kHuber = 2.0;  // standard deviations
-
-struct Minimum {
-  Vector2 place = Vector2::Zero();
-  double cost = 0.0;
-  Matrix2 information = Matrix2::Zero();
-};
-
-double rho(double z) {
-  const double size = std::abs(z);
-  return size <= kHuber ? z * z : kHuber * (2.0 * size - kHuber);
-}
-
-double miss(const DirectionReading& one, const Vector2& place) {
-  return wrap_angle(direction(place - one.from) - one.direction) / one.sd;
-}
-
-double cost_at(const std::vector<DirectionReading>& readings, const Vector2& place) {
-  double sum = 0.0;
-  for (const DirectionReading& one : readings) sum += rho(miss(one, place));
-  return sum;
-}
-
-/// Gauss-Newton with damping from there.
-Minimum descend(const std::vector<DirectionReading>& readings, const Vector2& place) {
-  constexpr int kMostSteps = 60;
-  double damping = 1e-3;
-  Minimum result{place, cost_at(readings, place)};
-  for (int step = 0; step < kMostSteps; ++step) {
-    Matrix2 A = Matrix2::Zero();
-    Vector2 b = Vector2::Zero();
-    for (const DirectionReading& one : readings) {
-      const Vector2 way = result.place - one.from;
-      const double z = miss(one, result.place);
-      const double weight = std::abs(z) <= kHuber ? 1.0 : kHuber / std::abs(z);
-      const Vector2 g = quarter_turn(way) / (std::max(way.squaredNorm(), 1e-12) * one.sd);
-      A += weight * g * g.transpose();
-      b -= weight * z * g;
-    }
-    result.information = A;
-    const Matrix2 damped = A + damping * (A.trace() + 1e-12) * Matrix2::Identity();
-    const Vector2 move = damped.inverse() * b;
-    const double cost = cost_at(readings, result.place + move);
-    if (cost < result.cost) {
-      result.place += move;
-      const bool still = result.cost - cost < 1e-9 * (1.0 + cost);
-      result.cost = cost;
-      damping = std::max(damping / 4.0, 1e-9);
-      if (still) break;
-    } else {
-      damping *= 8.0;
-      if (damping > 1e6) break;
-    }
-  }
-  return result;
-}
 
 /// Where two sights cross ahead of both; nothing where they do not.
 std::optional<Vector2> crossing(const DirectionReading& a, const DirectionReading& b) {
@@ -102,10 +52,10 @@ std::optional<Triangulation> triangulate(const std::vector<DirectionReading>& al
   for (const double way : {1.0, 3.0, 10.0, 30.0}) {
     starts.emplace_back(readings.front().from + way * rotation(readings.front().direction).col(0));
   }
-  Minimum best;
+  RobustPlace best;
   bool found = false;
   for (const Vector2& start : starts) {
-    const Minimum one = descend(readings, start);
+    const RobustPlace one = robust_place(readings, start);
     if (found && one.cost >= best.cost) continue;
     best = one;
     found = true;
@@ -114,8 +64,7 @@ std::optional<Triangulation> triangulate(const std::vector<DirectionReading>& al
   for (const DirectionReading& one : readings) {
     nearest = std::min(nearest, (best.place - one.from).norm());
   }
-  const double dispersion =
-      std::max(1.0, best.cost / static_cast<double>(std::max<std::size_t>(readings.size() - 2, 1)));
+  const double dispersion = dispersion_of(best, readings.size());
   const double weakest =
       Eigen::SelfAdjointEigenSolver<Matrix2>(best.information).eigenvalues().minCoeff();
   if (!(weakest > 0.0)) return std::nullopt;

@@ -61,32 +61,41 @@ TEST(Fixes, ExactOnesLeaveNoErrorAndTellTheirAntenna) {
   }
 }
 
-/// Drives of two minutes, 30 of them, seeds 100 to 129: chi^2/dof and 95 % intervals.
-TEST(Fixes, ChiSquareAndIntervalsAreThoseOfTheNoise) {
-  constexpr int kDrives = 30;
-  double mean = 0.0;
-  int dof = 0;
-  int inside = 0;
-  for (int k = 0; k < kDrives; ++k) {
+/// Drives of two minutes with fixes and what is unknown of their antenna.
+struct Statistics {
+  double mean = 0.0;  ///< chi^2/dof
+  int dof = 0;        ///< the least
+  int inside = 0;     ///< 95 % intervals that hold the truth, three a drive
+};
+
+Statistics statistics(int drives, std::uint64_t first_seed) {
+  Statistics found;
+  for (int k = 0; k < drives; ++k) {
     PlacedOptions options;
     options.compass = k % 2 == 0;
     options.fix_rate = 1.0;
     options.effects = mounted(0.3, 0.1, 0.2);
-    const PlacedDrive drive = placed_drive(options, 100 + static_cast<std::uint64_t>(k));
+    const PlacedDrive drive = placed_drive(options, first_seed + static_cast<std::uint64_t>(k));
     Model model = drive.model;
     model.effects = mounted(0.0, 0.0, 0.0);
     const ModelFit fit = fit_model({drive.recording}, model);
-    mean += fit.chi2 / fit.dof / kDrives;
-    dof = dof == 0 ? fit.dof : std::min(dof, fit.dof);
+    found.mean += fit.chi2 / fit.dof / drives;
+    found.dof = found.dof == 0 ? fit.dof : std::min(found.dof, fit.dof);
     const double truth[] = {0.3, 0.1, 0.2};
     for (std::size_t e = 0; e < 3; ++e) {
       const double off = fit.effects[e].effect.coefficients[0] - truth[e];
-      if (std::abs(off) < 1.96 * fit.effects[e].sd[0]) ++inside;
+      if (std::abs(off) < 1.96 * fit.effects[e].sd[0]) ++found.inside;
     }
   }
-  EXPECT_TRUE(is_mean_of_right_ones(mean, kDrives, dof)) << mean;
+  return found;
+}
+
+/// 30 drives, seeds 100 to 129.
+TEST(Fixes, ChiSquareAndIntervalsAreThoseOfTheNoise) {
+  const Statistics found = statistics(30, 100);
+  EXPECT_TRUE(is_mean_of_right_ones(found.mean, 30, found.dof)) << found.mean;
   // 90 intervals at 95 %: 85.5, sd 2.1; four of them.
-  EXPECT_GE(inside, 77);
+  EXPECT_GE(found.inside, 77);
 }
 
 /// Every 17th fix is 3 to 9 m off, the first three among them.
@@ -276,29 +285,9 @@ TEST(Fixes, AreReplicatedWithTheRest) {
 
 /// 500 drives, seeds 1000 to 1499.
 TEST(SlowFixes, ChiSquareAndIntervalsAreThoseOfTheNoise) {
-  constexpr int kDrives = 500;
-  double mean = 0.0;
-  int dof = 0;
-  int inside = 0;
-  for (int k = 0; k < kDrives; ++k) {
-    PlacedOptions options;
-    options.compass = k % 2 == 0;
-    options.fix_rate = 1.0;
-    options.effects = mounted(0.3, 0.1, 0.2);
-    const PlacedDrive drive = placed_drive(options, 1000 + static_cast<std::uint64_t>(k));
-    Model model = drive.model;
-    model.effects = mounted(0.0, 0.0, 0.0);
-    const ModelFit fit = fit_model({drive.recording}, model);
-    mean += fit.chi2 / fit.dof / kDrives;
-    dof = dof == 0 ? fit.dof : std::min(dof, fit.dof);
-    const double truth[] = {0.3, 0.1, 0.2};
-    for (std::size_t e = 0; e < 3; ++e) {
-      const double off = fit.effects[e].effect.coefficients[0] - truth[e];
-      if (std::abs(off) < 1.96 * fit.effects[e].sd[0]) ++inside;
-    }
-  }
-  EXPECT_TRUE(is_mean_of_right_ones(mean, kDrives, dof)) << mean;
-  EXPECT_NEAR(inside / 1500.0, 0.95, 4.0 * std::sqrt(0.95 * 0.05 / 1500.0));
+  const Statistics found = statistics(500, 1000);
+  EXPECT_TRUE(is_mean_of_right_ones(found.mean, 500, found.dof)) << found.mean;
+  EXPECT_NEAR(found.inside / 1500.0, 0.95, 4.0 * std::sqrt(0.95 * 0.05 / 1500.0));
 }
 
 }  // namespace
