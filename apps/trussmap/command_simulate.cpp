@@ -90,6 +90,7 @@ nlohmann::json summary(const SimulateOptions& options, const Simulated& simulate
                             {"rows", drive.motion.rows.size()},
                             {"sightings", drive.recording.sightings.size()},
                             {"fixes", drive.recording.fixes.size()},
+                            {"loops", drive.recording.loops.size()},
                             {"length_m", length},
                             {"duration_s", drive.motion.rows.back().t},
                             {"compass", drive.recording.drive.has_compass()},
@@ -107,8 +108,9 @@ void print(const nlohmann::json& s) {
   const auto line = [](const char* name, const std::string& value, const char* unit) {
     fmt::print("  {:<10} {:>10}{}{}\n", name, value, *unit == '\0' ? "" : " ", unit);
   };
-  for (const char* name : {"landmarks", "routes", "legs", "rows", "sightings", "fixes"}) {
-    if (std::string_view(name) == "fixes" && s[name] == 0) continue;
+  for (const char* name : {"landmarks", "routes", "legs", "rows", "sightings", "fixes", "loops"}) {
+    const bool extra = std::string_view(name) == "fixes" || std::string_view(name) == "loops";
+    if (extra && s[name] == 0) continue;
     line(name, std::to_string(s[name].get<std::size_t>()), "");
   }
   line("length", fmt::format("{:.1f}", s["length_m"].get<double>()), "m");

@@ -124,10 +124,25 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       "From each stop the robot also sees landmarks in reach (half of them, at random) "
       "by range (within 0.05 m) and bearing (within 0.02 rad)");
   command
+      .add_flag("--beacons", options.ranges_alone,
+                "The same by ranges alone, as radio beacons are seen")
+      .excludes("--range-sensor");
+  command
+      .add_flag("--camera", options.bearings_alone, "The same by bearings alone, as a camera sees")
+      .excludes("--range-sensor")
+      .excludes("--beacons");
+  command
       .add_option("--fixes", options.fix_rate,
                   "A receiver also gives the place of its antenna so often [Hz] (fixes.csv)")
       .check(between(0.0, 1000.0));
   add_positive("--fix-noise", options.fix_noise, "Standard deviation of a fix [m per coordinate]");
+  command.add_flag("--loops", options.loops,
+                   "At each stop the robot also measures its pose from its last stop at the same "
+                   "landmark, as scan matching does (loops.csv)");
+  add_positive("--loop-noise", options.loop_noise,
+               "Standard deviation of a loop [m per coordinate]");
+  add_positive("--loop-heading-noise", options.loop_heading_noise,
+               "Standard deviation of a loop's turn [rad]");
   add_positive("--reach", options.reach, "Reach of the range sensor [m]");
 }
 
@@ -150,7 +165,12 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   robot.compass = !options.no_compass;
   robot.gyro = options.gyro;
   robot.noise.gyro = options.gyro_noise;
-  robot.range_sensor = options.range_sensor;
+  robot.range_sensor = options.range_sensor || options.ranges_alone || options.bearings_alone;
+  if (options.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
+  if (options.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;
+  robot.loops = options.loops;
+  robot.noise.loop = options.loop_noise;
+  robot.noise.loop_heading = options.loop_heading_noise;
   robot.reach = options.reach;
   robot.noise.left = options.wheel_noise;
   robot.noise.right = options.wheel_noise;
@@ -166,7 +186,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
           "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
     }
   }
-  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   return robot;
 }
 
@@ -200,6 +220,8 @@ Model nominal_model(const SimulateOptions& options) {
   model.noise.survey = options.survey_noise;
   if (options.gyro) model.noise.gyro = options.gyro_noise;
   model.noise.fix = options.fix_noise;
+  model.noise.loop = options.loop_noise;
+  model.noise.loop_heading = options.loop_heading_noise;
   return model;
 }
 
@@ -219,9 +241,9 @@ void add_simulate_options(const Command& command, SimulateOptions& options) {
   command.add_flag("--no-survey", options.no_survey, "Write no survey.csv");
   command
       .add_option("--out", options.out,
-                  "Folder to write drive.csv, sightings.csv, survey.csv, fixes.csv (with --fixes) "
-                  "and model.toml to; a "
-                  "recording that is there already is replaced")
+                  "Folder to write drive.csv, sightings.csv, survey.csv, fixes.csv (with --fixes), "
+                  "loops.csv (with --loops) and model.toml to; a recording that is there already "
+                  "is replaced")
       .required()
       .type_name("DIR");
   command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");

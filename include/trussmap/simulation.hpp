@@ -180,15 +180,17 @@ struct TrueMotion {
 /// Standard deviations; the stop's distance from its landmark is part of the path
 /// (DrivingStyle::standing).
 struct SensorNoise {
-  double left = 0.003;     ///< k of the left wheel, m^(1/2)
-  double right = 0.003;    ///< m^(1/2)
-  double compass = 0.02;   ///< rad per reading
-  double range = 0.05;     ///< m
-  double bearing = 0.02;   ///< rad
-  double survey = 0.001;   ///< m per coordinate
-  double fix = 0.05;       ///< m per coordinate
-  double gyro = 0.001;     ///< rad/s^(1/2), angle random walk
-  double gyro_walk = 0.0;  ///< rad/s per s^(1/2): how the bias walks
+  double left = 0.003;         ///< k of the left wheel, m^(1/2)
+  double right = 0.003;        ///< m^(1/2)
+  double compass = 0.02;       ///< rad per reading
+  double range = 0.05;         ///< m
+  double bearing = 0.02;       ///< rad
+  double survey = 0.001;       ///< m per coordinate
+  double fix = 0.05;           ///< m per coordinate
+  double gyro = 0.001;         ///< rad/s^(1/2), angle random walk
+  double gyro_walk = 0.0;      ///< rad/s per s^(1/2): how the bias walks
+  double loop = 0.05;          ///< m per coordinate
+  double loop_heading = 0.01;  ///< rad
 };
 
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
@@ -209,14 +211,24 @@ struct RoughNoise {
 /// Names of the kinds that it has.
 [[nodiscard]] std::vector<std::string> rough_names(const RoughNoise& rough);
 
+/// What the range sensor says of a landmark.
+enum class SensorParts {
+  both,
+  range_alone,   ///< as radio beacons have it
+  bearing_alone  ///< as a camera has it
+};
+
 struct WheeledRobot {
   double wheelbase = 0.34;  ///< m
   bool compass = true;
   bool gyro = false;
   bool range_sensor = false;
+  SensorParts sensor_parts = SensorParts::both;
   double reach = 8.0;        ///< m, range sensor
   double recognition = 0.5;  ///< chance that a landmark in reach is recognised
   double fix_rate = 0.0;     ///< Hz: fixes of its antenna; 0: none
+  /// At each stop it also measures its pose from the last stop at the same landmark.
+  bool loops = false;
   SensorNoise noise;
   RoughNoise rough;
 };
@@ -278,7 +290,8 @@ enum class Stream : std::uint32_t {
   compass_tails,
   floor,
   fixes,
-  gyro
+  gyro,
+  loops
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

@@ -52,6 +52,20 @@ Eigen::MatrixXd suspects(const FitState& fit) {
   return columns;
 }
 
+/// Whether an effect is the mean of a process that this noise has beyond that one. Of such an
+/// effect one asks without any search: a walk, say, begins at 0, and a gyro that walks has a bias.
+bool is_mean_of_new_process(const Effect& effect, const Noise& noise, const Noise& before) {
+  return effect.is_constant() &&
+         std::any_of(noise.processes.begin(), noise.processes.end(), [&](const NoiseProcess& one) {
+           return one.channel == effect.channel &&
+                  std::none_of(before.processes.begin(), before.processes.end(),
+                               [&](const NoiseProcess& other) {
+                                 return other.channel == one.channel &&
+                                        other.process == one.process;
+                               });
+         });
+}
+
 }  // namespace
 
 FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
@@ -113,7 +127,8 @@ Defended defended_against_noise(const std::vector<Recording>& recordings, const 
     const double without = minus_two_log_under(reml, noise.noise, together(others));
     const double p =
         chi2_p_value(std::max(0.0, without - with_all), static_cast<int>(columns[k].cols()));
-    result.effects[k] = tried * p < level;
+    const bool natural = is_mean_of_new_process(effects[k], noise.noise, found.fit.model.noise);
+    result.effects[k] = (natural ? 1.0 : tried) * p < level;
   }
   if (result.effects == all) return result;
   FitWithNoise otherwise{found.fit, fit_noise(reml, together(result.effects), options)};

@@ -26,8 +26,10 @@ namespace trussmap {
 
 /// Which of these effects, found under `found.fit`'s noise, noise that lasts cannot stand for: the
 /// likelihood with the effect, against that without it under the noise that is likeliest then,
-/// each with the others there; p < level over all that was tried. The noise without those that it
-/// can stand for comes with it, where there are any.
+/// each with the others there; p < level over all that was tried. An effect that is the mean of the
+/// very process that would stand for it (a gyro's bias, where its walk would) is asked of by
+/// itself: no search chose it. The noise without those that it can stand for comes with it, where
+/// there are any.
 struct Defended {
   std::vector<bool> effects;
   std::optional<FitWithNoise> otherwise = std::nullopt;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -139,7 +140,9 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
     const double bearing = wrap_angle(direction(view) - stop.pose.heading + g(Channel::bearing) +
                                       dice.deviation(robot.noise.bearing));
     if (recognised && range > 0.0) {
-      sightings.push_back({t, landmark_name(mesh, k), range, bearing});
+      sightings.push_back({t, landmark_name(mesh, k),
+                           robot.sensor_parts == SensorParts::bearing_alone ? kAbsent : range,
+                           robot.sensor_parts == SensorParts::range_alone ? kAbsent : bearing});
     }
   }
   return sightings;
@@ -188,10 +191,30 @@ std::vector<Fix> fixes_of(const TrueMotion& motion, const WheeledRobot& robot, s
   return fixes;
 }
 
+/// The pose at each stop from that at the last stop at the same landmark.
+std::vector<Loop> loops_of(const TrueMotion& motion, const WheeledRobot& robot,
+                           std::uint64_t seed) {
+  std::vector<Loop> loops;
+  if (!robot.loops) return loops;
+  Dice dice(seed, Stream::loops);
+  std::map<int, const TrueStop*> last;
+  for (const TrueStop& stop : motion.stops) {
+    const auto [before, first] = last.try_emplace(stop.landmark, &stop);
+    if (first) continue;
+    const Pose step = relative(before->second->pose, stop.pose);
+    const double dx = step.x + dice.deviation(robot.noise.loop);
+    const double dy = step.y + dice.deviation(robot.noise.loop);
+    const double turned = step.heading + dice.deviation(robot.noise.loop_heading);
+    loops.push_back({before->second->t, stop.t, dx, dy, wrap_angle(turned)});
+    before->second = &stop;
+  }
+  return loops;
+}
+
 void check(const WheeledRobot& robot) {
   const SensorNoise& noise = robot.noise;
   for (const double sd : {noise.left, noise.right, noise.compass, noise.range, noise.bearing,
-                          noise.fix, noise.gyro, noise.gyro_walk}) {
+                          noise.fix, noise.gyro, noise.gyro_walk, noise.loop, noise.loop_heading}) {
     if (!std::isfinite(sd) || sd < 0.0) {
       throw std::invalid_argument("a sensor's noise must be a number of 0 or more");
     }
@@ -227,6 +250,7 @@ Recording record(const TrueMotion& motion, const Mesh& mesh, const WheeledRobot&
     }
   }
   recording.fixes = fixes_of(motion, robot, seed, gains);
+  recording.loops = loops_of(motion, robot, seed);
   if (gains.contains(Channel::delay)) {
     std::stable_sort(recording.sightings.begin(), recording.sightings.end(),
                      [](const Sighting& a, const Sighting& b) { return a.t < b.t; });

@@ -8,6 +8,7 @@
 #include "fit/fit_state.hpp"
 #include "trussmap/fit_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -20,6 +21,7 @@ struct PlacedOptions {
   double fix_rate = 0.0;  ///< Hz
   double fix_sd = 0.05;   ///< m
   bool landmarks = false;
+  bool loops = false;
   std::vector<Effect> effects = {};
   int tours = 1;
 };
@@ -38,9 +40,10 @@ inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed
   robot.compass = options.compass;
   robot.fix_rate = options.fix_rate;
   robot.noise.fix = options.fix_sd;
+  robot.loops = options.loops;
   DrivingStyle style;
   if (!options.noise) {
-    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
     style.standing = 0.0;
   }
   SimulatedDrive drive =
@@ -64,6 +67,35 @@ inline double path_error(const PlacedDrive& drive, const ModelFit& fit, const Po
     squares += (poses[row + 1].estimate.pose.position() - truth.position()).squaredNorm();
   }
   return std::sqrt(squares / static_cast<double>(drive.motion.rows.size()));
+}
+
+/// What many fits say of their noise and of themselves.
+struct FitStatistics {
+  double mean = 0.0;  ///< chi^2/dof
+  int dof = 0;        ///< the least
+  int inside = 0;     ///< 95 % intervals that hold the truth
+  int intervals = 0;
+};
+
+/// Fits the model, whose effects have the true coefficients, from none; takes what it finds in, as
+/// one of `drives`.
+inline void add_fit(FitStatistics& found, const Recording& recording, Model model, int drives) {
+  std::vector<Effect> truth = model.effects;
+  for (Effect& effect : model.effects) effect.coefficients.assign(effect.shape.size(), 0.0);
+  const ModelFit fit = fit_model({recording}, model);
+  found.mean += fit.chi2 / fit.dof / drives;
+  found.dof = found.dof == 0 ? fit.dof : std::min(found.dof, fit.dof);
+  for (std::size_t e = 0; e < truth.size(); ++e) {
+    const double off = fit.effects[e].effect.coefficients[0] - truth[e].coefficients[0];
+    if (std::abs(off) < 1.96 * fit.effects[e].sd[0]) ++found.inside;
+    ++found.intervals;
+  }
+}
+
+/// 95 % of the intervals within four standard deviations of chance.
+inline bool hold_the_truth(const FitStatistics& found) {
+  const double n = found.intervals;
+  return std::abs(found.inside / n - 0.95) < 4.0 * std::sqrt(0.95 * 0.05 / n);
 }
 
 /// Within so many standard deviations of its mean, a mean of independent chi^2/dof.
