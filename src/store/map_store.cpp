@@ -301,17 +301,22 @@ class MapStore::Impl {
       const Busy busy(busy_);
       Statement rows(database_,
                      "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session, "
-                     "outcome FROM legs ORDER BY number");
+                     "outcome, number FROM legs ORDER BY number");
       const LandmarkGraph& graph = BuilderAccess::memory(builder()).graph;
       const std::int64_t count = std::ssize(sessions());
       const auto name = [&](int column) {
-        const std::int64_t number = rows.is_null(column) ? -1 : rows.integer(column);
-        if (number >= graph.landmarks()) {
+        const std::int64_t landmark = rows.is_null(column) ? -1 : rows.integer(column);
+        if (landmark >= graph.landmarks()) {
           throw InputError(file_.string(), 0, "is damaged: it has a leg to no landmark");
         }
-        return number < 0 ? std::string() : graph.landmark(static_cast<int>(number)).name;
+        return landmark < 0 ? std::string() : graph.landmark(static_cast<int>(landmark)).name;
       };
+      const auto misnumbered = [&] {
+        return InputError(file_.string(), 0, "is damaged: it has a leg that is misnumbered");
+      };
+      std::int64_t number = 0;
       while (rows.step()) {
+        if (rows.integer(11) != number++) throw misnumbered();
         StoredLeg one;
         const std::int64_t kind = rows.integer(0);
         if (kind < 0 || kind >= kCallKinds) {
@@ -331,6 +336,7 @@ class MapStore::Impl {
         if (!rows.is_null(10)) one.outcome = outcome_of(rows.integer(10));
         visit(one);
       }
+      if (number != legs_) throw misnumbered();
     });
   }
 
