@@ -153,6 +153,16 @@ void make(const Database& database, const MapBuilderOptions& options) {
   put_options(facts, options);
 }
 
+/// Blanks and ends of lines as one blank each.
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\n';
+    if (!blank || line.empty() || line.back() != ' ') line += blank ? ' ' : c;
+  }
+  return line;
+}
+
 /// How the store's tables were made, and all triggers. Statements in either could do anything.
 std::vector<std::string> tables_of(const Database& database) {
   Statement rows(database,
@@ -161,7 +171,7 @@ std::vector<std::string> tables_of(const Database& database) {
                  "'legs', 'landmarks', 'routes', 'chain', 'misfits', 'left_out', 'state', 'map') "
                  "ORDER BY 1");
   std::vector<std::string> tables;
-  while (rows.step()) tables.push_back(rows.text(0));
+  while (rows.step()) tables.push_back(on_one_line(rows.text(0)));
   return tables;
 }
 

@@ -24,6 +24,7 @@
 #include <string>
 #include <sys/resource.h>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -421,6 +422,22 @@ TEST_F(MapStoreTest, DamagedFilesAreRefused) {
     fs::remove(file_.string() + "-shm");
   }
   EXPECT_GT(refused, 10);
+}
+
+/// The first version's files, kept as they were written: their maps can be read for ever.
+TEST_F(MapStoreTest, FilesOfTheFirstVersionGoOn) {
+  const fs::path kept = fs::path(TRUSSMAP_SOURCE_DIR) / "tests/fuzz/corpus/store";
+  const auto gone_on = [&](const char* name) {
+    write_file(file_, read_file(kept / name));
+    MapStore store(file_);
+    const int before = store.builder().landmarks();
+    store.start(before > 0 ? "a" : "first");
+    store.arrive("another", {{3.0, 4.0}, 0.01 * Matrix2::Identity()});
+    return std::pair(before, store.legs());
+  };
+  EXPECT_EQ(gone_on("elastic"), std::pair(5, std::int64_t{14}));
+  EXPECT_EQ(gone_on("gauss_markov"), std::pair(4, std::int64_t{13}));
+  EXPECT_EQ(gone_on("new"), std::pair(0, std::int64_t{2}));
 }
 
 /// What somebody else's SQLite may have put into the file: a statement of its own would run with
