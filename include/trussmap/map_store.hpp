@@ -11,7 +11,7 @@
 // What a call has returned from survives the end of the program, kill -9 and the loss of power; a
 // call that was under way then has either happened or not. Every leg is kept as it was given, so
 // that a better map can be made of them later. Opening costs what the map costs, not its history:
-// landmarks and routes are read, legs are not.
+// landmarks, routes and the list of sessions are read, legs are not.
 //
 // The file is an SQLite database (write-ahead log, synchronous in full), and no program but one
 // writes it at a time, which holds a lock on the file NAME-lock; others may read meanwhile. Who

@@ -10,18 +10,13 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFastest = 10.0;      // m/s that a robot with two wheels drives
-constexpr double kSlowest = 0.004;     // m/s
-constexpr double kShortTravel = 0.5;   // m in a row that has milliseconds for seconds
-constexpr double kOrdinary = 0.02;     // m/s once they are taken for what they are
-constexpr double kLongestRow = 2.0;    // s
-constexpr double kLongGap = 5.0;       // s
-constexpr double kGapRows = 20.0;      // of the usual length of a row
-constexpr double kSpike = 10.0;        // times the speed that 99 of 100 rows stay below
-constexpr double kSpikeTravel = 0.5;   // m
-constexpr double kStillTurns = 30.0;   // wheelbases: five turns about the wheel
-constexpr double kStillTravel = 10.0;  // m that the other wheel has gone
-constexpr double kStillShare = 1e-6;   // of the other wheel's way
+constexpr double kFastest = 10.0;     // m/s that a robot with two wheels drives
+constexpr double kSlowest = 0.004;    // m/s
+constexpr double kShortTravel = 0.5;  // m in a row that has milliseconds for seconds
+constexpr double kOrdinary = 0.02;    // m/s once they are taken for what they are
+constexpr double kLongestRow = 2.0;   // s
+constexpr double kSpike = 10.0;       // times the speed that 99 of 100 rows stay below
+constexpr double kSpikeTravel = 0.5;  // m
 
 double larger(const Drive& drive, std::size_t row) {
   return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
@@ -99,65 +94,6 @@ void check_spikes(Checked& checked, const Rows& rows) {
                "correct or remove the row: an encoder's jump, or an overflow of its counter");
 }
 
-void check_gaps(Checked& checked, const Rows& rows) {
-  if (checked.wrong.contains("t")) return;
-  const Drive& drive = checked.recording.drive;
-  const double longest = std::max(kLongGap, kGapRows * rows.duration);
-  std::vector<std::size_t> gaps;
-  for (std::size_t row = 1; row < drive.rows(); ++row) {
-    const double duration = drive.duration(row);
-    if (duration <= longest) continue;
-    // Travels that a long row has summed up are no gap.
-    const double usual = rows.speeds.empty() ? 0.0 : rows.speed(0.5);
-    if (larger(drive, row) > 0.3 * usual * duration) continue;
-    gaps.push_back(row);
-  }
-  if (gaps.empty()) return;
-  const std::size_t first = gaps.front();
-  checked.note("drive.csv", "t", "gap",
-               joined("no row for ", figure(drive.duration(first), "s"),
-                      " before t = ", figure(drive.t[first], "s"), ", where a row lasts ",
-                      figure(rows.duration, "s"),
-                      gaps.size() > 1 ? joined("; ", gaps.size(), " gaps like it") : ""),
-               "find out whether the clock jumped or rows were lost; split the recording there if "
-               "the robot may have moved");
-}
-
-/// All the time, or for so long that no turn about that wheel is meant.
-void check_still_wheel(Checked& checked) {
-  const Drive& drive = checked.recording.drive;
-  const auto ask = [&](const char* name, const std::vector<double>& wheel,
-                       const std::vector<double>& other) {
-    double own = 0.0;
-    double others = 0.0;
-    double still = 0.0;
-    double most = 0.0;
-    double until = 0.0;
-    for (std::size_t row = 0; row < drive.rows(); ++row) {
-      own += std::abs(wheel[row]);
-      others += std::abs(other[row]);
-      still = wheel[row] == 0.0 ? still + std::abs(other[row]) : 0.0;
-      if (still > most) {
-        most = still;
-        until = drive.t[row];
-      }
-    }
-    if (others > 1.0 && own < kStillShare * others) {
-      checked.add("drive.csv", name, "still wheel",
-                  joined("the ", name, " wheel never moves, where the other one goes ",
-                         figure(others, "m")),
-                  "look at the encoder's cable and at the column's source");
-    } else if (most > std::max(kStillTravel, kStillTurns * checked.wheelbase)) {
-      checked.add("drive.csv", name, "still wheel",
-                  joined("the ", name, " wheel stands still until t = ", figure(until, "s"),
-                         " while the other one goes ", figure(most, "m")),
-                  "look at the encoder: it seems to have lost its counts there");
-    }
-  };
-  ask("left", drive.left, drive.right);
-  ask("right", drive.right, drive.left);
-}
-
 }  // namespace
 
 void check_drive_values(Checked& checked) {
@@ -169,8 +105,8 @@ void check_drive_values(Checked& checked) {
   }
   check_units(checked, rows);
   check_spikes(checked, rows);
-  check_gaps(checked, rows);
-  check_still_wheel(checked);
+  check_gaps(checked, {rows.duration, rows.speed(0.5)});
+  check_still_wheels(checked);
 }
 
 }  // namespace trussmap

@@ -38,6 +38,17 @@ struct Checked {
 /// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
 void check_drive_values(Checked& checked);
 
+/// What rows are like: medians.
+struct UsualRow {
+  double duration = 0.0;  ///< s
+  double speed = 0.0;     ///< m/s of the faster wheel, of rows that move
+};
+/// Rows that are missing, but for those of a robot that stood still.
+void check_gaps(Checked& checked, const UsualRow& usual);
+
+/// A wheel that stands still for so long that no turn about it is meant, or that nothing shows one.
+void check_still_wheels(Checked& checked);
+
 /// "left" or "right", of a mistake with one wheel; and the finding that it is negated.
 [[nodiscard]] const char* lone_wheel(WheelMistake mistake);
 void add_lone_wheel(Checked& checked, WheelMistake mistake, const std::string& evidence);

@@ -6,6 +6,7 @@
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
+#include "validation/arrival_rise.hpp"
 #include "validation/dead_reckoned_horizons.hpp"
 
 #include <algorithm>
@@ -139,26 +140,6 @@ class Discoverer {
       return false;
     }
     return std::isinf(arrival_of(trial)) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
-  }
-
-  /// Mean rise of the squared arrival errors of legs that both have, over its standard error.
-  [[nodiscard]] static double rise_in_sds(const HeldOut& before, const HeldOut& after) {
-    double n = 0.0;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (const LegPrediction& one : before.legs) {
-      const auto other =
-          std::find_if(after.legs.begin(), after.legs.end(),
-                       [&one](const LegPrediction& leg) { return leg.leg == one.leg; });
-      if (other == after.legs.end()) continue;
-      const double rise = other->arrival_error.squaredNorm() - one.arrival_error.squaredNorm();
-      n += 1.0;
-      sum += rise;
-      squares += rise * rise;
-    }
-    const double variance = (squares - sum * sum / n) / (n - 1.0);
-    return n > 1.0 && variance > 0.0 ? sum / std::sqrt(n * variance)
-                                     : std::numeric_limits<double>::infinity();
   }
 
   [[nodiscard]] static bool was_fitted(const ModelFit& fit) {

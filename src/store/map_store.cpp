@@ -137,19 +137,6 @@ MapBuilderOptions options_in(Facts& facts) {
   return options;
 }
 
-/// False: there is nothing yet. Throws InputError where there is something else.
-bool is_made(const fs::path& file, const Database& database) {
-  const std::int64_t application = database.number("PRAGMA application_id");
-  const std::int64_t version = database.number("PRAGMA user_version");
-  if (application == 0 && database.number("SELECT count(*) FROM sqlite_schema") == 0) return false;
-  if (application != kApplication) throw InputError(file.string(), 0, "is no map store");
-  if (version != kVersion) {
-    throw InputError(file.string(), 0,
-                     joined("is a map store of version ", version, ", expected ", kVersion));
-  }
-  return true;
-}
-
 void make(const Database& database, const MapBuilderOptions& options) {
   database.run(joined("PRAGMA application_id = ", kApplication));
   database.run(joined("PRAGMA user_version = ", kVersion));
@@ -166,15 +153,71 @@ void make(const Database& database, const MapBuilderOptions& options) {
   put_options(facts, options);
 }
 
-std::int64_t legs_in(const Database& database) {
-  return database.number("SELECT max(number) + 1 FROM legs");
+/// Blanks and ends of lines as one blank each.
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool blank = c == ' ' || c == '\n';
+    if (!blank || line.empty() || line.back() != ' ') line += blank ? ' ' : c;
+  }
+  return line;
 }
 
+/// How the store's tables were made, and all triggers. Statements in either could do anything.
+std::vector<std::string> tables_of(const Database& database) {
+  Statement rows(database,
+                 "SELECT type || ' ' || name || ' ' || ifnull(sql, '') FROM sqlite_schema "
+                 "WHERE type = 'trigger' OR tbl_name COLLATE NOCASE IN ('facts', 'sessions', "
+                 "'legs', 'landmarks', 'routes', 'chain', 'misfits', 'left_out', 'state', 'map') "
+                 "ORDER BY 1");
+  std::vector<std::string> tables;
+  while (rows.step()) tables.push_back(on_one_line(rows.text(0)));
+  return tables;
+}
+
+/// A new store's.
+const std::vector<std::string>& made_tables() {
+  static const std::vector<std::string> kTables = [] {
+    const Database memory(":memory:", Database::Access::write);
+    make(memory, {});
+    return tables_of(memory);
+  }();
+  return kTables;
+}
+
+/// False: there is nothing yet. Throws InputError where there is something else.
+bool is_made(const fs::path& file, const Database& database) {
+  const std::int64_t application = database.number("PRAGMA application_id");
+  const std::int64_t version = database.number("PRAGMA user_version");
+  if (application == 0 && database.number("SELECT count(*) FROM sqlite_schema") == 0) return false;
+  if (application != kApplication) throw InputError(file.string(), 0, "is no map store");
+  if (version != kVersion) {
+    throw InputError(file.string(), 0,
+                     joined("is a map store of version ", version, ", expected ", kVersion));
+  }
+  if (tables_of(database) != made_tables()) {
+    throw InputError(file.string(), 0, "is damaged: its tables are not those of a map store");
+  }
+  return true;
+}
+
+std::int64_t legs_in(const Database& database) {
+  constexpr std::int64_t kMost = 1'000'000'000'000'000;
+  const std::int64_t legs = database.number("SELECT max(number) + 1 FROM legs");
+  if (legs < 0 || legs > kMost) throw std::invalid_argument("a leg that is misnumbered");
+  return legs;
+}
+
+/// Legs name sessions by their place. Throws std::invalid_argument where rows are missing.
 std::vector<StoredSession> sessions_in(const Database& database) {
-  Statement rows(database, "SELECT key, name, first_leg, legs FROM sessions ORDER BY number");
+  Statement rows(database,
+                 "SELECT number, key, name, first_leg, legs FROM sessions ORDER BY number");
   std::vector<StoredSession> sessions;
   while (rows.step()) {
-    sessions.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.integer(3)});
+    if (rows.integer(0) != std::ssize(sessions) + 1) {
+      throw std::invalid_argument("a session that is misnumbered");
+    }
+    sessions.push_back({rows.text(1), rows.text(2), rows.integer(3), rows.integer(4)});
   }
   return sessions;
 }
@@ -252,7 +295,7 @@ class MapStore::Impl {
   [[nodiscard]] std::int64_t legs() const { return legs_; }
 
   [[nodiscard]] std::vector<StoredSession> sessions() const {
-    return naming(file_, [&] { return sessions_in(database_); });
+    return naming(file_, [&] { return undamaged(file_, [&] { return sessions_in(database_); }); });
   }
 
   [[nodiscard]] bool has_session(const std::string& key) const {
@@ -268,16 +311,22 @@ class MapStore::Impl {
       const Busy busy(busy_);
       Statement rows(database_,
                      "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session, "
-                     "outcome FROM legs ORDER BY number");
+                     "outcome, number FROM legs ORDER BY number");
       const LandmarkGraph& graph = BuilderAccess::memory(builder()).graph;
+      const std::int64_t count = std::ssize(sessions());
       const auto name = [&](int column) {
-        const std::int64_t number = rows.is_null(column) ? -1 : rows.integer(column);
-        if (number >= graph.landmarks()) {
+        const std::int64_t landmark = rows.is_null(column) ? -1 : rows.integer(column);
+        if (landmark >= graph.landmarks()) {
           throw InputError(file_.string(), 0, "is damaged: it has a leg to no landmark");
         }
-        return number < 0 ? std::string() : graph.landmark(static_cast<int>(number)).name;
+        return landmark < 0 ? std::string() : graph.landmark(static_cast<int>(landmark)).name;
       };
+      const auto misnumbered = [&] {
+        return InputError(file_.string(), 0, "is damaged: it has a leg that is misnumbered");
+      };
+      std::int64_t number = 0;
       while (rows.step()) {
+        if (rows.integer(11) != number++) throw misnumbered();
         StoredLeg one;
         const std::int64_t kind = rows.integer(0);
         if (kind < 0 || kind >= kCallKinds) {
@@ -289,10 +338,15 @@ class MapStore::Impl {
         one.leg.displacement = {rows.real(3), rows.real(4)};
         one.leg.covariance << rows.real(5), rows.real(6), rows.real(6), rows.real(7);
         one.gain = rows.real(8);
-        one.session = rows.is_null(9) ? -1 : static_cast<int>(rows.integer(9));
+        const std::int64_t session = rows.is_null(9) ? -1 : rows.integer(9);
+        if (session >= count) {
+          throw InputError(file_.string(), 0, "is damaged: it has a leg of no session");
+        }
+        one.session = static_cast<int>(std::max<std::int64_t>(session, -1));
         if (!rows.is_null(10)) one.outcome = outcome_of(rows.integer(10));
         visit(one);
       }
+      if (number != legs_) throw misnumbered();
     });
   }
 
@@ -351,9 +405,10 @@ class MapStore::Impl {
     undamaged(file_, [&] {
       const MapBuilderOptions options = options_in(*facts_);
       builder_.emplace(BuilderAccess::restored(rows_->load(options), options));
+      legs_ = legs_in(database_);
+      static_cast<void>(sessions_in(database_));
     });
     BuilderAccess::keep_journal(*builder_, &journal_);
-    legs_ = legs_in(database_);
   }
 
   /// A map without landmarks may still change its method.

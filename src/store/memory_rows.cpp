@@ -125,6 +125,8 @@ void MemoryRows::load_landmarks(BuilderMemory& memory) {
     written_.positions.push_back(memory.graph.landmark(memory.graph.landmarks() - 1).position);
     written_.roots.push_back(number_at(rows, 4, -1, count, "a loop"));
   }
+  // An index that was damaged counts others than there are.
+  if (memory.graph.landmarks() != count) refuse("landmarks that are not all there");
   check_roots(written_.roots);
 }
 

@@ -29,6 +29,23 @@ Recording drive_about(bool compass, std::uint64_t seed) {
   return recording;
 }
 
+/// A lorry may be that wide, but no more.
+TEST(BuildMap, AWheelbaseBeyondTenMetresIsDoubted) {
+  const Mesh mesh = even_mesh({2, 2}, 30.0);
+  for (const double wheelbase : {9.9, 10.1}) {
+    WheeledRobot robot;
+    robot.wheelbase = wheelbase;
+    Model model;
+    model.robot.wheelbase = wheelbase;
+    const Recording recording = simulate_drive(mesh, {0, 1, 3, 2, 0}, {}, robot, 5).recording;
+    const BuiltMap built = build_map({recording}, model);
+    const bool doubted = std::any_of(
+        built.warnings.begin(), built.warnings.end(),
+        [](const std::string& one) { return one.find("is it in metres?") != std::string::npos; });
+    EXPECT_EQ(doubted, wheelbase > 10.0) << wheelbase;
+  }
+}
+
 /// The recording from the given sighting on, as a session of its own.
 Recording from_sighting(const Recording& whole, std::size_t first) {
   const double t = whole.sightings[first].t;

@@ -153,6 +153,27 @@ TEST(WheelCalibration, ASurveyDoesAsWell) {
   EXPECT_NEAR(found.scale->value, 1.0, 4.0 * found.scale->sd);
 }
 
+/// Nonsense, were it used.
+TEST(WheelCalibration, TruthThatIsNotWantedChangesNothing) {
+  testing::SimulatedRecording one = testing::simulate_recording({true, true, false}, 3);
+  WheelCalibrationOptions options = without_noise();
+  options.problem.truth = false;
+  one.recording.truth.clear();
+  const WheelCalibration without = calibrate_wheels({one.recording}, one.model, options);
+  for (const double t : one.recording.drive.t) {
+    one.recording.truth.push_back({t, 1000.0 - t, std::sin(t), 0.1 * t});
+  }
+  const WheelCalibration with = calibrate_wheels({one.recording}, one.model, options);
+  EXPECT_EQ(with.chi2, without.chi2);
+  EXPECT_EQ(with.dof, without.dof);
+  EXPECT_EQ(with.undetermined, without.undetermined);
+  ASSERT_TRUE(with.diameter_ratio && without.diameter_ratio);
+  EXPECT_EQ(with.diameter_ratio->value, without.diameter_ratio->value);
+  EXPECT_EQ(with.diameter_ratio->sd, without.diameter_ratio->sd);
+  ASSERT_TRUE(with.scale && without.scale);
+  EXPECT_EQ(with.scale->value, without.scale->value);
+}
+
 /// Mean and scatter of estimates in units of their standard errors, about a known value.
 class Standardised {
  public:

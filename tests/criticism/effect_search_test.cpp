@@ -106,6 +106,32 @@ TEST(EffectSearch, AJumpOfOneWheelIsNoEffect) {
   }
 }
 
+/// Iron near the compass, and a bump that stands out by itself: an effect that is surer than any
+/// event is asked of all that there is, and not of what events leave.
+TEST(EffectSearch, AnEffectWithTheBetterClaimComesBeforeEvents) {
+  testing::Bump bump = testing::bumped({true, true, false, 1}, 9.0, 3);
+  for (double& heading : bump.world.recordings.front().drive.heading) {
+    heading += 0.006 * std::sin(heading);
+  }
+  const FitState fit = fit_recordings(bump.world.recordings, bump.world.model);
+  const ScoreTest tests(fit);
+  EffectSearch search(fit, tests, {}, nullptr);
+  search.run();
+  std::vector<Tested> asked = search.tested();  // of all that there is
+  judge(asked, fit.adjustment.chi2, fit.adjustment.dof, search.tried());
+  double p = 1.0;
+  for (const Tested& one : asked) p = std::min(p, one.p_adjusted);
+  const TestedEvent event = test_events(fit, tests).front();
+  ASSERT_LT(event.p_adjusted, 1e-3);
+  ASSERT_LT(p, 1e-3 * event.p_adjusted);
+  ASSERT_FALSE(search.missing().empty());
+  EXPECT_EQ(search.tested()[search.missing().front().tested].candidate.effect.name, "hard iron");
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    ASSERT_DOUBLE_EQ(search.tested()[k].p_value, asked[k].p_value)
+        << asked[k].candidate.effect.name;
+  }
+}
+
 NoiseTest law(const char* name, double score, double p_adjusted, const char* unit) {
   NoiseTest one;
   one.law = name;

@@ -5,6 +5,7 @@
 #include "trussmap/check.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
+#include "trussmap/map_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/shape.hpp"
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
 #include <unistd.h>
 #include <vector>
 
@@ -178,16 +180,83 @@ void fuzz_xz(std::string_view bytes) {
       [bytes] { static_cast<void>(read_square_runs(folder().write("runs.csv.xz", bytes), 16.0)); });
 }
 
+/// All that a store says of itself; its map as of now.
+std::string all_of(const MapStore& store) {
+  std::string text = format_map_graphml(store.builder().map()) + std::to_string(store.legs());
+  const std::vector<StoredSession> sessions = store.sessions();
+  store.for_each_leg([&](const StoredLeg& one) {
+    text += one.from + one.to + static_cast<char>('0' + static_cast<int>(one.kind));
+    if (one.session >= 0) text += sessions.at(static_cast<std::size_t>(one.session)).key;
+  });
+  for (const StoredSession& one : sessions) text += one.key + one.name;
+  return text + store.note("page");
+}
+
+/// A call that the builder may refuse; the store is then as it was.
+template <typename Call>
+void may_decline(const MapStore& store, const Call& call) {
+  const std::string before = all_of(store);
+  try {
+    call();
+    return;
+  } catch (const InputError&) {
+    throw;
+  } catch (const SolveError&) {
+  } catch (const std::invalid_argument&) {
+  }
+  if (all_of(store) != before) throw std::logic_error("a call that threw changed the store");
+}
+
+/// One is read, goes on for some calls, and is then read again as it was left.
+void fuzz_store(std::string_view bytes) {
+  for (const char* beside : {"map.db-wal", "map.db-shm", "map.db-journal", "map.db-lock"}) {
+    folder().remove(beside);
+  }
+  const fs::path file = folder().write("map.db", bytes);
+  may_refuse([&file] { static_cast<void>(read_map_store(file)); });
+  may_refuse([&file] {
+    std::string left;
+    {
+      MapStore store(file);
+      const MapBuilder& builder = store.builder();
+      const Traversal leg{{1.0, 0.5}, 0.01 * Matrix2::Identity()};
+      may_decline(store, [&] { store.arrive("on", leg); });
+      const std::string first = builder.landmarks() > 0 ? builder.map().landmark(0).name : "a";
+      may_decline(store, [&] { store.start(first); });
+      may_decline(store, [&] { store.arrive("b", leg); });
+      may_decline(store, [&] { store.observe("c", leg); });
+      may_decline(store, [&] {
+        store.append("fuzzed", "a session", [&](MapBuilder& session) {
+          session.arrive("d", leg);
+          session.arrive(first, leg);
+        });
+      });
+      may_decline(store, [&] { store.settle(0.5); });
+      may_decline(store, [&] { store.rest(); });
+      store.set_note("page", "p");
+      left = all_of(store);
+    }
+    if (all_of(MapStore(file)) != left)
+      throw std::logic_error("a store changed when it was closed");
+  });
+}
+
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> kTargets = {
-      {"recording", &fuzz_recording}, {"model", &fuzz_model},
-      {"graphml", &fuzz_graphml},     {"g2o", &fuzz_g2o},
-      {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
-      {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
-      {"phil", &fuzz_phil},           {"runs", &fuzz_runs},
-      {"words", &fuzz_words},         {"xz", &fuzz_xz}};
+  static const std::map<std::string, Target> kTargets = {{"recording", &fuzz_recording},
+                                                         {"model", &fuzz_model},
+                                                         {"graphml", &fuzz_graphml},
+                                                         {"g2o", &fuzz_g2o},
+                                                         {"mrclam", &fuzz_mrclam},
+                                                         {"optiodom", &fuzz_optiodom},
+                                                         {"ranges", &fuzz_ranges},
+                                                         {"loops", &fuzz_loops},
+                                                         {"phil", &fuzz_phil},
+                                                         {"runs", &fuzz_runs},
+                                                         {"store", &fuzz_store},
+                                                         {"words", &fuzz_words},
+                                                         {"xz", &fuzz_xz}};
   return kTargets;
 }
 

@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The map builder's gate: wrong landmarks stay out, systematic errors do not.
+#include "map/arrival_gate.hpp"
+
 #include "trussmap/map_builder.hpp"
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <string>
@@ -126,6 +129,29 @@ TEST(ArrivalGate, WhatContradictsAlikeComesBack) {
   for (int k = 1; k < 4; ++k) {
     EXPECT_LT((gated.position(k) - open.position(k)).norm(), 0.3) << k;
   }
+}
+
+/// s by its definition: three misfits at least, their median over that of chi^2 with two degrees of
+/// freedom (2 log 2), the last fifty, and never below 1.
+TEST(ArrivalGate, IsAsMuchWiderAsTheMedianMisfitIsLarger) {
+  const double median = 2.0 * std::log(2.0);
+  ArrivalGate gate(3.0);
+  for (int k = 0; k < 2; ++k) {
+    gate.remember(16.0 * median);
+    EXPECT_EQ(gate.scale(), 1.0);
+  }
+  gate.remember(1e9);
+  EXPECT_NEAR(gate.scale(), 4.0, 1e-12);
+  EXPECT_TRUE(gate.lets_in(143.999));
+  EXPECT_FALSE(gate.lets_in(144.001));
+  for (int k = 0; k < 47; ++k) gate.remember(0.1 * median);
+  EXPECT_EQ(gate.scale(), 1.0);
+  EXPECT_TRUE(gate.lets_in(8.999));
+  EXPECT_FALSE(gate.lets_in(9.001));
+  EXPECT_EQ(gate.remembered().front(), 16.0 * median);
+  gate.remember(4.0 * median);
+  EXPECT_EQ(gate.remembered().size(), 50U);
+  EXPECT_EQ(gate.remembered()[1], 1e9);
 }
 
 TEST(ArrivalGate, RefusesAGateOfNothing) {

@@ -8,10 +8,12 @@
 #include "child_process.hpp"
 #include "geometry/index.hpp"
 #include "scratch_folder.hpp"
+#include "store/database.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -22,6 +24,7 @@
 #include <string>
 #include <sys/resource.h>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -419,6 +422,74 @@ TEST_F(MapStoreTest, DamagedFilesAreRefused) {
     fs::remove(file_.string() + "-shm");
   }
   EXPECT_GT(refused, 10);
+}
+
+/// The first version's files, kept as they were written: their maps can be read for ever.
+TEST_F(MapStoreTest, FilesOfTheFirstVersionGoOn) {
+  const fs::path kept = fs::path(TRUSSMAP_SOURCE_DIR) / "tests/fuzz/corpus/store";
+  const auto gone_on = [&](const char* name) {
+    write_file(file_, read_file(kept / name));
+    MapStore store(file_);
+    const int before = store.builder().landmarks();
+    store.start(before > 0 ? "a" : "first");
+    store.arrive("another", {{3.0, 4.0}, 0.01 * Matrix2::Identity()});
+    return std::pair(before, store.legs());
+  };
+  EXPECT_EQ(gone_on("elastic"), std::pair(5, std::int64_t{14}));
+  EXPECT_EQ(gone_on("gauss_markov"), std::pair(4, std::int64_t{13}));
+  EXPECT_EQ(gone_on("new"), std::pair(0, std::int64_t{2}));
+}
+
+/// What somebody else's SQLite may have put into the file: a statement of its own would run with
+/// every call, and numbers lead beyond all ends.
+TEST_F(MapStoreTest, OnesWithOtherTablesOrMisnumberedRowsAreRefused) {
+  {
+    MapStore store(file_);
+    store.start("a");
+    const Traversal leg{{1.0, 2.0}, 0.01 * Matrix2::Identity()};
+    store.append("key", "a session", [&](MapBuilder& builder) { builder.arrive("b", leg); });
+  }
+  const std::string whole = read_file(file_);
+  const auto refusal = [&](const std::string& statements) {
+    write_file(file_, whole);
+    Database(file_, Database::Access::write).run(statements);
+    const auto of = [](const auto& call) -> std::string {
+      try {
+        call();
+      } catch (const InputError& error) {
+        return std::string(error.what());
+      }
+      return "";
+    };
+    const std::string read = of([&] { static_cast<void>(read_map_store(file_)); });
+    const std::string gone_on = of([&] {
+      MapStore store(file_);
+      store.for_each_leg([](const StoredLeg&) {});
+    });
+    EXPECT_TRUE(read.empty() || read == gone_on) << read;  // no legs are read for a map
+    return gone_on.substr(std::min(gone_on.size(), file_.string().size()));
+  };
+  EXPECT_EQ(refusal("CREATE TABLE mine(x); CREATE VIEW far AS SELECT * FROM map WHERE x > 9"), "");
+  const std::string tables = ": is damaged: its tables are not those of a map store";
+  EXPECT_EQ(refusal("CREATE TRIGGER t AFTER INSERT ON legs BEGIN DELETE FROM misfits; END"),
+            tables);
+  EXPECT_EQ(refusal("CREATE TABLE mine(x); CREATE TRIGGER t AFTER INSERT ON mine BEGIN "
+                    "DELETE FROM legs; END"),
+            tables);
+  EXPECT_EQ(refusal("CREATE INDEX long ON Sessions(hex(zeroblob(length(key) * 1000000)))"), tables);
+  EXPECT_EQ(refusal("ALTER TABLE sessions RENAME TO mine; CREATE VIEW sessions AS SELECT "
+                    "1 AS number, hex(zeroblob(9)) AS key, 'n' AS name, 0 AS first_leg, 0 AS legs"),
+            tables);
+  EXPECT_EQ(refusal("DROP TABLE misfits"), tables);
+  const std::string leg = ": is damaged: it has a leg that is misnumbered";
+  EXPECT_EQ(refusal("UPDATE legs SET number = 9223372036854775806 WHERE number = 1"), leg);
+  EXPECT_EQ(refusal("UPDATE legs SET number = number - 9"), leg);
+  EXPECT_EQ(refusal("UPDATE legs SET number = 7 WHERE number = 1"), leg);
+  EXPECT_EQ(refusal("DELETE FROM legs WHERE number = 0"), leg);
+  const std::string session = ": is damaged: it has a session that is misnumbered";
+  EXPECT_EQ(refusal("UPDATE sessions SET number = 2"), session);
+  EXPECT_EQ(refusal("UPDATE sessions SET number = 0"), session);
+  EXPECT_EQ(refusal("UPDATE legs SET session = 1"), ": is damaged: it has a leg of no session");
 }
 
 /// A write that fails when much has been written already, as on a disk that is full.

@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A wheel that stands still while the other one drives: an encoder that has lost its counts, or a
+// robot that turns about it, which compass, gyro, truth or bearings show.
+#include "check/findings.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+namespace trussmap {
+namespace {
+
+constexpr double kStillTurns = 30.0;   // wheelbases: five turns about the wheel
+constexpr double kStillTravel = 10.0;  // m that the other wheel has gone
+constexpr double kStillShare = 1e-6;   // of the other wheel's way
+constexpr double kStep = 0.5;          // rad by the wheels, to be compared
+constexpr double kUntold = 2.5;        // rad between two readings: whole turns are not told
+constexpr int kFewest = 6;             // steps
+constexpr double kClear = 0.8;         // correlation
+constexpr double kWheelbaseOff = 2.5;  // factor
+
+/// Turns of something against the wheels'.
+class Turned {
+ public:
+  void add(double by_wheels, double by_other) {
+    if (std::abs(by_wheels) > kUntold) return;
+    wheels_ += by_wheels;
+    other_ += by_other;
+    if (std::abs(wheels_) < kStep) return;
+    ww_ += wheels_ * wheels_;
+    wo_ += wheels_ * other_;
+    oo_ += other_ * other_;
+    ++steps_;
+    wheels_ = other_ = 0.0;
+  }
+  [[nodiscard]] bool tells() const { return steps_ >= kFewest; }
+  [[nodiscard]] bool agrees() const {
+    return wo_ > kClear * std::sqrt(ww_ * oo_) && wo_ < kWheelbaseOff * ww_ &&
+           ww_ < kWheelbaseOff * wo_;
+  }
+
+ private:
+  double wheels_ = 0.0;
+  double other_ = 0.0;
+  double ww_ = 0.0;
+  double wo_ = 0.0;
+  double oo_ = 0.0;
+  int steps_ = 0;
+};
+
+/// Rows from `first` to the one before `end` in which a wheel stands still.
+struct Stretch {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  double travel = 0.0;  ///< m, of the other wheel
+};
+
+/// Headings by the wheels, from 0 at the drive's start: at a row's end, or in between.
+class WheelHeadings {
+ public:
+  WheelHeadings(const Drive& drive, double wheelbase) : drive_(drive) {
+    heading_.reserve(drive.rows());
+    double heading = 0.0;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      heading += (drive.right[row] - drive.left[row]) / wheelbase;
+      heading_.push_back(heading);
+    }
+  }
+  [[nodiscard]] double at_row(std::size_t row) const { return heading_[row]; }
+  /// `t` within the drive.
+  [[nodiscard]] double at(double t) const {
+    const auto after = std::lower_bound(drive_.t.begin(), drive_.t.end(), t);
+    const auto row = static_cast<std::size_t>(after - drive_.t.begin());
+    const double before = row == 0 ? 0.0 : heading_[row - 1];
+    const double share = (t - (drive_.t[row] - drive_.duration(row))) / drive_.duration(row);
+    return before + share * (heading_[row] - before);
+  }
+
+ private:
+  const Drive& drive_;
+  std::vector<double> heading_;
+};
+
+Turned by_compass(const Drive& drive, const Stretch& stretch, const WheelHeadings& wheels) {
+  Turned turned;
+  std::size_t last = drive.rows();
+  for (std::size_t row = stretch.first; drive.has_compass() && row < stretch.end; ++row) {
+    if (std::isnan(drive.heading[row])) continue;
+    if (last < drive.rows()) {
+      turned.add(wheels.at_row(row) - wheels.at_row(last),
+                 wrap_angle(drive.heading[row] - drive.heading[last]));
+    }
+    last = row;
+  }
+  return turned;
+}
+
+Turned by_gyro(const Drive& drive, const Stretch& stretch, double wheelbase) {
+  Turned turned;
+  for (std::size_t row = stretch.first; drive.has_gyro() && row < stretch.end; ++row) {
+    if (std::isnan(drive.yaw_rate[row])) continue;
+    turned.add((drive.right[row] - drive.left[row]) / wheelbase,
+               drive.yaw_rate[row] * drive.duration(row));
+  }
+  return turned;
+}
+
+Turned by_truth(const Recording& recording, const Stretch& stretch, const WheelHeadings& wheels) {
+  Turned turned;
+  const Drive& drive = recording.drive;
+  const TruthRow* last = nullptr;
+  for (const TruthRow& one : recording.truth) {
+    if (one.t < drive.t[stretch.first] || one.t > drive.t[stretch.end - 1]) continue;
+    if (last != nullptr) {
+      turned.add(wheels.at(one.t) - wheels.at(last->t), wrap_angle(one.heading - last->heading));
+    }
+    last = &one;
+  }
+  return turned;
+}
+
+/// A landmark goes round a robot that turns.
+Turned by_bearings(const Recording& recording, const Stretch& stretch,
+                   const WheelHeadings& wheels) {
+  Turned turned;
+  const Drive& drive = recording.drive;
+  std::map<std::string_view, const Sighting*> seen;
+  for (const Sighting& one : recording.sightings) {
+    const bool within = one.t >= drive.t[stretch.first] && one.t <= drive.t[stretch.end - 1];
+    if (!within || std::isnan(one.bearing)) continue;
+    const Sighting*& last = seen[one.landmark];
+    if (last != nullptr) {
+      turned.add(wheels.at(one.t) - wheels.at(last->t), wrap_angle(last->bearing - one.bearing));
+    }
+    last = &one;
+  }
+  return turned;
+}
+
+/// A turn about the wheel: at least one shows it, and none contradicts.
+bool turns_about_it(const Checked& checked, const Stretch& stretch, const WheelHeadings& wheels) {
+  const Recording& recording = checked.recording;
+  bool shown = false;
+  for (const Turned& one :
+       std::array{by_compass(recording.drive, stretch, wheels),
+                  by_gyro(recording.drive, stretch, checked.wheelbase),
+                  by_truth(recording, stretch, wheels), by_bearings(recording, stretch, wheels)}) {
+    if (!one.tells()) continue;
+    if (!one.agrees()) return false;
+    shown = true;
+  }
+  return shown;
+}
+
+/// Where a wheel stands still and the other one goes so far.
+std::vector<Stretch> still_stretches(const std::vector<double>& wheel,
+                                     const std::vector<double>& other, double least) {
+  std::vector<Stretch> stretches;
+  Stretch now;
+  for (std::size_t row = 0; row <= wheel.size(); ++row) {
+    if (row < wheel.size() && wheel[row] == 0.0) {
+      now.travel += std::abs(other[row]);
+      continue;
+    }
+    now.end = row;
+    if (now.travel > least) stretches.push_back(now);
+    now = {row + 1, 0, 0.0};
+  }
+  return stretches;
+}
+
+double way_of(const std::vector<double>& wheel) {
+  double way = 0.0;
+  for (const double travel : wheel) way += std::abs(travel);
+  return way;
+}
+
+void ask(Checked& checked, const WheelHeadings& wheels, const char* name,
+         const std::vector<double>& wheel, const std::vector<double>& other) {
+  const double others = way_of(other);
+  if (others > 1.0 && way_of(wheel) < kStillShare * others) {
+    if (turns_about_it(checked, {0, wheel.size(), others}, wheels)) return;
+    checked.add(
+        "drive.csv", name, "still wheel",
+        joined("the ", name, " wheel never moves, where the other one goes ", figure(others, "m")),
+        "look at the encoder's cable and at the column's source");
+    return;
+  }
+  const double least = std::max(kStillTravel, kStillTurns * checked.wheelbase);
+  std::vector<Stretch> stretches = still_stretches(wheel, other, least);
+  std::erase_if(stretches,
+                [&](const Stretch& one) { return turns_about_it(checked, one, wheels); });
+  if (stretches.empty()) return;
+  const Stretch& longest =
+      *std::max_element(stretches.begin(), stretches.end(),
+                        [](const Stretch& a, const Stretch& b) { return a.travel < b.travel; });
+  checked.add("drive.csv", name, "still wheel",
+              joined("the ", name, " wheel stands still until t = ",
+                     figure(checked.recording.drive.t[longest.end - 1], "s"),
+                     " while the other one goes ", figure(longest.travel, "m")),
+              "look at the encoder: it seems to have lost its counts there");
+}
+
+}  // namespace
+
+void check_still_wheels(Checked& checked) {
+  const Drive& drive = checked.recording.drive;
+  const WheelHeadings wheels(drive, checked.wheelbase);
+  ask(checked, wheels, "left", drive.left, drive.right);
+  ask(checked, wheels, "right", drive.right, drive.left);
+}
+
+}  // namespace trussmap
