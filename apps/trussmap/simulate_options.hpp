@@ -37,7 +37,6 @@ struct SimulateOptions {
   bool range_sensor = false;
   bool ranges_alone = false;
   bool bearings_alone = false;
-  bool loops = false;
   bool rests = false;
   double gyro_noise = 0.0005;        // rad/s^1/2
   double reach = 8.0;                // m
@@ -54,6 +53,7 @@ struct SimulateOptions {
   EffectOptions effects;
   bool true_rates = false;
   bool hide = false;
+  bool loops = false;
   std::string out;
   std::string json;
 };

@@ -7,6 +7,7 @@
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
 #include "estimation/triangulation.hpp"
+#include "statistics/median.hpp"
 #include "statistics/thinned.hpp"
 #include "trussmap/planar.hpp"
 
@@ -447,6 +448,35 @@ bool lay_session(const RecordingProblem& session, const StartOptions& options, L
   return truth || !fixes.poses.empty();
 }
 
+Vector2 median_place(const std::vector<Vector2>& places) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const Vector2& at : places) {
+    x.push_back(at.x());
+    y.push_back(at.y());
+  }
+  return {median(x), median(y)};
+}
+
+/// Landmarks that lie here, of those that lie there, ten times as far apart as any there: bearings
+/// alone may put one anywhere, and it would take the rest with it.
+void leave_out_strays(std::vector<Vector2>& here, std::vector<Vector2>& there) {
+  constexpr double kStray = 10.0;
+  const Vector2 middle = median_place(here);
+  const Vector2 middle_there = median_place(there);
+  double reach = 0.0;
+  for (const Vector2& at : there) reach = std::max(reach, (at - middle_there).norm());
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    if ((here[k] - middle).norm() > kStray * reach) continue;
+    here[kept] = here[k];
+    there[kept++] = there[k];
+  }
+  if (kept == 0) return;
+  here.resize(kept);
+  there.resize(kept);
+}
+
 /// Lays a session over landmarks that have their place.
 void lay_over(const PlacedLandmarks& known, bool turn, Layer& layer) {
   std::vector<Vector2> here;
@@ -457,6 +487,7 @@ void lay_over(const PlacedLandmarks& known, bool turn, Layer& layer) {
     there.push_back(*known[k]);
   }
   if (here.empty()) return;
+  leave_out_strays(here, there);
   Alignment over;
   if (turn && here.size() >= 2) {
     over = align_rigidly(here, there);

@@ -64,8 +64,11 @@ class Fitter {
       // What is laid out anew is linearised along its record, and not at the noise believed so far.
       if (again) static_cast<void>(relinearised());
       if (round == 0 && options_.fit_effects) hold_unobservable();
-      adjust_once(round == 0);
-      if (round == 0 && lost()) start_again();
+      if (round == 0) {
+        adjust_from_starts();
+      } else {
+        adjust_once(false);
+      }
       fit_.settled = settled();
       const bool last = fit_.settled || round + 1 == options_.max_rounds;
       if ((round == 0 || last) && options_.fit_effects && fix_unobservable()) {
@@ -161,8 +164,21 @@ class Fitter {
   /// How a start may be laid down, in the order in which they are tried.
   enum class StartKind { common_errors, none_wrong, short_stretches, careful };
 
-  /// From other starts, unless they lead to nothing better.
-  void start_again() {
+  /// A start may be so far off that the adjustment runs away from it and finds all of it loose:
+  /// others are tried before that is believed.
+  void adjust_from_starts() {
+    try {
+      adjust_once(true);
+    } catch (const SolveError&) {
+      if (options_.near != nullptr || !start_again(false)) throw;
+      return;
+    }
+    if (lost()) static_cast<void>(start_again(true));
+  }
+
+  /// From other starts, unless they lead to nothing better than what is `adjusted`. False where
+  /// there is no adjustment then.
+  bool start_again(bool adjusted) {
     FitState best = fit_;
     RecordingState best_state = state_;
     for (const StartKind kind :
@@ -173,12 +189,17 @@ class Fitter {
       }
       start(kind);
       build_columns();
-      adjust_once(true);
-      if (fit_.adjustment.gate_widened < best.adjustment.gate_widened ||
+      try {
+        adjust_once(true);
+      } catch (const SolveError&) {
+        continue;
+      }
+      if (!adjusted || fit_.adjustment.gate_widened < best.adjustment.gate_widened ||
           (fit_.adjustment.gate_widened == best.adjustment.gate_widened &&
            fit_.adjustment.chi2 < best.adjustment.chi2)) {
         best = fit_;
         best_state = state_;
+        adjusted = true;
       }
       if (!lost()) break;
       // Without a gate a careful start is like any other.
@@ -186,6 +207,7 @@ class Fitter {
     }
     fit_ = std::move(best);
     state_ = std::move(best_state);
+    return adjusted;
   }
 
   void start(StartKind kind) {

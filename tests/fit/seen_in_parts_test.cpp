@@ -5,7 +5,6 @@
 // its own errors, over many drives.
 #include "fit/placed_drives.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/error.hpp"
 
 #include <cstdint>
 #include <string>
@@ -37,27 +36,19 @@ Recording seen_in_parts(SensorParts parts, bool compass, const std::vector<Effec
 }
 
 /// An effect of the sensor and one of the wheels.
-FitStatistics statistics(SensorParts parts, int drives, std::uint64_t first_seed,
-                         int most_refused = 0) {
+FitStatistics statistics(SensorParts parts, int drives, std::uint64_t first_seed) {
   const Effect of_sensor = parts == SensorParts::range_alone
                                ? catalogue_effect("range bias", {0.08})
                                : catalogue_effect("bearing offset", {0.03});
   Model model;
   model.effects = {of_sensor, catalogue_effect("wheelbase", {0.02})};
   FitStatistics found;
-  int refused = 0;
   for (int k = 0; k < drives; ++k) {
-    try {
-      add_fit(found,
-              seen_in_parts(parts, k % 2 == 0, model.effects,
-                            first_seed + static_cast<std::uint64_t>(k)),
-              model, drives);
-    } catch (const SolveError&) {
-      ++refused;
-    }
+    add_fit(
+        found,
+        seen_in_parts(parts, k % 2 == 0, model.effects, first_seed + static_cast<std::uint64_t>(k)),
+        model, drives);
   }
-  EXPECT_LE(refused, most_refused);
-  found.mean *= static_cast<double>(drives) / (drives - refused);
   return found;
 }
 
@@ -83,10 +74,9 @@ TEST(SlowSeenInParts, ByRangesAlone) {
   expect_right(statistics(SensorParts::range_alone, 500, 3000), 500);
 }
 
-/// Seeds 4000 to 4499. Where the first guess of the map is too far off, the adjustment runs away
-/// and says that it found none: 3 of them.
+/// Seeds 4000 to 4499.
 TEST(SlowSeenInParts, ByBearingsAlone) {
-  expect_right(statistics(SensorParts::bearing_alone, 500, 4000, 5), 500);
+  expect_right(statistics(SensorParts::bearing_alone, 500, 4000), 500);
 }
 
 }  // namespace
