@@ -18,10 +18,6 @@ constexpr double kLongestRow = 2.0;   // s
 constexpr double kSpike = 10.0;       // times the speed that 99 of 100 rows stay below
 constexpr double kSpikeTravel = 0.5;  // m
 
-double larger(const Drive& drive, std::size_t row) {
-  return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
-}
-
 struct Rows {
   double duration = 0.0;        ///< s, median
   std::vector<double> speeds;   ///< m/s of the faster wheel, of rows that move, ascending
@@ -38,7 +34,7 @@ Rows rows_of(const Drive& drive) {
   std::vector<double> durations;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     durations.push_back(drive.duration(row));
-    const double travel = larger(drive, row);
+    const double travel = larger_travel(drive, row);
     const double speed = travel / durations.back();
     if (travel > 0.0) rows.speeds.push_back(speed);
     if (speed > kSlowest) rows.driving.push_back(speed);
@@ -77,8 +73,8 @@ void check_spikes(Checked& checked, const Rows& rows) {
   std::vector<std::size_t> spikes;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const auto jumps = [&](std::size_t k) {
-      return larger(drive, k) > kSpikeTravel &&
-             larger(drive, k) / drive.duration(k) > kSpike * usual;
+      return larger_travel(drive, k) > kSpikeTravel &&
+             larger_travel(drive, k) / drive.duration(k) > kSpike * usual;
     };
     const bool alone =
         (row == 0 || !jumps(row - 1)) && (row + 1 == drive.rows() || !jumps(row + 1));
@@ -88,13 +84,17 @@ void check_spikes(Checked& checked, const Rows& rows) {
   const std::size_t first = spikes.front();
   checked.note("drive.csv", "left,right", "spike",
                joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
-                      figure(larger(drive, first), "m"), ", where 99 of 100 stay below ",
+                      figure(larger_travel(drive, first), "m"), ", where 99 of 100 stay below ",
                       figure(usual * drive.duration(first), "m"),
                       spikes.size() > 1 ? joined("; ", spikes.size(), " rows like it") : ""),
                "correct or remove the row: an encoder's jump, or an overflow of its counter");
 }
 
 }  // namespace
+
+double larger_travel(const Drive& drive, std::size_t row) {
+  return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+}
 
 void check_drive_values(Checked& checked) {
   const Rows rows = rows_of(checked.recording.drive);

@@ -38,6 +38,9 @@ struct Checked {
 /// Times, travels and covariates by themselves: units, spikes, gaps, wheels that stand still.
 void check_drive_values(Checked& checked);
 
+/// Travel of the wheel that goes further in this row, m.
+[[nodiscard]] double larger_travel(const Drive& drive, std::size_t row);
+
 /// What rows are like: medians.
 struct UsualRow {
   double duration = 0.0;  ///< s

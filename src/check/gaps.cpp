@@ -26,10 +26,6 @@ constexpr double kNoWay = 0.05;     // m
 constexpr double kSamePlace = 0.2;  // m
 constexpr double kSameTurn = 0.3;   // rad
 
-double larger(const Drive& drive, std::size_t row) {
-  return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
-}
-
 /// The first of them from that time on, s.
 template <typename Timed>
 auto first_from(const std::vector<Timed>& all, double t) {
@@ -41,7 +37,7 @@ auto first_from(const std::vector<Timed>& all, double t) {
 std::vector<double> way_of(const Drive& drive) {
   std::vector<double> way;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    way.push_back(larger(drive, row) + (row == 0 ? 0.0 : way.back()));
+    way.push_back(larger_travel(drive, row) + (row == 0 ? 0.0 : way.back()));
   }
   return way;
 }
@@ -50,7 +46,7 @@ std::vector<double> way_of(const Drive& drive) {
 /// if they move at all.
 bool rests_in(const Drive& drive, std::size_t row, const UsualRow& usual) {
   const auto speed = [&](std::size_t k) {
-    return larger(drive, k) / std::min(drive.duration(k), usual.duration);
+    return larger_travel(drive, k) / std::min(drive.duration(k), usual.duration);
   };
   const auto comes_from = [&](double one, double farther) {
     return one < kSlow * usual.speed && one < kSlower * farther;
@@ -150,7 +146,7 @@ void check_gaps(Checked& checked, const UsualRow& usual) {
     const double duration = drive.duration(row);
     if (duration <= longest) continue;
     // Travels that a long row has summed up are no gap.
-    if (larger(drive, row) > kSummedUp * usual.speed * duration) continue;
+    if (larger_travel(drive, row) > kSummedUp * usual.speed * duration) continue;
     if (!stands_still_over(checked, path, row, usual)) gaps.push_back(row);
   }
   if (gaps.empty()) return;

@@ -4,6 +4,7 @@
 // A wheel that stands still while the other one drives: an encoder that has lost its counts, or a
 // robot that turns about it, which compass, gyro, truth or bearings show.
 #include "check/findings.hpp"
+#include "recording/legs.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <string_view>
+#include <vector>
 
 namespace trussmap {
 namespace {
@@ -60,40 +62,25 @@ struct Stretch {
   double travel = 0.0;  ///< m, of the other wheel
 };
 
-/// Headings by the wheels, from 0 at the drive's start: at a row's end, or in between.
-class WheelHeadings {
- public:
-  WheelHeadings(const Drive& drive, double wheelbase) : drive_(drive) {
-    heading_.reserve(drive.rows());
-    double heading = 0.0;
-    for (std::size_t row = 0; row < drive.rows(); ++row) {
-      heading += (drive.right[row] - drive.left[row]) / wheelbase;
-      heading_.push_back(heading);
-    }
+/// By the wheels at the end of each row, from 0 at the drive's start, rad.
+std::vector<double> wheel_headings(const Drive& drive, double wheelbase) {
+  std::vector<double> headings;
+  headings.reserve(drive.rows());
+  double heading = 0.0;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    heading += (drive.right[row] - drive.left[row]) / wheelbase;
+    headings.push_back(heading);
   }
-  [[nodiscard]] double at_row(std::size_t row) const { return heading_[row]; }
-  /// `t` within the drive.
-  [[nodiscard]] double at(double t) const {
-    const auto after = std::lower_bound(drive_.t.begin(), drive_.t.end(), t);
-    const auto row = static_cast<std::size_t>(after - drive_.t.begin());
-    const double before = row == 0 ? 0.0 : heading_[row - 1];
-    const double share = (t - (drive_.t[row] - drive_.duration(row))) / drive_.duration(row);
-    return before + share * (heading_[row] - before);
-  }
+  return headings;
+}
 
- private:
-  const Drive& drive_;
-  std::vector<double> heading_;
-};
-
-Turned by_compass(const Drive& drive, const Stretch& stretch, const WheelHeadings& wheels) {
+Turned by_compass(const Drive& drive, const Stretch& stretch, const std::vector<double>& wheels) {
   Turned turned;
   std::size_t last = drive.rows();
   for (std::size_t row = stretch.first; drive.has_compass() && row < stretch.end; ++row) {
     if (std::isnan(drive.heading[row])) continue;
     if (last < drive.rows()) {
-      turned.add(wheels.at_row(row) - wheels.at_row(last),
-                 wrap_angle(drive.heading[row] - drive.heading[last]));
+      turned.add(wheels[row] - wheels[last], wrap_angle(drive.heading[row] - drive.heading[last]));
     }
     last = row;
   }
@@ -110,14 +97,16 @@ Turned by_gyro(const Drive& drive, const Stretch& stretch, double wheelbase) {
   return turned;
 }
 
-Turned by_truth(const Recording& recording, const Stretch& stretch, const WheelHeadings& wheels) {
+Turned by_truth(const Recording& recording, const Stretch& stretch,
+                const std::vector<double>& wheels) {
   Turned turned;
   const Drive& drive = recording.drive;
   const TruthRow* last = nullptr;
   for (const TruthRow& one : recording.truth) {
     if (one.t < drive.t[stretch.first] || one.t > drive.t[stretch.end - 1]) continue;
     if (last != nullptr) {
-      turned.add(wheels.at(one.t) - wheels.at(last->t), wrap_angle(one.heading - last->heading));
+      turned.add(path_at(drive, wheels, one.t) - path_at(drive, wheels, last->t),
+                 wrap_angle(one.heading - last->heading));
     }
     last = &one;
   }
@@ -126,7 +115,7 @@ Turned by_truth(const Recording& recording, const Stretch& stretch, const WheelH
 
 /// A landmark goes round a robot that turns.
 Turned by_bearings(const Recording& recording, const Stretch& stretch,
-                   const WheelHeadings& wheels) {
+                   const std::vector<double>& wheels) {
   Turned turned;
   const Drive& drive = recording.drive;
   std::map<std::string_view, const Sighting*> seen;
@@ -135,7 +124,8 @@ Turned by_bearings(const Recording& recording, const Stretch& stretch,
     if (!within || std::isnan(one.bearing)) continue;
     const Sighting*& last = seen[one.landmark];
     if (last != nullptr) {
-      turned.add(wheels.at(one.t) - wheels.at(last->t), wrap_angle(last->bearing - one.bearing));
+      turned.add(path_at(drive, wheels, one.t) - path_at(drive, wheels, last->t),
+                 wrap_angle(last->bearing - one.bearing));
     }
     last = &one;
   }
@@ -143,7 +133,8 @@ Turned by_bearings(const Recording& recording, const Stretch& stretch,
 }
 
 /// A turn about the wheel: at least one shows it, and none contradicts.
-bool turns_about_it(const Checked& checked, const Stretch& stretch, const WheelHeadings& wheels) {
+bool turns_about_it(const Checked& checked, const Stretch& stretch,
+                    const std::vector<double>& wheels) {
   const Recording& recording = checked.recording;
   bool shown = false;
   for (const Turned& one :
@@ -180,7 +171,7 @@ double way_of(const std::vector<double>& wheel) {
   return way;
 }
 
-void ask(Checked& checked, const WheelHeadings& wheels, const char* name,
+void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
          const std::vector<double>& wheel, const std::vector<double>& other) {
   const double others = way_of(other);
   if (others > 1.0 && way_of(wheel) < kStillShare * others) {
@@ -210,7 +201,7 @@ void ask(Checked& checked, const WheelHeadings& wheels, const char* name,
 
 void check_still_wheels(Checked& checked) {
   const Drive& drive = checked.recording.drive;
-  const WheelHeadings wheels(drive, checked.wheelbase);
+  const std::vector<double> wheels = wheel_headings(drive, checked.wheelbase);
   ask(checked, wheels, "left", drive.left, drive.right);
   ask(checked, wheels, "right", drive.right, drive.left);
 }

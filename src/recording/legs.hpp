@@ -37,7 +37,8 @@ struct Leg {
 /// Driven path of the axle's centre from the drive's start to the end of each row, m.
 [[nodiscard]] std::vector<double> driven_path(const Drive& drive);
 
-/// The path at time t, linear within a row. `path` is driven_path(drive).
+/// The path at time t, linear within a row. `path` is driven_path(drive), or whatever else grows
+/// from 0 at the drive's start and is given at the end of each row.
 [[nodiscard]] double path_at(const Drive& drive, const std::vector<double>& path, double t);
 
 /// Legs in order. A recording without sightings has none.
