@@ -55,14 +55,13 @@ Eigen::MatrixXd suspects(const FitState& fit) {
 /// Whether an effect is the mean of a process that this noise has beyond that one. Of such an
 /// effect one asks without any search: a walk, say, begins at 0, and a gyro that walks has a bias.
 bool is_mean_of_new_process(const Effect& effect, const Noise& noise, const Noise& before) {
+  const auto is_new = [&before](const NoiseProcess& one) {
+    return std::none_of(before.processes.begin(), before.processes.end(),
+                        [&one](const NoiseProcess& other) { return is_same_source(one, other); });
+  };
   return effect.is_constant() &&
          std::any_of(noise.processes.begin(), noise.processes.end(), [&](const NoiseProcess& one) {
-           return one.channel == effect.channel &&
-                  std::none_of(before.processes.begin(), before.processes.end(),
-                               [&](const NoiseProcess& other) {
-                                 return other.channel == one.channel &&
-                                        other.process == one.process;
-                               });
+           return one.channel == effect.channel && is_new(one);
          });
 }
 

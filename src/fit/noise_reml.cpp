@@ -113,12 +113,14 @@ std::vector<NoiseComponent> processes_of(const Noise& noise) {
   return result;
 }
 
+bool is_same_source(const NoiseProcess& a, const NoiseProcess& b) {
+  return a.channel == b.channel && a.process == b.process;
+}
+
 double size_in(const Noise& noise, const NoiseComponent& component) {
   if (component.lasts()) {
     for (const NoiseProcess& one : noise.processes) {
-      if (one.channel == component.process.channel && one.process == component.process.process) {
-        return one.sd;
-      }
+      if (is_same_source(one, component.process)) return one.sd;
     }
     return 0.0;
   }
@@ -184,7 +186,7 @@ void take_into(Noise& noise, const NoiseComponent& component, double sd, double 
   process.sd = sd;
   process.length = length;
   for (NoiseProcess& one : noise.processes) {
-    if (one.channel != process.channel || one.process != process.process) continue;
+    if (!is_same_source(one, process)) continue;
     one.sd = sd;
     one.length = length;
     return;

@@ -46,6 +46,8 @@ struct NoiseComponent {
 [[nodiscard]] double mean_wheel_noise(const Noise& noise);
 /// "compass, correlated in t".
 [[nodiscard]] std::string name_of_source(const NoiseProcess& process);
+/// The same channel and process, whatever their sizes and lengths.
+[[nodiscard]] bool is_same_source(const NoiseProcess& a, const NoiseProcess& b);
 
 /// Of the fit's equipment: the white sources of this noise, and its processes.
 [[nodiscard]] std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& noise);
