@@ -186,7 +186,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
           "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
     }
   }
-  if (options.noise_free) robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (options.noise_free) robot.noise = kNoiseFree;
   return robot;
 }
 

@@ -193,6 +193,9 @@ struct SensorNoise {
   double loop_heading = 0.01;  ///< rad
 };
 
+/// Exact sensors.
+inline constexpr SensorNoise kNoiseFree{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
 /// combine.
 struct RoughNoise {
@@ -231,6 +234,13 @@ struct WheeledRobot {
   bool loops = false;
   SensorNoise noise;
   RoughNoise rough;
+
+  [[nodiscard]] bool sees_ranges() const {
+    return range_sensor && sensor_parts != SensorParts::bearing_alone;
+  }
+  [[nodiscard]] bool sees_bearings() const {
+    return range_sensor && sensor_parts != SensorParts::range_alone;
+  }
 };
 
 /// What effects of speed and turn rate depend on: estimators know these by the wheels alone.

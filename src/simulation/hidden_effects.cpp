@@ -87,8 +87,6 @@ class Draw {
   [[nodiscard]] bool can_be_shown(const CatalogueEntry& entry) const {
     const bool of_ranges = entry.channel == Channel::range || entry.channel == Channel::range_scale;
     const bool of_bearings = entry.channel == Channel::bearing;
-    const bool ranges = robot_.range_sensor && robot_.sensor_parts != SensorParts::bearing_alone;
-    const bool bearings = robot_.range_sensor && robot_.sensor_parts != SensorParts::range_alone;
     const bool of_gyro = entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale;
     const bool needs_survey = is_among(kNeedSurvey, entry.name);
     const bool needs_compass = entry.channel == Channel::compass || entry.name == "constant creep";
@@ -98,8 +96,8 @@ class Draw {
                           entry.channel == Channel::fix_delay;
     return entry.detectable > 0.0 && entry.channel != Channel::delay && !of_fixes &&
            !is_among(kMisleading, entry.name) && (robot_.compass || !needs_compass) &&
-           (robot_.gyro || !of_gyro) && (ranges || !of_ranges) && (bearings || !of_bearings) &&
-           (surveyed_ || !needs_survey);
+           (robot_.gyro || !of_gyro) && (robot_.sees_ranges() || !of_ranges) &&
+           (robot_.sees_bearings() || !of_bearings) && (surveyed_ || !needs_survey);
   }
 
   /// Two that cannot be told apart, or whose parts cannot, make no fair riddle.

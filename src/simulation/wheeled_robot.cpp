@@ -140,9 +140,8 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
     const double bearing = wrap_angle(direction(view) - stop.pose.heading + g(Channel::bearing) +
                                       dice.deviation(robot.noise.bearing));
     if (recognised && range > 0.0) {
-      sightings.push_back({t, landmark_name(mesh, k),
-                           robot.sensor_parts == SensorParts::bearing_alone ? kAbsent : range,
-                           robot.sensor_parts == SensorParts::range_alone ? kAbsent : bearing});
+      sightings.push_back({t, landmark_name(mesh, k), robot.sees_ranges() ? range : kAbsent,
+                           robot.sees_bearings() ? bearing : kAbsent});
     }
   }
   return sightings;

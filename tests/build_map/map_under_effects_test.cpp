@@ -47,7 +47,7 @@ Recording drive_about(const Fault& fault, bool noise, std::uint64_t seed) {
   DrivingStyle style;
   style.overrun = 0.4;
   if (!noise) {
-    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    robot.noise = kNoiseFree;
     style.standing = 0.0;
   }
   Recording recording =
@@ -179,7 +179,7 @@ TEST(MapUnderEffectsTogether, SeveralActSideBySide) {
   const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
   WheeledRobot robot;
   robot.compass = false;
-  robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  robot.noise = kNoiseFree;
   DrivingStyle style;
   style.overrun = 0.4;
   style.standing = 0.0;

@@ -29,7 +29,7 @@ Simulated simulate(const Effect& effect) {
   const Tours tours = make_tours(mesh, WalkKind::euler, 2, random);
   Simulated result;
   result.robot.range_sensor = true;
-  result.robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  result.robot.noise = kNoiseFree;
   DrivingStyle style;
   style.standing = 0.0;
   style.rest_share = 0.2;

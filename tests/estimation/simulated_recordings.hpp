@@ -56,7 +56,7 @@ inline SimulatedRecording simulate_exactly(const Equipment& equipment, std::uint
   WheeledRobot robot;
   robot.compass = equipment.compass;
   robot.range_sensor = equipment.range_sensor;
-  robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  robot.noise = kNoiseFree;
   DrivingStyle style;
   style.standing = 0.0;
   SimulatedDrive drive = simulate_drive(mesh, tours.walk, style, robot, seed);

@@ -26,8 +26,6 @@
 namespace trussmap {
 namespace {
 
-constexpr SensorNoise kQuiet = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-
 struct World {
   SensorNoise noise;
   bool compass = false;
@@ -70,7 +68,7 @@ class Exactly : public ::testing::TestWithParam<Given> {};
 
 TEST_P(Exactly, WithoutNoiseAFitFindsTheEffectAndLeavesNothing) {
   World world;
-  world.noise = kQuiet;
+  world.noise = kNoiseFree;
   const Effect effect = catalogue_effect(GetParam().name, GetParam().coefficients);
   const Recording recording = simulated(world, {effect}, 4).recording;
   const ModelFit fit = fit_model({recording}, model_with({GetParam().name}));
@@ -102,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// What a column says against the residuals of a recording whose yaw rates are other.
 TEST(Gyro, ColumnsAreThoseOfOtherReadings) {
   World world;
-  world.noise = kQuiet;
+  world.noise = kNoiseFree;
   const Model model;
   const Recording exact = simulated(world, {}, 7).recording;
   const auto taken = [&](double bias, double scale) {
@@ -296,7 +294,6 @@ TEST(Gyro, AMissingBiasIsNamed) {
   }
 }
 
-/// A heading that a robot integrated from its gyro, given as a compass.
 /// Three tours without rests, with a compass.
 Recording toured(double bias, double walk, std::uint64_t seed) {
   const Mesh mesh = mesh_of_lines({0.0, 5.5, 10.0, 15.5}, {0.0, 4.5, 10.0, 14.5});
@@ -311,7 +308,7 @@ Recording toured(double bias, double walk, std::uint64_t seed) {
   return simulate_drive(mesh, tours.walk, {}, robot, seed, effects).recording;
 }
 
-int named(double bias, double walk, std::uint64_t first, std::uint64_t count) {
+int biases_named(double bias, double walk, std::uint64_t first, std::uint64_t count) {
   Model model;
   model.noise.gyro = 0.0005;
   int named = 0;
@@ -324,14 +321,15 @@ int named(double bias, double walk, std::uint64_t first, std::uint64_t count) {
 /// Three times what is detectable, where a bias that walks would explain the readings almost as
 /// well. Seeds 600 to 607.
 TEST(Gyro, ABiasIsNamedWhereAWalkCouldStandForIt) {
-  EXPECT_GE(named(0.00023, 0.0, 600, 8), 6);
+  EXPECT_GE(biases_named(0.00023, 0.0, 600, 8), 6);
 }
 
 /// A bias that does walk, from 0. Seeds 700 to 707.
 TEST(Gyro, AWalkIsNotOftenCalledABias) {
-  EXPECT_LE(named(0.0, 1e-5, 700, 8), 3);
+  EXPECT_LE(biases_named(0.0, 1e-5, 700, 8), 3);
 }
 
+/// A heading that a robot integrated from its gyro, given as a compass.
 TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
   World world;
   world.noise.gyro = 0.003;

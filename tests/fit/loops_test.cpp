@@ -17,9 +17,9 @@
 namespace trussmap {
 namespace {
 
-using testing::add_fit;
+using testing::expect_right;
+using testing::fit_statistics;
 using testing::FitStatistics;
-using testing::hold_the_truth;
 using testing::is_mean_of_right_ones;
 using testing::path_error;
 using testing::placed_drive;
@@ -156,35 +156,21 @@ TEST(Loops, GoWithLandmarksAndFixes) {
 
 /// As the simulator draws them; wheels are further apart than believed, or turns misjudged.
 FitStatistics statistics(int drives, std::uint64_t first_seed) {
-  FitStatistics found;
-  for (int k = 0; k < drives; ++k) {
-    PlacedOptions options;
-    options.compass = k % 2 == 0;
-    options.loops = true;
-    options.tours = 2;
-    options.effects = {catalogue_effect("wheelbase", {0.02})};
-    const PlacedDrive drive = placed_drive(options, first_seed + static_cast<std::uint64_t>(k));
-    Model model = drive.model;
-    model.effects = options.effects;
-    add_fit(found, drive.recording, model, drives);
-  }
-  return found;
+  PlacedOptions options;
+  options.loops = true;
+  options.tours = 2;
+  options.effects = {catalogue_effect("wheelbase", {0.02})};
+  return fit_statistics(options, drives, first_seed);
 }
 
 /// 30 drives, seeds 400 to 429.
 TEST(Loops, TellAnEffectWithinItsError) {
-  const FitStatistics found = statistics(30, 400);
-  EXPECT_TRUE(is_mean_of_right_ones(found.mean, 30, found.dof)) << found.mean;
-  EXPECT_TRUE(hold_the_truth(found)) << found.inside;
+  expect_right(statistics(30, 400), 30);
 }
 
 /// 500 drives, seeds 2000 to 2499.
 TEST(SlowLoops, ChiSquareAndIntervalsAreThoseOfTheNoise) {
-  const FitStatistics found = statistics(500, 2000);
-  RecordProperty("mean", std::to_string(found.mean));
-  RecordProperty("inside", found.inside);
-  EXPECT_TRUE(is_mean_of_right_ones(found.mean, 500, found.dof)) << found.mean;
-  EXPECT_TRUE(hold_the_truth(found)) << found.inside;
+  expect_right(statistics(500, 2000), 500);
 }
 
 TEST(Loops, MustLieInTheDrive) {

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Drives of the simulated robot that nothing but fixes or loops ties to a place.
+// Drives of the simulated robot that stands on no landmark: fixes, loops, or landmarks seen by
+// ranges or bearings alone tie it to a place. What fits of many of them come to.
 #pragma once
 
 #include "estimation/simulated_recordings.hpp"
@@ -10,8 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <random>
+#include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace trussmap::testing {
 
@@ -22,6 +28,8 @@ struct PlacedOptions {
   double fix_sd = 0.05;   ///< m
   bool landmarks = false;
   bool loops = false;
+  /// Of surveyed landmarks that it does not stand on; nothing: it sees none.
+  std::optional<SensorParts> sees = std::nullopt;
   std::vector<Effect> effects = {};
   int tours = 1;
 };
@@ -41,9 +49,11 @@ inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed
   robot.fix_rate = options.fix_rate;
   robot.noise.fix = options.fix_sd;
   robot.loops = options.loops;
+  robot.range_sensor = options.sees.has_value();
+  robot.sensor_parts = options.sees.value_or(SensorParts::both);
   DrivingStyle style;
   if (!options.noise) {
-    robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    robot.noise = kNoiseFree;
     style.standing = 0.0;
   }
   SimulatedDrive drive =
@@ -51,8 +61,10 @@ inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed
   PlacedDrive result;
   result.recording = std::move(drive.recording);
   result.motion = std::move(drive.motion);
-  result.recording.survey.clear();
-  if (!options.landmarks) result.recording.sightings.clear();
+  if (!options.sees) result.recording.survey.clear();
+  if (!options.landmarks) {
+    std::erase_if(result.recording.sightings, [](const Sighting& one) { return one.standing(); });
+  }
   result.model.noise.fix = options.fix_sd;
   return result;
 }
@@ -92,6 +104,20 @@ inline void add_fit(FitStatistics& found, const Recording& recording, Model mode
   }
 }
 
+/// With a compass, without, with, ...; each has a seed of its own from the first on, and its model
+/// the effects that act.
+inline FitStatistics fit_statistics(PlacedOptions options, int drives, std::uint64_t first_seed) {
+  FitStatistics found;
+  for (int k = 0; k < drives; ++k) {
+    options.compass = k % 2 == 0;
+    const PlacedDrive drive = placed_drive(options, first_seed + static_cast<std::uint64_t>(k));
+    Model model = drive.model;
+    model.effects = options.effects;
+    add_fit(found, drive.recording, model, drives);
+  }
+  return found;
+}
+
 /// 95 % of the intervals within four standard deviations of chance.
 inline bool hold_the_truth(const FitStatistics& found) {
   const double n = found.intervals;
@@ -101,6 +127,14 @@ inline bool hold_the_truth(const FitStatistics& found) {
 /// Within so many standard deviations of its mean, a mean of independent chi^2/dof.
 inline bool is_mean_of_right_ones(double mean, int count, int dof, double sds = 4.0) {
   return std::abs(mean - 1.0) < sds * std::sqrt(2.0 / dof / count);
+}
+
+/// Both, of so many drives.
+inline void expect_right(const FitStatistics& found, int drives) {
+  ::testing::Test::RecordProperty("mean", std::to_string(found.mean));
+  ::testing::Test::RecordProperty("inside", found.inside);
+  EXPECT_TRUE(is_mean_of_right_ones(found.mean, drives, found.dof)) << found.mean;
+  EXPECT_TRUE(hold_the_truth(found)) << found.inside << " of " << found.intervals;
 }
 
 }  // namespace trussmap::testing

@@ -94,7 +94,7 @@ World simulate(const Case& one, Rates rates) {
   style.overrun = 0.4;
   style.ramp = 1.0;
   world.robot.range_sensor = true;
-  world.robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  world.robot.noise = kNoiseFree;
   world.effect = catalogue_effect(one.name, one.values);
   world.drive = simulate_drive(world.mesh, walk, style, world.robot, 3, {{world.effect}, rates});
   return world;
@@ -277,7 +277,7 @@ TEST(EffectPhysics, TwoEffectsActSideBySide) {
   const Mesh mesh = even_mesh({3, 3}, 5.0);
   const std::vector<int> walk = make_tours(mesh, WalkKind::euler, 1, random).walk;
   WheeledRobot robot;
-  robot.noise = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  robot.noise = kNoiseFree;
   DrivingStyle style;
   style.standing = 0.0;
   const SimulatedDrive drive =

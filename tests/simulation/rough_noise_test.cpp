@@ -28,8 +28,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr SensorNoise kQuiet = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-
 /// Without rests: there a wheel has no travel, and no error.
 struct World {
   Mesh mesh;
@@ -57,7 +55,7 @@ SimulatedDrive simulate(const World& w, std::uint64_t seed, const std::string& r
 
 /// What the sensors would say without noise, and without its roughness.
 Drive sensed(World w, std::uint64_t seed) {
-  w.robot.noise = kQuiet;
+  w.robot.noise = kNoiseFree;
   return simulate(w, seed).recording.drive;
 }
 
@@ -313,7 +311,7 @@ TEST(RoughNoise, FloorMisreadsEachLegByFactorsOfItsOwn) {
   for (const double overrun : {0.0, 0.4}) {
     World w = world(100);
     w.style.overrun = overrun;  // a leg begins where the landmark is seen, not where it is left
-    w.robot.noise = kQuiet;
+    w.robot.noise = kNoiseFree;
     const SimulatedDrive rough = simulate(w, 7, "floor");
     const MeanAndDifference found = of_wheels(rough.recording.drive);
     const MeanAndDifference exact = of_wheels(sensed(w, 7));
@@ -344,7 +342,7 @@ TEST(RoughNoise, FloorMisreadsEachLegByFactorsOfItsOwn) {
 TEST(RoughNoise, FloorComesBesideAllOtherNoise) {
   const World w = world(1);
   World quiet = w;
-  quiet.robot.noise = kQuiet;
+  quiet.robot.noise = kNoiseFree;
   const Drive truth = sensed(w, 8);
   const Drive misread = simulate(quiet, 8, "floor").recording.drive;
   const auto expect_beside = [&](const std::string& without, const std::string& with) {

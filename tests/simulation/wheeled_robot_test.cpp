@@ -15,8 +15,6 @@
 namespace trussmap {
 namespace {
 
-constexpr SensorNoise kQuiet = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-
 struct Field {
   Mesh mesh;
   std::vector<int> walk;
@@ -56,7 +54,7 @@ Pose roll(Pose pose, double left, double right, double wheelbase) {
 
 TEST(WheeledRobot, WithoutNoiseItsWheelsLeadToEveryLandmark) {
   Field f = field(2);
-  f.robot.noise = kQuiet;
+  f.robot.noise = kNoiseFree;
   f.style.standing = 0.0;
   const Recording recording = simulate(f, 1).recording;
   const Drive& drive = recording.drive;
@@ -99,7 +97,7 @@ TEST(WheeledRobot, WheelNoiseGrowsWithTheTravel) {
   f.robot.noise.left = 0.002;
   f.robot.noise.right = 0.006;
   const Drive noisy = simulate(f, 3).recording.drive;
-  f.robot.noise = kQuiet;
+  f.robot.noise = kNoiseFree;
   const Drive quiet = simulate(f, 3).recording.drive;
   ASSERT_EQ(noisy.rows(), quiet.rows());
   const auto expect_variance = [](const std::vector<double>& found,
