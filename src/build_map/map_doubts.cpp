@@ -334,6 +334,8 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);
   tell_left_out(best.fit, built.warnings);
+  const std::vector<std::string>& mirrors = best.fit.adjustment.mirrors;
+  built.warnings.insert(built.warnings.end(), mirrors.begin(), mirrors.end());
   doubt_shape(built, best);
   doubt_against_survey(built);
 }

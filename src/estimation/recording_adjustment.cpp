@@ -122,7 +122,8 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
 
 /// Landmarks of which there are ranges alone, all from about one line: they may as well lie at
 /// their mirror images.
-void warn_of_mirrors(const RecordingProblem& problem, RecordingAdjustment& result) {
+std::vector<std::string> mirrors_of(const RecordingProblem& problem,
+                                    const RecordingAdjustment& result) {
   std::vector<std::vector<RangeReading>> readings(problem.landmarks.size());
   std::vector<bool> told(problem.landmarks.size(), false);
   const std::vector<double> weights = weights_without(result.left_out, problem.measurements.size());
@@ -130,10 +131,12 @@ void warn_of_mirrors(const RecordingProblem& problem, RecordingAdjustment& resul
     const Measurement& one = problem.measurements[k];
     if (one.kind == MeasurementKind::survey) told[idx(one.from)] = true;
     if (!is_sighting(one.kind) || weights[k] == 0.0) continue;
-    if (locates(one)) told[idx(one.to)] = true;
+    if (locates(one) || one.kind == MeasurementKind::direction) told[idx(one.to)] = true;
+    if (told[idx(one.to)]) continue;
     const Pose& pose = result.state.poses[idx(one.from - problem.landmark_count())];
     readings[idx(one.to)].push_back({pose.position(), one.value[0], 1.0 / one.whitener(0, 0)});
   }
+  std::vector<std::string> mirrors;
   for (std::size_t k = 0; k < readings.size(); ++k) {
     if (told[k]) continue;
     const std::optional<Multilateration> found = multilaterate(readings[k]);
@@ -141,11 +144,12 @@ void warn_of_mirrors(const RecordingProblem& problem, RecordingAdjustment& resul
     const bool first = (found->place - result.state.landmarks[k]).norm() <
                        (*found->mirror - result.state.landmarks[k]).norm();
     const Vector2 other = first ? *found->mirror : found->place;
-    result.warnings.push_back(joined(
-        "landmark ", problem.landmarks[k],
-        " has ranges from about one line alone: it may as well lie at (", fixed_text(other.x(), 2),
-        ", ", fixed_text(other.y(), 2), ") m; drive to another side of it"));
+    mirrors.push_back(joined("landmark ", problem.landmarks[k],
+                             " has ranges from about one line alone: it may as well lie at (",
+                             fixed_text(other.x(), 2), ", ", fixed_text(other.y(), 2),
+                             ") m; drive to another side of it"));
   }
+  return mirrors;
 }
 
 /// In a word: what was left out.
@@ -238,7 +242,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   if (options.landmark_uncertainties) take_uncertainties(system, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
   add_warnings(problem, result);
-  warn_of_mirrors(problem, result);
+  result.mirrors = mirrors_of(problem, result);
   return result;
 }
 

@@ -60,7 +60,8 @@ struct RecordingAdjustment {
   std::vector<int> left_out;  ///< measurements, ascending
   double gate_widened =
       1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  ///< of the fit
+  std::vector<std::string> mirrors;   ///< warnings of landmarks that may lie at their mirror images
 };
 
 /// Coefficients that the motion cannot determine.

@@ -79,6 +79,8 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
     fit.left_out.push_back(left_out_text(state, state.problem.measurements[idx(k)]));
   }
   fit.warnings = state.adjustment.warnings;
+  fit.warnings.insert(fit.warnings.end(), state.adjustment.mirrors.begin(),
+                      state.adjustment.mirrors.end());
   fit.state = std::make_shared<const FitState>(std::move(state));
   return fit;
 }

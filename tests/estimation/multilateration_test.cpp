@@ -7,6 +7,7 @@
 #include "estimation/simulated_recordings.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/fit_model.hpp"
+#include "trussmap/simulation.hpp"
 #include "trussmap/survey_comparison.hpp"
 
 #include <algorithm>
@@ -126,8 +127,9 @@ TEST(RangesAlone, MakeAMap) {
   EXPECT_NEAR(chi2 / dof, 1.0, 4.0 * std::sqrt(2.0 / dof));
 }
 
-/// A drive straight past a beacon.
-TEST(RangesAlone, OneLineIsSaid) {
+/// A drive straight past a beacon 5 m to its left, and two landmarks that range and
+/// bearing place.
+Recording past_a_beacon(SensorParts parts) {
   Recording recording;
   recording.name = "past a beacon";
   for (int k = 1; k <= 100; ++k) {
@@ -135,21 +137,39 @@ TEST(RangesAlone, OneLineIsSaid) {
     recording.drive.left.push_back(0.2);
     recording.drive.right.push_back(0.2);
     if (k % 4 != 0) continue;
-    const Vector2 off = Vector2(9.0, 5.0) - Vector2(0.2 * k, 0.0);
-    recording.sightings.push_back({0.5 * k, "beacon", off.norm(), kAbsent});
-    const Vector2 other = Vector2(3.0, 0.0) - Vector2(0.2 * k, 0.0);
-    recording.sightings.push_back({0.5 * k, "stood on", kAbsent, kAbsent});
-    recording.sightings.back().range = other.norm();
-    recording.sightings.back().bearing = direction(other);
+    const Vector2 robot(0.2 * k, 0.0);
+    const Vector2 beacon = Vector2(9.0, 5.0) - robot;
+    recording.sightings.push_back(
+        {0.5 * k, "beacon", parts != SensorParts::bearing_alone ? beacon.norm() : kAbsent,
+         parts != SensorParts::range_alone ? direction(beacon) : kAbsent});
+    for (const double x : {3.0, 16.0}) {
+      const Vector2 other = Vector2(x, 2.0) - robot;
+      recording.sightings.push_back(
+          {0.5 * k, x < 9.0 ? "first" : "second", other.norm(), direction(other)});
+    }
   }
-  const ModelFit fit = fit_model({recording}, Model{});
-  bool said = false;
-  for (const std::string& one : fit.warnings) {
-    said = said || one.find(
-                       "landmark beacon has ranges from about one line alone: it may as well "
-                       "lie at (") == 0;
+  return recording;
+}
+
+bool say_the_mirror(const std::vector<std::string>& warnings) {
+  return std::any_of(warnings.begin(), warnings.end(), [](const std::string& one) {
+    return one.starts_with(
+        "landmark beacon has ranges from about one line alone: it may as well lie at (");
+  });
+}
+
+TEST(RangesAlone, OneLineIsSaid) {
+  const Recording recording = past_a_beacon(SensorParts::range_alone);
+  EXPECT_TRUE(say_the_mirror(fit_model({recording}, Model{}).warnings));
+  EXPECT_TRUE(say_the_mirror(build_map({recording}, Model{}).warnings));
+}
+
+TEST(RangesAlone, ABearingTellsTheSide) {
+  for (const SensorParts parts : {SensorParts::both, SensorParts::bearing_alone}) {
+    const Recording recording = past_a_beacon(parts);
+    EXPECT_FALSE(say_the_mirror(fit_model({recording}, Model{}).warnings));
+    EXPECT_FALSE(say_the_mirror(build_map({recording}, Model{}).warnings));
   }
-  EXPECT_TRUE(said);
 }
 
 }  // namespace
