@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -334,8 +335,8 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);
   tell_left_out(best.fit, built.warnings);
-  const std::vector<std::string>& mirrors = best.fit.adjustment.mirrors;
-  built.warnings.insert(built.warnings.end(), mirrors.begin(), mirrors.end());
+  std::ranges::move(mirror_warnings(best.fit.problem, best.fit.adjustment),
+                    std::back_inserter(built.warnings));
   doubt_shape(built, best);
   doubt_against_survey(built);
 }

@@ -120,38 +120,6 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
   return look_again(system, problem, std::move(before));
 }
 
-/// Landmarks of which there are ranges alone, all from about one line: they may as well lie at
-/// their mirror images.
-std::vector<std::string> mirrors_of(const RecordingProblem& problem,
-                                    const RecordingAdjustment& result) {
-  std::vector<std::vector<RangeReading>> readings(problem.landmarks.size());
-  std::vector<bool> told(problem.landmarks.size(), false);
-  const std::vector<double> weights = weights_without(result.left_out, problem.measurements.size());
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::survey) told[idx(one.from)] = true;
-    if (!is_sighting(one.kind) || weights[k] == 0.0) continue;
-    if (locates(one) || one.kind == MeasurementKind::direction) told[idx(one.to)] = true;
-    if (told[idx(one.to)]) continue;
-    const Pose& pose = result.state.poses[idx(one.from - problem.landmark_count())];
-    readings[idx(one.to)].push_back({pose.position(), one.value[0], 1.0 / one.whitener(0, 0)});
-  }
-  std::vector<std::string> mirrors;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    if (told[k]) continue;
-    const std::optional<Multilateration> found = multilaterate(readings[k]);
-    if (!found || !found->mirror) continue;
-    const bool first = (found->place - result.state.landmarks[k]).norm() <
-                       (*found->mirror - result.state.landmarks[k]).norm();
-    const Vector2 other = first ? *found->mirror : found->place;
-    mirrors.push_back(joined("landmark ", problem.landmarks[k],
-                             " has ranges from about one line alone: it may as well lie at (",
-                             fixed_text(other.x(), 2), ", ", fixed_text(other.y(), 2),
-                             ") m; drive to another side of it"));
-  }
-  return mirrors;
-}
-
 /// In a word: what was left out.
 std::string kinds_left_out(const RecordingProblem& problem, const std::vector<int>& left_out) {
   const auto any = [&](const auto& is) {
@@ -242,7 +210,6 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   if (options.landmark_uncertainties) take_uncertainties(system, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
   add_warnings(problem, result);
-  result.mirrors = mirrors_of(problem, result);
   return result;
 }
 
@@ -262,6 +229,40 @@ std::vector<double> weights_without(const std::vector<int>& left_out, std::size_
   std::vector<double> weights(measurements, 1.0);
   for (const int k : left_out) weights[idx(k)] = 0.0;
   return weights;
+}
+
+std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
+                                         const RecordingAdjustment& adjustment) {
+  std::vector<std::vector<RangeReading>> readings(problem.landmarks.size());
+  std::vector<bool> told(problem.landmarks.size(), false);
+  const std::vector<double> weights =
+      weights_without(adjustment.left_out, problem.measurements.size());
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (one.kind == MeasurementKind::survey) told[idx(one.from)] = true;
+    if (!is_sighting(one.kind) || weights[k] == 0.0) continue;
+    const bool range_alone = one.kind == MeasurementKind::view && one.rows == 1;
+    if (!range_alone) {
+      told[idx(one.to)] = true;
+      continue;
+    }
+    const Pose& pose = adjustment.state.poses[idx(one.from - problem.landmark_count())];
+    readings[idx(one.to)].push_back({pose.position(), one.value[0], 1.0 / one.whitener(0, 0)});
+  }
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    if (told[k]) continue;
+    const std::optional<Multilateration> found = multilaterate(readings[k]);
+    if (!found || !found->mirror) continue;
+    const bool first = (found->place - adjustment.state.landmarks[k]).norm() <
+                       (*found->mirror - adjustment.state.landmarks[k]).norm();
+    const Vector2 other = first ? *found->mirror : found->place;
+    warnings.push_back(joined("landmark ", problem.landmarks[k],
+                              " has ranges from about one line alone: it may as well lie at (",
+                              fixed_text(other.x(), 2), ", ", fixed_text(other.y(), 2),
+                              ") m; drive to another side of it"));
+  }
+  return warnings;
 }
 
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,

@@ -60,8 +60,7 @@ struct RecordingAdjustment {
   std::vector<int> left_out;  ///< measurements, ascending
   double gate_widened =
       1.0;  ///< by this factor (in sds), lest too many are left out; infinity: none
-  std::vector<std::string> warnings;  ///< of the fit
-  std::vector<std::string> mirrors;   ///< warnings of landmarks that may lie at their mirror images
+  std::vector<std::string> warnings;
 };
 
 /// Coefficients that the motion cannot determine.
@@ -91,6 +90,11 @@ class UndeterminedError : public SolveError {
 /// A weight per measurement: 0 for those left out, 1 for the others.
 [[nodiscard]] std::vector<double> weights_without(const std::vector<int>& left_out,
                                                   std::size_t measurements);
+
+/// In words: landmarks of which there are ranges alone, all from about one line, so that they may
+/// as well lie at their mirror images.
+[[nodiscard]] std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
+                                                       const RecordingAdjustment& adjustment);
 
 /// Fills in landmark_covariances and landmark_sds of an adjustment without them.
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,

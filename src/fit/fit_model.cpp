@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace trussmap {
@@ -79,8 +80,8 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
     fit.left_out.push_back(left_out_text(state, state.problem.measurements[idx(k)]));
   }
   fit.warnings = state.adjustment.warnings;
-  fit.warnings.insert(fit.warnings.end(), state.adjustment.mirrors.begin(),
-                      state.adjustment.mirrors.end());
+  std::ranges::move(mirror_warnings(state.problem, state.adjustment),
+                    std::back_inserter(fit.warnings));
   fit.state = std::make_shared<const FitState>(std::move(state));
   return fit;
 }
