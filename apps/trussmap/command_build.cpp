@@ -111,8 +111,9 @@ void run_build(const BuildOptions& options) {
   if (!options.store.empty()) return run_store(options);
   Progress progress({{"reading", 30}, {"building the map", 70}});
   progress.next();
-  const std::vector<Recording> recordings = read_recordings(options.recordings);
+  std::vector<Recording> recordings = read_recordings(options.recordings);
   const Model model = read_model(options.model, recordings);
+  take_wheels(recordings, model.robot);
   warn_of_mistakes(recordings, model, options.model);
   progress.next();
   const BuiltMap built = [&] {

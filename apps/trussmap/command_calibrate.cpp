@@ -10,6 +10,7 @@
 #include "recording_warnings.hpp"
 #include "terminal.hpp"
 #include "trussmap/calibrate.hpp"
+#include "trussmap/channel.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
@@ -107,6 +108,13 @@ ordered_json json(const WheelCalibration& found, const CalibrationValidation& he
   add("E_s", found.scale);
   add("k_left", found.noise_left);
   add("k_right", found.noise_right);
+  if (!found.constants.empty()) {
+    ordered_json constants;
+    for (const DriveConstant& one : found.constants) {
+      constants[std::string(name_of(one.channel))] = {{"g", one.g.value}, {"sd", one.g.sd}};
+    }
+    out["constants"] = constants;
+  }
   out["chi2"] = found.chi2;
   out["dof"] = found.dof;
   out["heldout"] = json(held);
@@ -212,6 +220,13 @@ std::string text(const WheelCalibration& found, const CalibrationValidation& hel
   row("E_s  true / measured travel", found.scale, "");
   row("k    left wheel's noise", found.noise_left, "m^1/2");
   row("k    right wheel's noise", found.noise_right, "m^1/2");
+  for (const DriveConstant& one : found.constants) {
+    const std::string name(facts_of(one.channel).does_what);
+    const std::string unit(facts_of(one.channel).unit);
+    const double size = unit.empty() ? 100.0 : 1.0;
+    const QuantityText cells = quantity_text(size * one.g.value, size * one.g.sd);
+    table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
+  }
   out += "\n" + table_text(table);
   out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n",
                      found.dof > 0 ? found.chi2 / found.dof : 0.0, found.dof);
@@ -230,9 +245,11 @@ std::string text(const WheelCalibration& found, const CalibrationValidation& hel
 void run_calibrate(const CalibrateOptions& options) {
   Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
   progress.next();
-  const std::vector<Recording> recordings = read_recordings(options.recordings);
-  const std::vector<Recording> test_drives = read_recordings(options.test);
+  std::vector<Recording> recordings = read_recordings(options.recordings);
+  std::vector<Recording> test_drives = read_recordings(options.test);
   const Model model = read_model(options.model, recordings);
+  take_wheels(recordings, model.robot);
+  take_wheels(test_drives, model.robot);
   warn_of_mistakes(recordings, model, options.model);
   WheelCalibration found;
   CalibrationValidation held;

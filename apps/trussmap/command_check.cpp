@@ -40,9 +40,10 @@ std::string json_text(const std::vector<CheckFinding>& findings) {
 }
 
 void run_check(const CheckCommand& options) {
-  const std::vector<Recording> recordings = read_recordings(options.recordings);
+  std::vector<Recording> recordings = read_recordings(options.recordings);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
+  take_wheels(recordings, model ? model->robot : Robot());
   const std::vector<CheckFinding> findings =
       check_recordings(recordings, model ? &*model : nullptr, options.model);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});

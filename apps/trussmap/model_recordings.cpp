@@ -114,10 +114,15 @@ std::vector<Recording> read_recordings(const std::vector<std::string>& folders) 
   return result;
 }
 
+void take_wheels(std::vector<Recording>& recordings, const Robot& robot) {
+  for (Recording& one : recordings) one = with_wheels(std::move(one), robot);
+}
+
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   ModelRecordings result;
   result.recordings = read_recordings(options.recordings);
   result.model = read_model(options.model, result.recordings);
+  take_wheels(result.recordings, result.model.robot);
   warn_of_mistakes(result.recordings, result.model, options.model);
   take_frames(result, options);
   return result;

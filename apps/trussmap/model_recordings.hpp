@@ -42,6 +42,8 @@ struct ModelRecordings {
 
 /// One recording per folder, in their order. Throws InputError.
 [[nodiscard]] std::vector<Recording> read_recordings(const std::vector<std::string>& folders);
+/// Each as with_wheels makes it.
+void take_wheels(std::vector<Recording>& recordings, const Robot& robot);
 
 /// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp).
 /// Throws InputError, with the model file's line where an effect cannot be applied.

@@ -100,8 +100,9 @@ void print_session(const Recording& recording, const BuiltMap& built) {
 }  // namespace
 
 void add_sessions(const StoreSessions& options) {
-  const std::vector<Recording> recordings = read_recordings(options.recordings);
+  std::vector<Recording> recordings = read_recordings(options.recordings);
   const Model model = read_model(options.model, recordings);
+  take_wheels(recordings, model.robot);
   warn_of_mistakes(recordings, model, options.model);
   MapStore store = opened(options);
   json sessions = json::array();

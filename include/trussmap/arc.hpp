@@ -49,6 +49,10 @@ struct ArcNoise {
   double along = 0.0;    ///< variance of the path length, m^2
   double heading = 0.0;  ///< variance of the turn, rad^2
   double shared = 0.0;   ///< their covariance, m rad
+  // Of wheels that move the body to the side as well:
+  double aside = 0.0;          ///< variance of the way to the left, m^2
+  double along_aside = 0.0;    ///< its covariance with the path length, m^2
+  double heading_aside = 0.0;  ///< and with the turn, m rad
 };
 
 /// ArcNoise of the two wheels.
@@ -58,6 +62,12 @@ struct ArcNoise {
 /// Covariance in the axes of the arc's start, of an arc of signed length `path` (m) that turns by
 /// `turn` (rad), when the noise arises evenly along it.
 [[nodiscard]] Matrix3 arc_covariance(double path, double turn, const ArcNoise& noise);
+
+/// The same of a body that moves to the side as well, as on omnidirectional wheels: `way` (m) ahead
+/// and to the left, in the body's own axes, evenly as it turns.
+[[nodiscard]] Matrix3 slanting_covariance(const Vector2& way, double turn, const ArcNoise& noise);
+/// Its displacement, exact.
+[[nodiscard]] Pose slanting_displacement(const Vector2& way, double turn);
 
 /// Displacement and covariance of one arc.
 [[nodiscard]] Motion arc_motion(const WheelTravel& travel, double wheelbase,

@@ -9,6 +9,10 @@
 //   E_s   true over measured travel          effect `wheels`,     g = E_s - 1                 -
 //   k     wheel noise: variance of a wheel's travel = k^2 |travel|                      m^(1/2)
 //
+// Of drives with other wheels than a left and a right one, each drive's own constants instead: g of
+// every wheel (channel wheel1 ...) and of `turn`, or of `steer`, `turn` and `wheels` where a wheel
+// is steered. Their wheels' noise stays as the model states it.
+//
 // E_d, E_b and E_s are parameters of the adjustment, beside poses and landmarks; rows are corrected
 // and fitted again until the parameters no longer change. k_L and k_R maximise the restricted
 // likelihood (Patterson & Thompson 1971), which does not mistake the fit's degrees of freedom for
@@ -66,12 +70,19 @@ struct TruthAlignment {
   std::map<int, TruthClock> clocks;  ///< by session; none where no truth was used
 };
 
+/// A constant of a drive with other wheels than two: g of its channel, with the shape 1.
+struct DriveConstant {
+  Channel channel = Channel::turn;
+  Calibrated g;  ///< in the channel's unit; 0: as the model has it
+};
+
 struct WheelCalibration {
   std::optional<Calibrated> diameter_ratio;   ///< E_d; none: the motion does not determine it
   std::optional<Calibrated> wheelbase_ratio;  ///< E_b
   std::optional<Calibrated> scale;            ///< E_s
   std::optional<Calibrated> noise_left;       ///< k_L, m^(1/2)
   std::optional<Calibrated> noise_right;      ///< k_R, m^(1/2)
+  std::vector<DriveConstant> constants;       ///< of other drives than differential, instead
   Model model;                                ///< the given one with all of that in it
   TruthAlignment truth;
   double chi2 = 0.0;
@@ -83,7 +94,7 @@ struct WheelCalibration {
 };
 
 /// Effects of `model` other than the three are taken out of the recordings first. Throws SolveError
-/// where nothing can be determined or E_d, E_b or E_s is not positive, std::invalid_argument on
+/// where nothing can be determined or a ratio such as E_b is not positive, std::invalid_argument on
 /// effects that cannot be applied.
 [[nodiscard]] WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings,
                                                 const Model& model,

@@ -12,11 +12,15 @@
 //   delay             stamped g late                          truth_heading   truth's heading + g
 //   gyro              yaw rate read = rate + g     gyro_scale             gyro's turn (1 + g)
 //   antenna, antenna_left   the point of the robot that a fix has
+//   sideways          travel to the left (1 + g)   wheel1 ... wheel6     that wheel's (1 + g)
+//   steer             steering angle + g, to       steer_gain            steering angle (1 + g), to
+//                     first order                                        first order
 //   fix_delay         fixes are stamped g late                fix_x, fix_y    fix = position + g
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -49,8 +53,20 @@ enum class Channel {
   antenna_left,
   fix_delay,
   fix_x,
-  fix_y
+  fix_y,
+  sideways,
+  wheel1,
+  wheel2,
+  wheel3,
+  wheel4,
+  wheel5,
+  wheel6,
+  steer,
+  steer_gain
 };
+
+/// wheel1 is 0, wheel6 is 5; nothing of other channels.
+[[nodiscard]] std::optional<std::size_t> wheel_of(Channel channel);
 
 struct ChannelFacts {
   Channel channel;

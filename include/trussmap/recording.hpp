@@ -5,7 +5,8 @@
 // receiver had it, and what somebody measured independently. Plain data, exactly as in the CSV
 // streams.
 //
-//   drive      one row per odometry interval, which ends at t            columns, one value a row
+//   drive      one row per odometry interval, which ends at t            columns, one value a row;
+//              of two wheels, or of what with_wheels (model.hpp) makes of other wheels
 //   sightings  at time t the robot recognised a landmark
 //   fixes      at time t a receiver (GNSS, UWB tag) had the robot's antenna there
 //   loops      the pose at t2 as the robot measured it from its pose at t (scan matching)
@@ -18,6 +19,8 @@
 // not.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -42,6 +45,17 @@ struct GyroShare {
   double variance = 0.0;  ///< rad^2, of the gyro's turn; infinite without a reading
   double along = 0.0;     ///< m of travel that a radian of excess adds
   double turn = 0.0;      ///< share of the excess that is taken as turn, from 0 to 1
+  double sideways = 0.0;  ///< m to the left, the wheels' own
+  double aside = 0.0;     ///< m to the left that a radian of excess adds
+};
+
+/// A wheel, or the steering, of a drive that is not simply a left and a right wheel.
+struct WheelColumn {
+  std::string name;             ///< its column of drive.csv
+  bool steers = false;          ///< an angle, not a travel
+  std::vector<double> reading;  ///< m, signed travel; rad where it steers
+  /// d(forward [m], sideways [m, to the left], turn [rad])/d(reading), per row.
+  std::vector<std::array<double, 3>> by_reading;
 };
 
 struct Drive {
@@ -55,6 +69,11 @@ struct Drive {
   /// Left empty by who makes a drive. Where the gyro was taken in, one per row, and `left` and
   /// `right` are what wheels and gyro say together.
   std::vector<GyroShare> gyro = {};
+  /// m to the left that the body moves in the row; empty = 0. With two wheels, always.
+  std::vector<double> sideways = {};
+  /// Empty of two wheels. Else the robot's own, and `left` and `right` are the travels that two
+  /// wheels at `wheelbase` would show.
+  std::vector<WheelColumn> wheels = {};
 
   [[nodiscard]] std::size_t rows() const { return t.size(); }
   [[nodiscard]] bool has_compass() const { return !heading.empty(); }
@@ -65,6 +84,23 @@ struct Drive {
   }
   [[nodiscard]] double wheel_right(std::size_t row) const {
     return gyro.empty() ? right[row] : gyro[row].right;
+  }
+  /// m to the left.
+  [[nodiscard]] double slip(std::size_t row) const {
+    return sideways.empty() ? 0.0 : sideways[row];
+  }
+  /// m, how far the body moves in the row, forwards, backwards or to the side.
+  [[nodiscard]] double way(std::size_t row) const {
+    const double ahead = std::abs(0.5 * (left[row] + right[row]));
+    return sideways.empty() ? ahead : std::hypot(ahead, sideways[row]);
+  }
+  /// The wheels' own, m to the left.
+  [[nodiscard]] double wheel_slip(std::size_t row) const {
+    return gyro.empty() ? slip(row) : gyro[row].sideways;
+  }
+  /// Whether no wheel moves in the row.
+  [[nodiscard]] bool rests(std::size_t row) const {
+    return wheel_left(row) == 0.0 && wheel_right(row) == 0.0 && wheel_slip(row) == 0.0;
   }
   /// Start of the first interval: it is as long as the second.
   [[nodiscard]] double start() const { return rows() > 1 ? t[0] - (t[1] - t[0]) : t[0]; }

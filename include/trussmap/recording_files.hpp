@@ -73,13 +73,18 @@ struct MrclamRecording {
 [[nodiscard]] MrclamRecording read_mrclam(const std::filesystem::path& prefix);
 
 // ----------------------------------------
-// OptiOdom runs (Sousa, Petry, Costa & Moreira, 2022) of the differential robot as recordings.
+// OptiOdom runs (Sousa, Petry, Costa & Moreira, 2022) as recordings.
 //
-//   SET_run-NN.csv   time [s], x, y [m], heading [rad], ticks of the right wheel, of the left wheel
-//                    in the cycle that ends then; no header; plain or .xz
-//   SET_metadata.csv beside it: type (diff), ngear, encRes (counts per turn of the motor), ...
+//   SET_run-NN.csv   time [s], x, y [m], heading [rad], and of the cycle that ends then
+//                      diff     ticks of the right wheel, of the left wheel
+//                      tricyc   ticks of the steered wheel, its angle [rad]
+//                      omni3    ticks of the three wheels
+//                    no header; plain or .xz
+//   SET_metadata.csv beside it: type, ngear, encRes (counts per turn of the motor), ...
 //
-// Wheels of 0.084 m and a wheelbase of 0.20 m, the nominal ones. (The metadata's own Li and Di are
+// Nominal: wheels of 0.084 m and a wheelbase of 0.20 m; a wheel of 0.065 m, 0.15 m before the rear
+// axle; wheels of 0.102 m, 0.195 m from the centre. With other wheels than two the drive's columns
+// are covariates, and the model names them. (The metadata's own Li and Di are
 // what the controller believed during the set.) There are no landmarks: truth.csv takes their
 // place.
 
@@ -92,7 +97,7 @@ struct OptiOdomRecording {
 /// True if the file's name is that of a run: ..._run-NN.csv or ..._run-NN.csv.xz.
 [[nodiscard]] bool is_optiodom(const std::filesystem::path& file);
 
-/// Throws InputError with file and line; a run of another robot than the differential one is named.
+/// Throws InputError with file and line.
 [[nodiscard]] OptiOdomRecording read_optiodom(const std::filesystem::path& file);
 
 // ----------------------------------------

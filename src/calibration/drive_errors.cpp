@@ -5,6 +5,7 @@
 #include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trussmap {
@@ -20,6 +21,23 @@ double rms_heading_per_metre(const std::vector<DriveError>& errors) {
   for (const DriveError& one : errors) sum += one.heading_per_metre() * one.heading_per_metre();
   return std::sqrt(sum / static_cast<double>(errors.size()));
 }
+
+namespace {
+
+/// m, of a row's wheels, each counted forwards.
+double mean_travel(const Drive& drive, std::size_t row) {
+  if (drive.wheels.empty()) return 0.5 * (std::abs(drive.left[row]) + std::abs(drive.right[row]));
+  double sum = 0.0;
+  int count = 0;
+  for (const WheelColumn& wheel : drive.wheels) {
+    if (wheel.steers) continue;
+    sum += std::abs(wheel.reading[row]);
+    ++count;
+  }
+  return sum / std::max(count, 1);
+}
+
+}  // namespace
 
 std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model) {
   std::vector<DriveError> result;
@@ -42,8 +60,7 @@ std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, c
     one.heading = wrap_angle(end.heading - to.heading);
     // Metres as recorded, so that they are the same for every model.
     for (const DriveRow& row : rows_between(recordings[k].drive, from.t, to.t)) {
-      const WheelTravel travel = travel_of(recordings[k].drive, row);
-      one.driven += 0.5 * (std::abs(travel.left) + std::abs(travel.right));
+      one.driven += row.part * mean_travel(recordings[k].drive, row.row);
     }
     result.push_back(one);
   }

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "odometry/merge.hpp"
-#include "trussmap/arc.hpp"
+#include "odometry/row_reckoner.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
@@ -15,7 +15,8 @@ namespace trussmap {
 [[nodiscard]] inline Pose reckoned(const Drive& drive, Pose pose, double from, double to,
                                    double wheelbase) {
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    pose = compose(pose, arc_displacement(travel_of(drive, row), wheelbase));
+    pose = compose(
+        pose, displacement_of(travel_of(drive, row), row.part * drive.slip(row.row), wheelbase));
   }
   return pose;
 }

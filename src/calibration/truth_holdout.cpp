@@ -22,12 +22,21 @@ Recording cut(const Recording& whole, double from, double to) {
   for (const Covariate& covariate : whole.drive.covariates) {
     part.drive.covariates.push_back({covariate.name, {}});
   }
+  for (const WheelColumn& wheel : whole.drive.wheels) {
+    part.drive.wheels.push_back({wheel.name, wheel.steers, {}, {}});
+  }
   for (std::size_t row = 0; row < whole.drive.rows(); ++row) {
     const double t = whole.drive.t[row];
     if (t <= from + kSameTime || t > to + kSameTime) continue;
     part.drive.t.push_back(t);
     part.drive.left.push_back(whole.drive.left[row]);
     part.drive.right.push_back(whole.drive.right[row]);
+    if (!whole.drive.sideways.empty()) part.drive.sideways.push_back(whole.drive.sideways[row]);
+    for (std::size_t k = 0; k < whole.drive.wheels.size(); ++k) {
+      const WheelColumn& wheel = whole.drive.wheels[k];
+      part.drive.wheels[k].reading.push_back(wheel.reading[row]);
+      part.drive.wheels[k].by_reading.push_back(wheel.by_reading[row]);
+    }
     if (whole.drive.has_compass()) part.drive.heading.push_back(whole.drive.heading[row]);
     if (whole.drive.has_gyro()) part.drive.yaw_rate.push_back(whole.drive.yaw_rate[row]);
     for (std::size_t k = 0; k < part.drive.covariates.size(); ++k) {

@@ -5,15 +5,17 @@
 #include "calibration/heading_offset.hpp"
 #include "calibration/restricted_likelihood.hpp"
 #include "calibration/truth_alignment.hpp"
+#include "effects/channel_physics.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "recording/well_formed.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,23 +24,54 @@ namespace {
 
 constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
 
-constexpr std::array<const char*, 3> kNames{"wheel diameter ratio", "wheelbase", "wheel scale"};
-constexpr std::array<Channel, 3> kChannels{Channel::difference, Channel::turn, Channel::wheels};
-constexpr std::array<const char*, 3> kSymbols{
-    "E_d (right wheel / left wheel)", "E_b (wheelbase / nominal)", "E_s (true / measured travel)"};
+/// What is sought: g of a channel, with the shape 1.
+struct Constant {
+  std::string name;  ///< of its effect
+  Channel channel;
+  std::string symbol;
+};
 
-bool is_one_of_three(const Effect& effect) {
-  return std::find(kNames.begin(), kNames.end(), effect.name) != kNames.end();
+std::vector<Constant> constants_of(const Robot& robot) {
+  const Constant turn{"wheelbase", Channel::turn, "E_b (wheelbase / nominal)"};
+  const Constant scale{"wheel scale", Channel::wheels, "E_s (true / measured travel)"};
+  switch (robot.drive) {
+    case DriveKind::differential:
+      return {{"wheel diameter ratio", Channel::difference, "E_d (right wheel / left wheel)"},
+              turn,
+              scale};
+    case DriveKind::tricycle:
+    case DriveKind::ackermann:
+      return {{"steering offset", Channel::steer, "the steering's offset"}, turn, scale};
+    default:
+      break;
+  }
+  std::vector<Constant> result;
+  for (const Channel channel : {Channel::wheel1, Channel::wheel2, Channel::wheel3, Channel::wheel4,
+                                Channel::wheel5, Channel::wheel6}) {
+    if (!is_of_drive(channel, robot)) break;
+    const std::string& column = robot.columns[*wheel_of(channel)];
+    result.push_back({"radius of " + column, channel, "the radius of " + column});
+  }
+  result.push_back(turn);
+  return result;
 }
 
-/// Parameters: those of the three that are wanted, and the alignment of the truth.
-EffectParameters parameters_of(const std::array<bool, 3>& wanted,
-                               const std::vector<Recording>& recordings, const Robot& robot,
-                               const WheelCalibrationOptions& options,
+/// Without a measured distance a smaller map has smaller errors: the drive's scale is then unknown.
+bool shows_scale(Channel channel) {
+  return channel == Channel::wheels || channel == Channel::wheel1;
+}
+
+/// Which of the constants are sought.
+using Wanted = std::vector<bool>;
+
+/// Parameters: those of the constants that are wanted, and the alignment of the truth.
+EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording>& recordings,
+                               const Robot& robot, const WheelCalibrationOptions& options,
                                const TruthAlignment& prior) {
+  const std::vector<Constant> constants = constants_of(robot);
   EffectParameters parameters;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (wanted[k]) parameters.push_back(plain_effect(kChannels[k], recordings, robot));
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
   if (!options.problem.truth) return parameters;
   for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, prior)) {
@@ -47,21 +80,28 @@ EffectParameters parameters_of(const std::array<bool, 3>& wanted,
   return parameters;
 }
 
-/// The model whose three effects have these coefficients; others as given.
-Model with(const Model& model, const std::array<double, 3>& g) {
+/// The model whose constants have these values; its other effects as given.
+Model with(const Model& model, const std::vector<double>& g) {
+  const std::vector<Constant> constants = constants_of(model.robot);
   Model result = model;
-  std::erase_if(result.effects, is_one_of_three);
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.effects.push_back({kNames[k], kChannels[k], {"1"}, {g[k]}, false});
+  std::erase_if(result.effects, [&constants](const Effect& effect) {
+    return std::any_of(constants.begin(), constants.end(),
+                       [&effect](const Constant& one) { return one.name == effect.name; });
+  });
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    result.effects.push_back({constants[k].name, constants[k].channel, {"1"}, {g[k]}, false});
   }
   return result;
 }
 
-std::array<double, 3> in_force(const Model& model) {
-  std::array<double, 3> g{};
-  for (const Effect& effect : model.effects) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (effect.name == kNames[k] && !effect.coefficients.empty()) g[k] = effect.coefficients[0];
+std::vector<double> in_force(const Model& model) {
+  std::vector<double> g;
+  for (const Constant& one : constants_of(model.robot)) {
+    g.push_back(0.0);
+    for (const Effect& effect : model.effects) {
+      if (effect.name == one.name && !effect.coefficients.empty()) {
+        g.back() = effect.coefficients[0];
+      }
     }
   }
   return g;
@@ -75,9 +115,8 @@ struct Fitted {
   RecordingAdjustment adjustment;
 };
 
-Fitted fit(const std::vector<Recording>& recordings, const Model& model,
-           const std::array<bool, 3>& wanted, const WheelCalibrationOptions& options,
-           const TruthAlignment& prior) {
+Fitted fit(const std::vector<Recording>& recordings, const Model& model, const Wanted& wanted,
+           const WheelCalibrationOptions& options, const TruthAlignment& prior) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
   result.problem = make_problem(result.corrected, model, options.problem);
@@ -86,15 +125,27 @@ Fitted fit(const std::vector<Recording>& recordings, const Model& model,
   return result;
 }
 
-/// Adds what was found on corrected rows to what was in force: gains multiply.
-void refine(std::array<double, 3>& g, const std::array<bool, 3>& wanted,
+/// What was found on corrected rows, more, beside what was in force.
+double joined_gain(Channel channel, double g, double more) {
+  switch (channel) {
+    case Channel::difference:
+      // (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
+      return (g + more) / (1.0 + 0.25 * g * more);
+    case Channel::turn:
+    case Channel::wheels:
+      return (1.0 + g) * (1.0 + more) - 1.0;
+    default:
+      return g + more;  // of a reading, which stays as it is
+  }
+}
+
+/// Adds what was found on corrected rows to what was in force.
+void refine(std::vector<double>& g, const Wanted& wanted, const Robot& robot,
             const Eigen::VectorXd& found) {
+  const std::vector<Constant> constants = constants_of(robot);
   Eigen::Index at = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!wanted[k]) continue;
-    const double more = found[at++];
-    // difference: (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
-    g[k] = k == 0 ? (g[k] + more) / (1.0 + 0.25 * g[k] * more) : (1.0 + g[k]) * (1.0 + more) - 1.0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (wanted[k]) g[k] = joined_gain(constants[k].channel, g[k], found[at++]);
   }
 }
 
@@ -122,37 +173,46 @@ bool measures_distance(const std::vector<Recording>& recordings, const ProblemOp
   });
 }
 
-/// What is missing for coefficient k, in the user's terms.
-std::string why_not(std::size_t k, const std::vector<Recording>& recordings,
+/// What is missing for a constant, in the user's terms.
+std::string why_not(Channel channel, const std::vector<Recording>& recordings,
                     const ProblemOptions& options) {
-  switch (k) {
-    case 0:
+  switch (channel) {
+    case Channel::difference:
       return "the drive is too short to show one wheel larger than the other; drive straight lines "
              "of several metres";
-    case 1:
+    case Channel::steer:
+      return "the drive is too short to show where straight ahead is; drive straight lines of "
+             "several metres";
+    case Channel::turn:
       return "the robot hardly turns; drive turns, both ways";
-    default:
+    case Channel::wheels:
       return measures_distance(recordings, options)
                  ? "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
                    "wheels "
                    "from a smaller wheelbase; drive straight lines"
                  : "nothing in use measures a distance; add a survey or truth";
+    default:
+      return measures_distance(recordings, options)
+                 ? "the motion does not tell this wheel from the others; drive ahead, to the side "
+                   "where the robot can, and turn"
+                 : "nothing in use measures a distance; add a survey or truth";
   }
 }
 
-std::string undetermined_text(std::size_t k, const std::vector<Recording>& recordings,
+std::string undetermined_text(const Constant& one, const std::vector<Recording>& recordings,
                               const ProblemOptions& options) {
-  return std::string(kSymbols[k]) + ": " + why_not(k, recordings, options);
+  return one.symbol + ": " + why_not(one.channel, recordings, options);
 }
 
-/// Which of the three the motion determines: each alone, then jointly.
-std::array<bool, 3> determined(const std::vector<Recording>& recordings, const Model& model,
-                               const WheelCalibrationOptions& options,
-                               std::vector<std::string>& undetermined) {
+/// Which of them the motion determines: each alone, then jointly.
+Wanted determined(const std::vector<Recording>& recordings, const Model& model,
+                  const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem);
-  std::array<bool, 3> wanted{true, true, scale};
-  const auto can = [&](const std::array<bool, 3>& these) {
+  const std::vector<Constant> constants = constants_of(model.robot);
+  Wanted wanted;
+  for (const Constant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
+  const auto can = [&](const Wanted& these) {
     try {
       const Fitted one = fit(recordings, model, these, options, {});
       const Eigen::Index count = std::count(these.begin(), these.end(), true);
@@ -162,47 +222,66 @@ std::array<bool, 3> determined(const std::vector<Recording>& recordings, const M
       return false;
     }
   };
-  if (!scale) undetermined.push_back(undetermined_text(2, recordings, options.problem));
+  for (const Constant& one : constants) {
+    if (scale || !shows_scale(one.channel)) continue;
+    undetermined.push_back(undetermined_text(one, recordings, options.problem));
+  }
   if (can(wanted)) return wanted;
   // Nothing at all: let the reason through.
-  static_cast<void>(fit(recordings, model, {false, false, false}, options, {}));
-  wanted = {false, false, false};
-  for (const std::size_t k : {0U, 1U, 2U}) {
-    if (k == 2 && !scale) continue;
-    std::array<bool, 3> more = wanted;
+  wanted.assign(constants.size(), false);
+  static_cast<void>(fit(recordings, model, wanted, options, {}));
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (shows_scale(constants[k].channel) && !scale) continue;
+    Wanted more = wanted;
     more[k] = true;
     if (can(more)) {
       wanted = more;
     } else {
-      undetermined.push_back(undetermined_text(k, recordings, options.problem));
+      undetermined.push_back(undetermined_text(constants[k], recordings, options.problem));
     }
   }
   return wanted;
 }
 
-/// E_d, E_b and E_s.
-std::array<double, 3> ratios(const std::array<double, 3>& g) {
-  return {(1.0 + 0.5 * g[0]) / (1.0 - 0.5 * g[0]), 1.0 / (1.0 + g[1]), 1.0 + g[2]};
+/// E_d, E_b and E_s, or the like; of a steering offset how much of the wheel's way is left.
+double ratio_of(Channel channel, double g) {
+  switch (channel) {
+    case Channel::difference:
+      return (1.0 + 0.5 * g) / (1.0 - 0.5 * g);
+    case Channel::turn:
+      return 1.0 / (1.0 + g);
+    case Channel::steer:
+      return std::cos(g);
+    default:
+      return 1.0 + g;
+  }
 }
 
-/// chi^2, and E_d, E_b and E_s with their standard errors.
-void read_ratios(WheelCalibration& result, const std::array<double, 3>& g,
-                 const std::array<bool, 3>& wanted, const RecordingAdjustment& adjustment) {
+/// chi^2, and the constants with their standard errors.
+void read_constants(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
+                    const RecordingAdjustment& adjustment) {
   result.chi2 = adjustment.chi2;
   result.dof = adjustment.dof;
+  const Robot& robot = result.model.robot;
+  const std::vector<Constant> constants = constants_of(robot);
   Eigen::Index at = 0;
-  const auto sd = [&] {
-    const double variance = adjustment.coefficient_covariance(at, at);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (!wanted[k]) continue;
+    const double sd = std::sqrt(adjustment.coefficient_covariance(at, at));
     ++at;
-    return std::sqrt(variance);
-  };
-  const auto [e_d, e_b, e_s] = ratios(g);
-  if (wanted[0]) {
-    const double slope = 1.0 / std::pow(1.0 - 0.5 * g[0], 2);
-    result.diameter_ratio = Calibrated{e_d, slope * sd()};
+    const Channel channel = constants[k].channel;
+    const double ratio = ratio_of(channel, g[k]);
+    if (robot.drive != DriveKind::differential) {
+      const bool multiplies = channel == Channel::turn || channel == Channel::wheels;
+      result.constants.push_back({channel, {g[k], multiplies ? (1.0 + g[k]) * sd : sd}});
+    } else if (channel == Channel::difference) {
+      result.diameter_ratio = Calibrated{ratio, sd / std::pow(1.0 - 0.5 * g[k], 2)};
+    } else if (channel == Channel::turn) {
+      result.wheelbase_ratio = Calibrated{ratio, ratio * sd};
+    } else {
+      result.scale = Calibrated{ratio, ratio * sd};
+    }
   }
-  if (wanted[1]) result.wheelbase_ratio = Calibrated{e_b, e_b * sd()};
-  if (wanted[2]) result.scale = Calibrated{e_s, e_s * sd()};
 }
 
 /// Whether a round moved no estimate by more than `kStill` of its standard error.
@@ -214,15 +293,16 @@ bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) 
 }
 
 /// Wheels that run backwards, or change sides: the truth is not what it is said to be.
-void require_positive(const std::array<double, 3>& g, const std::array<bool, 3>& wanted,
+void require_positive(const std::vector<double>& g, const Wanted& wanted,
                       const std::vector<Recording>& recordings, const Model& model,
                       const ProblemOptions& options) {
-  const std::array<double, 3> all = ratios(g);
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (!wanted[k] || all[k] > 0.0) continue;
+  const std::vector<Constant> constants = constants_of(model.robot);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    const double ratio = ratio_of(constants[k].channel, g[k]);
+    if (!wanted[k] || ratio > 0.0) continue;
     const std::string why = options.truth ? describe(heading_offset(recordings, model.robot)) : "";
     throw SolveError(fmt::format(
-        "not calibrated: {} would be {:.3g}, which no robot has; {}", kSymbols[k], all[k],
+        "not calibrated: {} would be {:.3g}, which no robot has; {}", constants[k].symbol, ratio,
         why.empty() ? "are left and right exchanged, or the signs of x or y?" : why));
   }
 }
@@ -248,17 +328,16 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   constexpr int kRounds = 4;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
-  std::array<double, 3> g = in_force(model);
+  std::vector<double> g = in_force(model);
   result.model = with(model, g);
-  const std::array<bool, 3> wanted =
-      determined(recordings, result.model, options, result.undetermined);
+  const Wanted wanted = determined(recordings, result.model, options, result.undetermined);
   const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
       last = fit(recordings, result.model, wanted, options, result.truth);
-      refine(g, wanted, last.adjustment.coefficients);
+      refine(g, wanted, model.robot, last.adjustment.coefficients);
       result.model = with(result.model, g);
       if (options.problem.truth) {
         const Eigen::VectorXd& all = last.adjustment.coefficients;
@@ -268,9 +347,10 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
       if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
     require_positive(g, wanted, recordings, model, options.problem);
-    if (noise) find_noise(last, options.problem, result);
+    if (noise && model.robot.drive == DriveKind::differential)
+      find_noise(last, options.problem, result);
   }
-  read_ratios(result, g, wanted, last.adjustment);
+  read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
   return result;
 }

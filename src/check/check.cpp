@@ -349,6 +349,7 @@ TurnAgreement check_recording(Checked& checked) {
   check_names(checked);
   check_drive_values(checked);
   check_bearing_unit(checked);
+  if (!recording.drive.wheels.empty()) return {};  // what follows knows of a left and a right wheel
   const TurnAgreement turns = check_compass(checked);
   if (!checked.wheelbase_known && turns.sign != 0) {
     checked.wheelbase = 1.0 / std::abs(turns.slope);

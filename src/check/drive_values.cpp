@@ -47,11 +47,18 @@ Rows rows_of(const Drive& drive) {
   return rows;
 }
 
+std::string wheel_columns(const Drive& drive) {
+  if (drive.wheels.empty()) return "left,right";
+  std::string names;
+  for (const WheelColumn& one : drive.wheels) names += (names.empty() ? "" : ",") + one.name;
+  return names;
+}
+
 void check_units(Checked& checked, const Rows& rows) {
   const double speed = rows.speed(0.5);
   if (speed > kFastest) {
     const char* unit = rows.whole ? "ticks" : speed > 100.0 ? "mm" : "cm";
-    checked.add("drive.csv", "left,right", "travel unit",
+    checked.add("drive.csv", wheel_columns(checked.recording.drive), "travel unit",
                 joined("the robot drives at ", figure(speed, "m/s"), " (median)",
                        rows.whole ? ", and all travels are whole numbers" : "",
                        ": travels look like ", unit),
@@ -82,7 +89,7 @@ void check_spikes(Checked& checked, const Rows& rows) {
   }
   if (spikes.empty()) return;
   const std::size_t first = spikes.front();
-  checked.note("drive.csv", "left,right", "spike",
+  checked.note("drive.csv", wheel_columns(checked.recording.drive), "spike",
                joined("the row at t = ", figure(drive.t[first], "s"), " travels ",
                       figure(larger_travel(drive, first), "m"), ", where 99 of 100 stay below ",
                       figure(usual * drive.duration(first), "m"),
@@ -99,8 +106,8 @@ double larger_travel(const Drive& drive, std::size_t row) {
 void check_drive_values(Checked& checked) {
   const Rows rows = rows_of(checked.recording.drive);
   if (rows.speeds.empty()) {
-    checked.add("drive.csv", "left,right", "no motion", "no row has any travel",
-                "record a drive, or look at the columns' source");
+    checked.add("drive.csv", wheel_columns(checked.recording.drive), "no motion",
+                "no row has any travel", "record a drive, or look at the columns' source");
     return;
   }
   check_units(checked, rows);

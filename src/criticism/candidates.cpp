@@ -3,6 +3,7 @@
 #include "criticism/candidates.hpp"
 
 #include "criticism/driven_variables.hpp"
+#include "effects/channel_physics.hpp"
 #include "effects/place_patterns.hpp"
 #include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
@@ -65,9 +66,11 @@ class Gatherer {
   std::vector<Candidate> run() {
     take_catalogue();
     for (const Channel channel :
-         {Channel::travel, Channel::turn, Channel::difference, Channel::creep, Channel::compass,
-          Channel::drift, Channel::left, Channel::right, Channel::wheels, Channel::gyro,
-          Channel::gyro_scale}) {
+         {Channel::travel,  Channel::turn,   Channel::difference, Channel::creep,
+          Channel::compass, Channel::drift,  Channel::left,       Channel::right,
+          Channel::wheels,  Channel::gyro,   Channel::gyro_scale, Channel::sideways,
+          Channel::wheel1,  Channel::wheel2, Channel::wheel3,     Channel::wheel4,
+          Channel::wheel5,  Channel::wheel6, Channel::steer,      Channel::steer_gain}) {
       if (!is_possible(channel)) continue;
       take_drive_channel(channel);
     }
@@ -100,6 +103,7 @@ class Gatherer {
   }
 
   [[nodiscard]] bool is_possible(Channel channel) const {
+    if (!is_of_drive(channel, context_.robot())) return false;
     if (channel == Channel::compass) return has_compass_;
     if (channel == Channel::gyro || channel == Channel::gyro_scale) return has_gyro_;
     if (channel == Channel::truth_heading) return has_truth_;

@@ -42,12 +42,14 @@ std::vector<DriveLaw> drive_laws(const FitState& fit, const ShapeContext& contex
   noise.left = wheels > 0.0 ? fit.model.noise.left / wheels : 1.0;
   noise.right = wheels > 0.0 ? fit.model.noise.right / wheels : 1.0;
   add("per metre", "m/sqrt(m)", 0.0, noise);
-  noise = silent_noise();
-  noise.left = 1.0;
-  add("per metre, left wheel", "m/sqrt(m)", kOneWheel, noise);
-  noise = silent_noise();
-  noise.right = 1.0;
-  add("per metre, right wheel", "m/sqrt(m)", kOneWheel, noise);
+  if (fit.model.robot.drive == DriveKind::differential) {
+    noise = silent_noise();
+    noise.left = 1.0;
+    add("per metre, left wheel", "m/sqrt(m)", kOneWheel, noise);
+    noise = silent_noise();
+    noise.right = 1.0;
+    add("per metre, right wheel", "m/sqrt(m)", kOneWheel, noise);
+  }
   noise = silent_noise();  // of each wheel: half the travel's variance and 2/B^2 of the turn's
   noise.travel_per_s = std::sqrt(0.5);
   noise.heading_per_s = std::sqrt(2.0) / fit.model.robot.wheelbase;

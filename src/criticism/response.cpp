@@ -104,7 +104,7 @@ EffectRange ShapeRanges::of(const Effect& effect) {
   for (std::size_t s = 0; s < sessions; ++s) {
     const Drive& drive = context_.recordings()[s].drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      if (drive.left[row] == 0.0 && drive.right[row] == 0.0) continue;
+      if (drive.rests(row)) continue;
       double g = 0.0;
       for (std::size_t k = 0; k < shapes.size(); ++k) {
         const std::size_t place = effect.per_session ? s * shapes.size() + k : k;

@@ -99,7 +99,7 @@ class Collector {
     };
     double path = 0.0;
     for (const SegmentRow& row : rows) path += std::abs(row.path);
-    const bool drives = path > kLeastPath;
+    const bool drives = path > kLeastPath && fit_.model.robot.drive == DriveKind::differential;
     const int group = 2 * static_cast<int>(places.size());
     for (std::size_t part = 0; drives && part < kBumps; ++part) {
       const Eigen::MatrixXd change = by_motion((2 * part + 1) * rows.size() / (2 * kBumps));

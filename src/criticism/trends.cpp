@@ -3,6 +3,7 @@
 #include "criticism/trends.hpp"
 
 #include "effects/place_patterns.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "recording/row_variables.hpp"
 #include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
@@ -71,12 +72,16 @@ double faintest_turn(const FitState& fit) {
   for (const Recording& recording : fit.recordings) {
     const Drive& drive = recording.drive;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const double variance = noise.left * noise.left * std::abs(drive.left[row]) +
-                              noise.right * noise.right * std::abs(drive.right[row]);
-      if (variance == 0.0) continue;
       const double duration = drive.duration(row);
+      const Robot& robot = fit.model.robot;
+      // Of two wheels times the wheelbase's square.
+      const bool two = drive.wheels.empty();
+      const double variance = two ? noise.left * noise.left * std::abs(drive.left[row]) +
+                                        noise.right * noise.right * std::abs(drive.right[row])
+                                  : row_noise(drive, row, 1.0, duration, robot, noise).heading;
+      if (variance == 0.0) continue;
       const double window = std::max(duration, 0.5 * kRateWindow);
-      deviations.push_back(std::sqrt(variance / duration / window) / fit.model.robot.wheelbase);
+      deviations.push_back(std::sqrt(variance / duration / window) / (two ? robot.wheelbase : 1.0));
     }
   }
   if (deviations.empty()) return 0.0;

@@ -34,8 +34,22 @@ const std::vector<ChannelFacts>& channels() {
       {antenna_left, "antenna_left", "m", 0.3, "antenna's place to the axle's left"},
       {fix_delay, "fix_delay", "s", 0.5, "time stamp of fixes"},
       {fix_x, "fix_x", "m", 1.0, "fixes along the map's x axis"},
-      {fix_y, "fix_y", "m", 1.0, "fixes along the map's y axis"}};
+      {fix_y, "fix_y", "m", 1.0, "fixes along the map's y axis"},
+      {sideways, "sideways", "", 0.1, "travel to the left"},
+      {wheel1, "wheel1", "", 0.1, "travel of the first wheel"},
+      {wheel2, "wheel2", "", 0.1, "travel of the second wheel"},
+      {wheel3, "wheel3", "", 0.1, "travel of the third wheel"},
+      {wheel4, "wheel4", "", 0.1, "travel of the fourth wheel"},
+      {wheel5, "wheel5", "", 0.1, "travel of the fifth wheel"},
+      {wheel6, "wheel6", "", 0.1, "travel of the sixth wheel"},
+      {steer, "steer", "rad", 0.1, "steering angle"},
+      {steer_gain, "steer_gain", "", 0.1, "steering angle, in proportion"}};
   return all;
+}
+
+std::optional<std::size_t> wheel_of(Channel channel) {
+  if (channel < Channel::wheel1 || channel > Channel::wheel6) return std::nullopt;
+  return static_cast<std::size_t>(channel) - static_cast<std::size_t>(Channel::wheel1);
 }
 
 const ChannelFacts& facts_of(Channel channel) {

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace trussmap {
 
@@ -35,12 +37,43 @@ ActsOn acts_on(Channel channel) {
     case Channel::creep:
     case Channel::gyro:
     case Channel::gyro_scale:
+    case Channel::sideways:
+    case Channel::wheel1:
+    case Channel::wheel2:
+    case Channel::wheel3:
+    case Channel::wheel4:
+    case Channel::wheel5:
+    case Channel::wheel6:
+    case Channel::steer:
+    case Channel::steer_gain:
       break;
   }
   return ActsOn::drives;
 }
 
 namespace {
+
+/// What so much more of one column's reading adds.
+DrivePattern more_of(const WheelColumn& column, std::size_t row, double reading) {
+  const std::array<double, 3>& by = column.by_reading[row];
+  return {by[0] * reading, by[1] * reading, by[2] * reading, 0.0};
+}
+
+/// What g adds to the n-th wheel of the row.
+DrivePattern wheel_column_pattern(std::size_t n, double g, const RowTravel& row) {
+  if (row.wheels == nullptr || n >= row.wheels->size()) return {};
+  const WheelColumn& column = (*row.wheels)[n];
+  return column.steers ? DrivePattern() : more_of(column, row.row, g * column.reading[row.row]);
+}
+
+DrivePattern steer_pattern(Channel channel, double g, const RowTravel& row) {
+  if (row.wheels == nullptr) return {};
+  for (const WheelColumn& column : *row.wheels) {
+    if (!column.steers) continue;
+    return more_of(column, row.row, channel == Channel::steer ? g : g * column.reading[row.row]);
+  }
+  return {};
+}
 
 /// What g adds to what the wheels say of a row, or to its compass reading.
 DrivePattern wheel_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
@@ -54,7 +87,19 @@ DrivePattern wheel_pattern(Channel channel, double g, const RowTravel& row, doub
     case Channel::right:
       return {0.5 * g * row.right, 0.0, g * row.right / wheelbase, 0.0};
     case Channel::wheels:
-      return {g * path, 0.0, g * turn, 0.0};
+      return {g * path, g * row.sideways, g * turn, 0.0};
+    case Channel::sideways:
+      return {0.0, g * row.sideways, 0.0, 0.0};
+    case Channel::wheel1:
+    case Channel::wheel2:
+    case Channel::wheel3:
+    case Channel::wheel4:
+    case Channel::wheel5:
+    case Channel::wheel6:
+      return wheel_column_pattern(*wheel_of(channel), g, row);
+    case Channel::steer:
+    case Channel::steer_gain:
+      return steer_pattern(channel, g, row);
     case Channel::difference:
       return {0.25 * g * (row.right - row.left), 0.0, g * path / wheelbase, 0.0};
     case Channel::turn:
@@ -96,9 +141,42 @@ double gyro_pattern(Channel channel, double g, const RowTravel& row) {
 
 }  // namespace
 
+bool is_of_drive(Channel channel, const Robot& robot) {
+  const bool two = robot.drive == DriveKind::differential;
+  const bool steers = robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann;
+  if (const std::optional<std::size_t> wheel = wheel_of(channel)) {
+    return !two && *wheel < robot.columns.size() - (steers ? 1 : 0);
+  }
+  switch (channel) {
+    case Channel::left:
+    case Channel::right:
+    case Channel::difference:
+      return two;
+    case Channel::steer:
+    case Channel::steer_gain:
+      return steers;
+    case Channel::sideways:
+      return robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum ||
+             (robot.drive == DriveKind::wheels && !robot.matrix.row(1).isZero(0.0));
+    default:
+      return true;
+  }
+}
+
+RowTravel shown_travel(const Drive& drive, std::size_t row) {
+  RowTravel travel{drive.left[row], drive.right[row], drive.duration(row)};
+  travel.sideways = drive.slip(row);
+  travel.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
+  travel.row = row;
+  return travel;
+}
+
 RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase) {
-  if (!drive.gyro.empty()) return row_travel(drive.gyro[row], drive.duration(row), wheelbase);
-  return {drive.left[row], drive.right[row], drive.duration(row)};
+  if (drive.gyro.empty()) return shown_travel(drive, row);
+  RowTravel travel = row_travel(drive.gyro[row], drive.duration(row), wheelbase);
+  travel.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
+  travel.row = row;
+  return travel;
 }
 
 RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase) {
@@ -107,6 +185,8 @@ RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase) {
   travel.gyro_along = gyro.along;
   travel.gyro_share = gyro.turn;
   travel.gyro_reads = std::isfinite(gyro.variance);
+  travel.sideways = gyro.sideways;
+  travel.gyro_aside = gyro.aside;
   return travel;
 }
 
@@ -115,6 +195,7 @@ DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, doub
   if (!row.gyro_reads) return pattern;
   pattern.excess = gyro_pattern(channel, g, row) - pattern.turn;
   pattern.advance += row.gyro_along * pattern.excess;
+  pattern.slip += row.gyro_aside * pattern.excess;
   pattern.turn += row.gyro_share * pattern.excess;
   return pattern;
 }
@@ -183,8 +264,11 @@ bool is_delay(Channel channel) {
 
 RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase) {
   const DrivePattern more = drive_pattern(channel, g, row, wheelbase);
-  return {row.left + more.advance - 0.5 * wheelbase * more.turn,
-          row.right + more.advance + 0.5 * wheelbase * more.turn, row.duration};
+  RowTravel nominal = row;
+  nominal.left = row.left + more.advance - 0.5 * wheelbase * more.turn;
+  nominal.right = row.right + more.advance + 0.5 * wheelbase * more.turn;
+  nominal.sideways = row.sideways + more.slip;
+  return nominal;
 }
 
 double yaw_rate_without(Channel channel, double g, double yaw_rate) {

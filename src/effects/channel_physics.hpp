@@ -17,6 +17,11 @@
 //   compass             f                                     the reading's instant
 //   gyro, gyro_scale    -duration f, gyro's turn f (of what   middle
 //                       the gyro says)
+//   sideways            sideways travel f                     middle
+//   wheel1 ... wheel6   f travel d(path, sideways, turn)/     middle
+//                       d(travel)
+//   steer, steer_gain   f, f angle times the same by the      middle
+//                       steering angle
 //   ... per sighting and truth row
 //   lever, lever_left   f ahead, to the left                  its instant
 //   range, range_scale, bearing   f (sightings only)          its instant
@@ -32,8 +37,12 @@
 #pragma once
 
 #include "trussmap/channel.hpp"
+#include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
+
+#include <cstddef>
+#include <vector>
 
 namespace trussmap {
 
@@ -50,8 +59,18 @@ struct RowTravel {
   double gyro_along = 0.0;  ///< as GyroShare::along
   double gyro_share = 0.0;  ///< as GyroShare::turn
   bool gyro_reads = false;
+  double sideways = 0.0;                             ///< m to the left
+  double gyro_aside = 0.0;                           ///< as GyroShare::aside
+  const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
+  std::size_t row = 0;                               ///< of the drive
 };
 
+/// Whether the robot's drive has what the channel acts on: one of its wheels, its steering, a way
+/// to the side, a left and a right wheel.
+[[nodiscard]] bool is_of_drive(Channel channel, const Robot& robot);
+
+/// A row as its wheels show it, or wheels and gyro together.
+[[nodiscard]] RowTravel shown_travel(const Drive& drive, std::size_t row);
 /// A row as wheels and gyro each show it, whether or not the gyro was taken in.
 [[nodiscard]] RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase);
 [[nodiscard]] RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase);

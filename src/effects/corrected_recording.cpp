@@ -34,10 +34,10 @@ std::vector<double> gains(const Effect& effect, const RowVariables& variables, i
 
 void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const RowTravel shown{drive.left[row], drive.right[row], drive.duration(row)};
-    const RowTravel nominal = without(channel, g[row], shown, wheelbase);
+    const RowTravel nominal = without(channel, g[row], shown_travel(drive, row), wheelbase);
     drive.left[row] = nominal.left;
     drive.right[row] = nominal.right;
+    if (!drive.sideways.empty()) drive.sideways[row] = nominal.sideways;
     if (drive.has_gyro())
       drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
   }

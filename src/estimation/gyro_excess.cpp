@@ -28,8 +28,7 @@ GyroExcess gyro_excess(const Drive& drive, const std::vector<SegmentRow>& rows, 
     if (!std::isfinite(variance)) continue;
     over_sd[k] = 1.0 / std::sqrt(variance + kLeastSd * kLeastSd);
     excess[k] = row.part * drive.gyro[row.row].excess;
-    const bool rests = drive.wheel_left(row.row) == 0.0 && drive.wheel_right(row.row) == 0.0;
-    if (rests) {
+    if (drive.rests(row.row)) {
       basis(k, 0) = row.duration;
     } else {
       basis.row(k) << 0.0, row.duration, row.path, row.turn;

@@ -69,10 +69,9 @@ std::vector<double> ends_of_legs(const Recording& recording) {
   const Drive& drive = recording.drive;
   double rested = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const bool rests = drive.wheel_left(row) == 0.0 && drive.wheel_right(row) == 0.0;
+    const bool rests = drive.rests(row);
     rested = rests ? rested + drive.duration(row) : 0.0;
-    const bool last = rests && row + 1 < drive.rows() &&
-                      (drive.wheel_left(row + 1) != 0.0 || drive.wheel_right(row + 1) != 0.0);
+    const bool last = rests && row + 1 < drive.rows() && !drive.rests(row + 1);
     if (last && rested >= kLeastRest) ends.push_back(drive.t[row]);
   }
   return ends;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_motion.hpp"
 
+#include "odometry/row_reckoner.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
@@ -62,7 +63,7 @@ const DrivePattern* pattern_at(const std::vector<DrivePattern>* patterns, std::s
 
 Step step_of(const SegmentRow& row, const std::vector<const std::vector<DrivePattern>*>& patterns,
              const Eigen::VectorXd& coefficients) {
-  Step step{row.path, 0.0, row.turn, 0.0};
+  Step step{row.path, row.slip, row.turn, 0.0};
   for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
     const DrivePattern* pattern = pattern_at(patterns[static_cast<std::size_t>(k)], row.row);
     if (pattern == nullptr) continue;
@@ -83,7 +84,8 @@ std::vector<SegmentRow> segment_rows(const Drive& drive, double from, double to,
     const WheelTravel travel = travel_of(drive, row);
     const double reading = drive.has_compass() && row.ends ? drive.heading[row.row] : kAbsent;
     rows.push_back({row.row, row.part, 0.5 * (travel.left + travel.right),
-                    (travel.right - travel.left) / robot.wheelbase, row.duration, reading});
+                    (travel.right - travel.left) / robot.wheelbase, row.duration, reading,
+                    row.part * drive.slip(row.row)});
   }
   return rows;
 }
@@ -182,7 +184,7 @@ Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& ro
   for (const SegmentRow& row : rows) {
     const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
     const Matrix3 T = pose_rotation(pose.heading);
-    const Pose step = arc_displacement(travel, robot.wheelbase);
+    const Pose step = displacement_of(travel, row.slip, robot.wheelbase);
     Matrix4 F = Matrix4::Identity();
     F.block<2, 1>(0, 2) = quarter_turn(T.topLeftCorner<2, 2>() * step.position());
     P = F * P * F.transpose();

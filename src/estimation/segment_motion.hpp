@@ -43,6 +43,7 @@ struct SegmentRow {
   double turn = 0.0;         ///< rad
   double duration = 0.0;     ///< s
   double reading = kAbsent;  ///< rad, compass at the end of this row; NaN: none
+  double slip = 0.0;         ///< m to the left, that the wheels show
 };
 
 /// The four numbers. Without readings the mean is NaN.

@@ -44,6 +44,10 @@ class CorrectedOdometry::State {
         covariates_(inputs_.covariates.size(), kAbsent),
         now_{RowReckoner({}, inputs_.compass)} {
     if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
+    if (robot_.drive != DriveKind::differential) {
+      refuse("drive " + std::string(name_of(robot_.drive)) +
+             " is not reckoned row by row yet, expected differential");
+    }
     std::vector<std::string> taken = reserved_variables();
     for (const std::string& name : inputs_.covariates) {
       if (std::find(taken.begin(), taken.end(), name) != taken.end()) {

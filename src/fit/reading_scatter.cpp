@@ -39,7 +39,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot
     if (readings_of(rows) < 3) continue;
     const std::size_t session = idx(one.session);
     const Drive& drive = fit.recordings[session].drive;
-    if (!drive.gyro.empty()) continue;  // turns are not the wheels' alone
+    if (!drive.gyro.empty() || !drive.wheels.empty()) continue;  // turns are not the wheels' alone
     const auto patterns = drive_patterns(fit.columns.border, session);
     const double start =
         fit.adjustment.state.poses[idx(one.from - fit.problem.landmark_count())].heading;

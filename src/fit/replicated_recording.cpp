@@ -6,6 +6,7 @@
 #include "estimation/measurement_rows.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/noise_free.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "recording/row_variables.hpp"
 
 #include <algorithm>
@@ -17,6 +18,8 @@
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <Eigen/Eigenvalues>
 
 namespace trussmap {
 namespace {
@@ -125,7 +128,7 @@ class Replicator {
         for (std::size_t row = 0; row < drive.rows(); ++row) {
           Vector2& missing = paths_[s].missing[row];
           // Who rests goes on resting; the other rows take its share in the next round.
-          if (drive.left[row] != 0.0 || drive.right[row] != 0.0) {
+          if (!drive.rests(row)) {
             drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
             drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
           }
@@ -235,11 +238,30 @@ class Replicator {
       const double apart = 0.5 * wheelbase * gyro.turn * excess;
       drive.left[row] += gyro.along * excess - apart;
       drive.right[row] += gyro.along * excess + apart;
+      if (!drive.sideways.empty()) drive.sideways[row] += gyro.aside * excess;
       const double duration = drive.duration(row);
       const double turn = (drive.right[row] - drive.left[row]) / wheelbase - excess;
       drive.yaw_rate[row] = (turn + drawn(noise_.gyro * std::sqrt(duration))) / duration;
     }
     drive.gyro.clear();
+  }
+
+  /// Of other wheels than two: what their noise does to the body.
+  void disturb_columns(Drive& drive, std::size_t row) {
+    const ArcNoise own = row_noise(drive, row, 1.0, drive.duration(row), fit_.model.robot, noise_);
+    Matrix3 Q;
+    Q << own.along, own.along_aside, own.shared,        //
+        own.along_aside, own.aside, own.heading_aside,  //
+        own.shared, own.heading_aside, own.heading;
+    const Eigen::SelfAdjointEigenSolver<Matrix3> axes(Q);
+    Eigen::Vector3d more = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      more += drawn(std::sqrt(std::max(axes.eigenvalues()[k], 0.0))) * axes.eigenvectors().col(k);
+    }
+    const double half = 0.5 * fit_.model.robot.wheelbase;
+    drive.left[row] += more[0] - half * more[2];
+    drive.right[row] += more[0] + half * more[2];
+    if (!drive.sideways.empty()) drive.sideways[row] += more[1];
   }
 
   void disturb_drive(std::size_t s) {
@@ -255,8 +277,12 @@ class Replicator {
           drawn(std::sqrt(noise_.heading_per_s * noise_.heading_per_s * duration +
                           noise_.heading_per_rad * noise_.heading_per_rad * turned));
       const double travel = drawn(noise_.travel_per_s * std::sqrt(duration));
-      left += drawn(noise_.left * std::sqrt(std::abs(left))) + travel - half * heading;
-      right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + half * heading;
+      if (drive.wheels.empty()) {
+        left += drawn(noise_.left * std::sqrt(std::abs(left))) + travel - half * heading;
+        right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + half * heading;
+      } else {
+        disturb_columns(drive, row);
+      }
       if (!drive.has_compass() || std::isnan(drive.heading[row])) continue;
       double shown = paths_[s].ends[row].heading;
       for (std::size_t k = 0; k < patterns.size(); ++k) {
@@ -327,11 +353,11 @@ class Replicator {
         return;
       case ActsOn::drives:
         for (std::size_t row = 0; row < drive.rows(); ++row) {
-          const RowTravel shown{drive.left[row], drive.right[row], drive.duration(row)};
-          const RowTravel other =
-              without(process.channel, g[row], shown, fit_.model.robot.wheelbase);
+          const RowTravel other = without(process.channel, g[row], shown_travel(drive, row),
+                                          fit_.model.robot.wheelbase);
           drive.left[row] = other.left;
           drive.right[row] = other.right;
+          if (!drive.sideways.empty()) drive.sideways[row] = other.sideways;
           if (drive.has_gyro()) {
             drive.yaw_rate[row] = yaw_rate_without(process.channel, g[row], drive.yaw_rate[row]);
           }

@@ -3,6 +3,7 @@
 #include "fit/cleared_recording.hpp"
 #include "fit/fit_state.hpp"
 #include "geometry/index.hpp"
+#include "odometry/row_reckoner.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "recording/row_variables.hpp"
 #include "trussmap/arc.hpp"
@@ -27,7 +28,7 @@ Motion row_motion(const Drive& drive, std::size_t row, double from, double to, c
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
   const double part = (to - from) / (drive.t[row] - begin);
   const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
-  return {arc_displacement(travel, model.robot.wheelbase),
+  return {displacement_of(travel, part * drive.slip(row), model.robot.wheelbase),
           row_covariance(drive, row, part, to - from, model.robot, model.noise)};
 }
 

@@ -14,10 +14,13 @@ Model read_model(const std::filesystem::path& file, const std::vector<Recording>
   if (model.effects.empty()) return model;
   std::vector<SessionPath> paths;
   paths.reserve(recordings.size());
+  std::vector<Recording> driven;
+  driven.reserve(recordings.size());
   for (const Recording& recording : recordings) {
-    paths.push_back({Pose(), dead_reckoned_path(recording.drive, model.robot, model.noise)});
+    driven.push_back(with_wheels(recording, model.robot));
+    paths.push_back({Pose(), dead_reckoned_path(driven.back().drive, model.robot, model.noise)});
   }
-  const ShapeContext context(recordings, model.robot, paths);
+  const ShapeContext context(driven, model.robot, paths);
   // One effect after the other, so that the one at fault is known by its line.
   for (const Effect& effect : model.effects) {
     try {

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -42,7 +44,33 @@ constexpr NoiseKey kNoise[] = {
     {"fix", &Noise::fix, "m, where fixes.csv has no sd"},
     {"loop", &Noise::loop, "m, where loops.csv has no sd"},
     {"loop_heading", &Noise::loop_heading, "rad, where loops.csv has no sd_heading"},
+    {"steer", &Noise::steer, "rad m^1/2: of the mean steering angle over a metre"},
 };
+
+/// What [robot] holds of a drive besides its name.
+struct DriveKeys {
+  std::set<std::string_view> names;
+  std::vector<std::string_view> needed;
+  std::size_t columns_wanted;
+  std::vector<std::string> columns;  ///< where nothing is said
+};
+
+const DriveKeys& keys_of(DriveKind drive) {
+  static const std::map<DriveKind, DriveKeys> all{
+      {DriveKind::differential, {{"wheelbase", "columns"}, {}, 2, {}}},
+      {DriveKind::skid_steer, {{"wheelbase", "columns"}, {"wheelbase"}, 2, {"left", "right"}}},
+      {DriveKind::tricycle, {{"length", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
+      {DriveKind::ackermann,
+       {{"length", "wheel_left", "columns"}, {"length"}, 2, {"wheel", "steer"}}},
+      {DriveKind::omni3, {{"radius", "columns"}, {"radius"}, 3, {"wheel1", "wheel2", "wheel3"}}},
+      {DriveKind::mecanum,
+       {{"wheelbase", "length", "columns"},
+        {"wheelbase", "length"},
+        4,
+        {"front_left", "front_right", "rear_left", "rear_right"}}},
+      {DriveKind::wheels, {{"columns", "matrix", "wheel"}, {}, 0, {}}}};
+  return all.at(drive);
+}
 
 /// Reads from one file, with its name for the errors.
 class ModelReader {
@@ -63,6 +91,13 @@ class ModelReader {
         fail(key.source(),
              "key \"" + std::string(key.str()) + "\" is unknown, expected robot, noise or effect");
       }
+    }
+    for (const Effect& effect : model.effects) {
+      if (is_of_drive(effect.channel, model.robot)) continue;
+      throw InputError(
+          file_, effect.line,
+          fmt::format("effect \"{}\": channel \"{}\" is of another drive than {}", effect.name,
+                      name_of(effect.channel), name_of(model.robot.drive)));
     }
     return model;
   }
@@ -105,25 +140,164 @@ class ModelReader {
     return *node.value<std::string>();
   }
 
+  [[nodiscard]] double positive(const toml::node& node, const char* name) const {
+    const double value = number(node, name);
+    if (value > 0.0) return value;
+    fail(node.source(),
+         std::string(name) + " is " + csv_number(value) + ", expected more than 0 (m)");
+  }
+
   void read_robot(const toml::table& robot, Robot& result) const {
+    if (const toml::node* drive = robot.get("drive")) {
+      result.drive = told(*drive, "", [&] { return drive_named(text(*drive, "drive")); });
+    }
+    const DriveKeys& keys = keys_of(result.drive);
     for (const auto& [key, node] : robot) {
-      if (key != "wheelbase") {
-        fail(key.source(),
-             "key \"" + std::string(key.str()) + "\" in [robot] is unknown, expected wheelbase");
+      const std::string_view name = key.str();
+      if (name != "drive" && keys.names.find(name) == keys.names.end()) {
+        std::string expected;
+        for (const std::string_view one : keys.names) expected += ", " + std::string(one);
+        fail(key.source(), fmt::format("key \"{}\" in [robot] is unknown for drive {}, expected "
+                                       "drive{}",
+                                       name, name_of(result.drive), expected));
       }
-      result.wheelbase = number(node, "wheelbase");
-      result.wheelbase_stated = true;
-      if (result.wheelbase <= 0.0) {
-        fail(node.source(),
-             "wheelbase is " + csv_number(result.wheelbase) + ", expected more than 0 (m)");
+      if (name == "wheelbase") {
+        result.wheelbase = positive(node, "wheelbase");
+        result.wheelbase_stated = true;
+      } else if (name == "length" || name == "radius") {
+        result.length = positive(node, std::string(name).c_str());
+      } else if (name == "wheel_left") {
+        result.wheel_left = number(node, "wheel_left");
+      } else if (name == "columns") {
+        read_columns(node, result);
+      } else if (name == "wheel") {
+        read_places(node, result);
       }
     }
+    for (const std::string_view needed : keys.needed) {
+      if (!robot.contains(needed)) {
+        fail(robot.source(), fmt::format("[robot] has no {}, expected one of drive {}", needed,
+                                         name_of(result.drive)));
+      }
+    }
+    finish_robot(robot, keys, result);
+  }
+
+  void read_columns(const toml::node& node, Robot& result) const {
+    const toml::array* columns = node.as_array();
+    if (columns == nullptr) fail(node.source(), "columns is no list, expected [\"...\", ...]");
+    for (const toml::node& one : *columns) {
+      result.columns.push_back(text(one, "a column"));
+      const auto twin =
+          std::find(result.columns.begin(), result.columns.end() - 1, result.columns.back());
+      if (twin != result.columns.end() - 1) {
+        fail(one.source(), "column \"" + *twin + "\" is named twice, expected each wheel once");
+      }
+    }
+  }
+
+  void read_places(const toml::node& node, Robot& result) const {
+    const toml::array* wheels = node.as_array();
+    if (wheels == nullptr || !wheels->is_array_of_tables()) {
+      fail(node.source(), "wheel is no list of tables, expected [[robot.wheel]]");
+    }
+    for (const toml::node& one : *wheels) {
+      WheelPlace place;
+      for (const auto& [key, value] : *one.as_table()) {
+        if (key == "column") {
+          result.columns.push_back(text(value, "column"));
+        } else if (key == "x") {
+          place.x = number(value, "x");
+        } else if (key == "y") {
+          place.y = number(value, "y");
+        } else if (key == "direction") {
+          place.direction = number(value, "direction");
+        } else if (key == "roller") {
+          place.roller = number(value, "roller");
+          if (!(std::abs(std::cos(place.roller)) > 1e-3)) {
+            fail(value.source(), "roller is " + csv_number(place.roller) +
+                                     ", expected the angle from the wheel's direction to its "
+                                     "rollers' axes, less than a quarter turn (rad)");
+          }
+        } else {
+          fail(key.source(), "key \"" + std::string(key.str()) +
+                                 "\" in [[robot.wheel]] is unknown, expected column, x, y, "
+                                 "direction, roller");
+        }
+      }
+      result.places.push_back(place);
+      if (result.columns.size() != result.places.size()) {
+        fail(one.source(), "a wheel has no column, expected the name of its column of drive.csv");
+      }
+    }
+  }
+
+  void read_matrix(const toml::node& node, Robot& result) const {
+    const toml::array* rows = node.as_array();
+    const auto count = result.columns.size();
+    if (rows == nullptr || rows->size() != 3) {
+      fail(node.source(), "matrix is no list of three rows, expected forward, sideways and turn");
+    }
+    result.matrix.resize(3, static_cast<Eigen::Index>(count));
+    for (std::size_t row = 0; row < 3; ++row) {
+      const toml::array* numbers = (*rows)[row].as_array();
+      if (numbers == nullptr || numbers->size() != count) {
+        fail((*rows)[row].source(),
+             fmt::format("a row of matrix is no list of {} numbers, expected one per column",
+                         count));
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        result.matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(k)) =
+            number((*numbers)[k], "an entry of matrix");
+      }
+    }
+  }
+
+  /// How many columns, what they are called if nothing is said, and what else is asked.
+  void finish_robot(const toml::table& robot, const DriveKeys& keys, Robot& result) const {
+    constexpr std::size_t kMostWheels = 6;  // wheel1 ... wheel6
+    if (result.columns.empty()) result.columns = keys.columns;
+    const std::size_t count = result.columns.size();
+    if (result.drive == DriveKind::wheels) {
+      const toml::node* matrix = robot.get("matrix");
+      if ((matrix == nullptr) == result.places.empty()) {
+        fail(robot.source(),
+             "drive wheels needs either [[robot.wheel]] or columns and a matrix, expected one");
+      }
+      if (count < 2 || count > kMostWheels) {
+        fail(robot.source(),
+             fmt::format("drive wheels has {} columns, expected 2 to {}", count, kMostWheels));
+      }
+      if (matrix != nullptr) {
+        read_matrix(*matrix, result);
+      } else {
+        result.matrix = told(robot, "", [&] { return wheel_matrix(result.places); });
+      }
+    } else if (result.drive == DriveKind::skid_steer
+                   ? count != 2 && count != 4 && count != 6
+                   : !result.columns.empty() && count != keys.columns_wanted) {
+      fail(robot.source(),
+           fmt::format("drive {} has {} columns, expected {}", name_of(result.drive), count,
+                       result.drive == DriveKind::skid_steer
+                           ? "2, 4 or 6, those of the left side first"
+                           : std::to_string(keys.columns_wanted)));
+    }
+    if (keys.names.find("wheelbase") != keys.names.end()) return;
+    // Of no meaning then but for how turns are written as travels of two wheels.
+    if (result.length > 0.0) result.wheelbase = result.length;
+    result.wheelbase_stated = true;
   }
 
   void read_noise(const toml::table& noise, Noise& result) const {
     for (const auto& [key, node] : noise) {
       if (key == "process") {
         read_processes(node, result);
+        continue;
+      }
+      if (key == "wheel") {
+        const double value = number(node, "wheel");
+        if (value < 0.0) fail(node.source(), "wheel is negative, expected 0 or more");
+        result.left = result.right = value;
         continue;
       }
       const NoiseKey* known = nullptr;
@@ -337,6 +511,49 @@ std::string toml_number(double value) {
   return csv_number(value == 0.0 ? 0.0 : value);
 }
 
+std::string list_text(const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& one : values) text += (text.empty() ? "" : ", ") + one;
+  return "[" + text + "]";
+}
+
+std::string robot_text(const Robot& robot) {
+  std::string text = "[robot]\n";
+  const DriveKeys& keys = keys_of(robot.drive);
+  const auto has = [&keys](const char* name) { return keys.names.find(name) != keys.names.end(); };
+  if (robot.drive != DriveKind::differential) {
+    text += "drive = " + quoted(std::string(name_of(robot.drive))) + "\n";
+  }
+  if (has("wheelbase")) text += "wheelbase = " + toml_number(robot.wheelbase) + "  # m\n";
+  if (has("length")) text += "length = " + toml_number(robot.length) + "  # m\n";
+  if (has("radius")) text += "radius = " + toml_number(robot.length) + "  # m\n";
+  if (has("wheel_left") && robot.wheel_left != 0.0) {
+    text += "wheel_left = " + toml_number(robot.wheel_left) + "  # m\n";
+  }
+  if (!robot.columns.empty() && robot.places.empty()) {
+    std::vector<std::string> names;
+    for (const std::string& one : robot.columns) names.push_back(quoted(one));
+    text += "columns = " + list_text(names) + "\n";
+  }
+  if (robot.drive == DriveKind::wheels && robot.places.empty()) {
+    std::vector<std::string> rows;
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      std::vector<std::string> numbers;
+      for (const double one : robot.matrix.row(row)) numbers.push_back(toml_number(one));
+      rows.push_back(list_text(numbers));
+    }
+    text += "matrix = " + list_text(rows) + "  # to forward, sideways, turn\n";
+  }
+  for (std::size_t k = 0; k < robot.places.size(); ++k) {
+    const WheelPlace& one = robot.places[k];
+    text += "[[robot.wheel]]\ncolumn = " + quoted(robot.columns[k]) +
+            "\nx = " + toml_number(one.x) + "\ny = " + toml_number(one.y) +
+            "\ndirection = " + toml_number(one.direction) + "\n";
+    if (one.roller != 0.0) text += "roller = " + toml_number(one.roller) + "\n";
+  }
+  return text;
+}
+
 std::string process_text(const NoiseProcess& process) {
   std::string text =
       "\n[[noise.process]]\nchannel = " + quoted(std::string(name_of(process.channel))) +
@@ -365,14 +582,23 @@ Model read_model(const std::filesystem::path& file) {
 }
 
 std::string format_model(const Model& model) {
-  std::string text = "[robot]\nwheelbase = " + toml_number(model.robot.wheelbase) + "  # m\n\n";
-  text += "[noise]\n";
+  std::string text = robot_text(model.robot) + "\n[noise]\n";
   const Noise defaults;
+  const bool two = model.robot.drive == DriveKind::differential;
+  const bool steers = is_of_drive(Channel::steer, model.robot);
+  if (!two) {
+    const double k = std::sqrt(
+        0.5 * (model.noise.left * model.noise.left + model.noise.right * model.noise.right));
+    text += "wheel = " + toml_number(k) +
+            "  # m^1/2: variance of each wheel's travel = wheel^2 * |travel|\n";
+  }
   for (const NoiseKey& key : kNoise) {
     const double value = model.noise.*(key.value);
     // An optional law that is off, or of a stream that few recordings have.
     const bool rare = key.value == &Noise::gyro || key.value == &Noise::fix ||
-                      key.value == &Noise::loop || key.value == &Noise::loop_heading;
+                      key.value == &Noise::loop || key.value == &Noise::loop_heading ||
+                      (key.value == &Noise::steer && !steers);
+    if (!two && (key.value == &Noise::left || key.value == &Noise::right)) continue;
     if (value == defaults.*(key.value) && (value == 0.0 || rare)) continue;
     text += std::string(key.name) + " = " + toml_number(value) + "  # " + key.unit + "\n";
   }

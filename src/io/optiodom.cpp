@@ -6,6 +6,7 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -20,8 +21,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWheelbase = 0.20;       // m
-constexpr double kWheelDiameter = 0.084;  // m
+/// Nominal; what the metadata say are a controller's parameters of the day.
+struct OptiOdomRobot {
+  const char* type;  ///< of the metadata
+  DriveKind drive;
+  double wheel_diameter;             ///< m
+  double size;                       ///< m: wheelbase, length, or centre to wheel
+  std::vector<std::string> columns;  ///< after t, x, y, heading; one that steers holds angles
+};
+
+const OptiOdomRobot* robot_of(const std::string& type) {
+  static const std::vector<OptiOdomRobot> robots{
+      {"diff", DriveKind::differential, 0.084, 0.20, {"right", "left"}},
+      {"tricyc", DriveKind::tricycle, 0.065, 0.15, {"wheel", "steer"}},
+      {"omni3", DriveKind::omni3, 0.102, 0.195, {"wheel1", "wheel2", "wheel3"}}};
+  const auto found = std::find_if(robots.begin(), robots.end(),
+                                  [&type](const OptiOdomRobot& one) { return one.type == type; });
+  return found == robots.end() ? nullptr : &*found;
+}
 
 /// The run's name without its endings, "SET_run-NN"; empty if it is none.
 std::string run_of(const fs::path& file) {
@@ -67,9 +84,15 @@ double positive_number(const std::map<std::string, std::string>& metadata, const
 
 /// Encoders of 0.1 mm a tick, a motion capture of about a millimetre; the wheels' noise is that of
 /// the best runs, to start from: calibrate finds its own.
-Model nominal_model() {
+Model nominal_model(const OptiOdomRobot& robot) {
   Model model;
-  model.robot.wheelbase = kWheelbase;
+  model.robot.drive = robot.drive;
+  if (robot.drive == DriveKind::differential) {
+    model.robot.wheelbase = robot.size;
+  } else {
+    model.robot.length = robot.size;
+    model.robot.columns = robot.columns;
+  }
   model.noise.left = model.noise.right = 0.002;
   model.noise.truth = 0.001;
   model.noise.truth_heading = 0.005;
@@ -88,21 +111,27 @@ OptiOdomRecording read_optiodom(const fs::path& file) {
   const fs::path about = file.parent_path() / (run.substr(0, run.rfind("_run-")) + "_metadata.csv");
   const auto metadata = read_metadata(about);
   const auto type = metadata.find("type");
-  if (type == metadata.end() || type->second != "diff") {
+  const OptiOdomRobot* robot = type == metadata.end() ? nullptr : robot_of(type->second);
+  if (robot == nullptr) {
     throw InputError(about.string(), 0,
                      "the robot's type is \"" +
                          (type == metadata.end() ? std::string() : type->second) +
-                         "\", expected diff (two driven wheels)");
+                         "\", expected diff, tricyc or omni3");
   }
   OptiOdomRecording result;
-  result.model = nominal_model();
+  result.model = nominal_model(*robot);
   result.metre_per_tick =
-      std::numbers::pi * kWheelDiameter /
+      std::numbers::pi * robot->wheel_diameter /
       (positive_number(metadata, "ngear", about) * positive_number(metadata, "encRes", about));
   Recording& recording = result.recording;
   recording.name = file.string();
   double before = -std::numeric_limits<double>::infinity();
-  for (const std::vector<double>& row : read_number_rows(file, 6, kCommas)) {
+  const bool two = robot->drive == DriveKind::differential;
+  if (!two) {
+    for (const std::string& name : robot->columns) recording.drive.covariates.push_back({name, {}});
+  }
+  const std::size_t fields = 4 + robot->columns.size();
+  for (const std::vector<double>& row : read_number_rows(file, fields, kCommas)) {
     if (!(row[0] > before)) {
       throw InputError(file.string(), recording.drive.rows() + 1,
                        "time runs backwards, expected rows in order of time");
@@ -110,8 +139,16 @@ OptiOdomRecording read_optiodom(const fs::path& file) {
     before = row[0];
     recording.truth.push_back({row[0], row[1], row[2], wrap_angle(row[3])});
     recording.drive.t.push_back(row[0]);
-    recording.drive.right.push_back(row[4] * result.metre_per_tick);
-    recording.drive.left.push_back(row[5] * result.metre_per_tick);
+    if (two) {
+      recording.drive.right.push_back(row[4] * result.metre_per_tick);
+      recording.drive.left.push_back(row[5] * result.metre_per_tick);
+      continue;
+    }
+    for (std::size_t k = 0; k < robot->columns.size(); ++k) {
+      const bool steers = robot->columns[k] == "steer";
+      recording.drive.covariates[k].values.push_back(steers ? row[4 + k]
+                                                            : row[4 + k] * result.metre_per_tick);
+    }
   }
   if (recording.drive.rows() < 2) {
     throw InputError(file.string(), 0, "fewer than two rows, expected a drive");

@@ -86,10 +86,14 @@ Drive read_drive(const fs::path& file) {
   const std::string text = read_file(file);
   CsvReader csv(text, file.string());
   const int t = csv.require("t");
-  const int left = csv.require("left");
-  const int right = csv.require("right");
   const int heading = csv.find("heading");
   const int yaw_rate = csv.find("yaw_rate");
+  // Of other wheels than two the columns are the model's to name.
+  const int known = 1 + (heading >= 0 ? 1 : 0) + (yaw_rate >= 0 ? 1 : 0);
+  const bool others = csv.find("left") < 0 && csv.find("right") < 0 &&
+                      static_cast<int>(csv.columns().size()) > known + 1;
+  const int left = others ? -1 : csv.require("left");
+  const int right = others ? -1 : csv.require("right");
   Drive drive;
   std::vector<int> covariate_columns;
   for (int column = 0; column < static_cast<int>(csv.columns().size()); ++column) {
@@ -110,8 +114,8 @@ Drive read_drive(const fs::path& file) {
     const double now = csv.number(t, kLargestTime);
     if (!drive.t.empty()) require_forward(csv, drive.t.back(), now, false);
     drive.t.push_back(now);
-    drive.left.push_back(csv.number(left, kLargestTravel));
-    drive.right.push_back(csv.number(right, kLargestTravel));
+    if (left >= 0) drive.left.push_back(csv.number(left, kLargestTravel));
+    if (right >= 0) drive.right.push_back(csv.number(right, kLargestTravel));
     if (heading >= 0) drive.heading.push_back(csv.number_or_absent(heading, kLargestAngle));
     if (yaw_rate >= 0) drive.yaw_rate.push_back(csv.number_or_absent(yaw_rate, kLargestYawRate));
     for (std::size_t k = 0; k < covariate_columns.size(); ++k) {

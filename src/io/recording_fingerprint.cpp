@@ -39,9 +39,13 @@ class Hash {
 std::string fingerprint(const Recording& recording) {
   Hash hash;
   const Drive& drive = recording.drive;
-  for (const auto* column : {&drive.t, &drive.left, &drive.right, &drive.heading}) {
-    hash.take(*column);
+  hash.take(drive.t);
+  if (drive.wheels.empty()) {
+    hash.take(drive.left);
+    hash.take(drive.right);
   }
+  hash.take(drive.heading);
+  for (const WheelColumn& one : drive.wheels) hash.take(one.reading);
   if (drive.has_gyro()) hash.take(drive.yaw_rate);
   for (const Sighting& one : recording.sightings) {
     hash.take(one.landmark);

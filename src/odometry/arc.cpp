@@ -89,6 +89,52 @@ Matrix3 arc_covariance(double path, double turn, const ArcNoise& noise) {
   return symmetrised(T * Q * T.transpose());
 }
 
+Pose slanting_displacement(const Vector2& way, double turn) {
+  const Vector2 chord = sinc(0.5 * turn) * (rotation(0.5 * turn) * way);
+  return {chord.x(), chord.y(), turn};
+}
+
+Matrix3 slanting_covariance(const Vector2& way, double turn, const ArcNoise& noise) {
+  const bool aside = noise.aside != 0.0 || noise.along_aside != 0.0 || noise.heading_aside != 0.0;
+  if (way.y() == 0.0 && !aside) return arc_covariance(way.x(), turn, noise);
+  // In axes turned so that the body moves ahead: D its way, and noise along and across it.
+  const double D = way.norm();
+  const double direction = D > 0.0 ? std::atan2(way.y(), way.x()) : 0.0;
+  const Matrix2 R = rotation(direction);
+  Matrix2 moved;
+  moved << noise.along, noise.along_aside, noise.along_aside, noise.aside;
+  moved = (R.transpose() * moved * R).eval();
+  const Vector2 with_heading = R.transpose() * Vector2(noise.shared, noise.heading_aside);
+  const Matrix3 ahead = arc_covariance(D, turn, {moved(0, 0), noise.heading, with_heading.x()});
+  // A unit of noise across, where u of the arc remains: c = (sin ua, cos ua, 0). With e and b of
+  // the covariance above, the integrals over u of c c', e c' + c e' and c b' + b c'.
+  const double a = turn;
+  const double h = 0.5 * sinc(0.5 * a) * sinc(0.5 * a);
+  const double s2 = sinc(a) * sinc(a);
+  const double g1_a = g1(a);
+  const double g1_2a = g1(2.0 * a);
+  Matrix3 across = Matrix3::Zero();
+  across(0, 0) = 2.0 * a * a * g1_2a;
+  across(1, 1) = 1.0 - 2.0 * a * a * g1_2a;
+  across(0, 1) = 0.5 * a * s2;
+  Matrix3 along_across = Matrix3::Zero();
+  along_across(0, 0) = a * s2;
+  along_across(1, 1) = -a * s2;
+  along_across(0, 1) = sinc(2.0 * a);
+  Matrix3 heading_across = Matrix3::Zero();
+  heading_across(0, 0) = D * (2.0 * h - s2);
+  heading_across(1, 1) = D * s2;
+  heading_across(0, 1) = D * a * (4.0 * g1_2a - g1_a);
+  heading_across(0, 2) = a * h;
+  heading_across(1, 2) = sinc(a);
+
+  Matrix3 Q = moved(1, 1) * across + moved(0, 1) * along_across + with_heading.y() * heading_across;
+  Q.triangularView<Eigen::StrictlyLower>() = Q.transpose();
+  const Matrix3 T = pose_rotation(a);
+  const Matrix3 back = pose_rotation(direction);
+  return symmetrised(back * (ahead + T * Q * T.transpose()) * back.transpose());
+}
+
 Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
   return arc_covariance(0.5 * (travel.left + travel.right),
                         (travel.right - travel.left) / wheelbase,

@@ -12,10 +12,10 @@
 namespace trussmap {
 namespace {
 
-/// Nothing where the wheels' alone is meant.
-std::optional<ArcNoise> noise_with_gyro(const Drive& drive, const DriveRow& row, const Robot& robot,
-                                        const Noise& noise) {
-  if (drive.gyro.empty()) return std::nullopt;
+/// Nothing where two wheels' alone is meant.
+std::optional<ArcNoise> noise_of_row(const Drive& drive, const DriveRow& row, const Robot& robot,
+                                     const Noise& noise) {
+  if (drive.gyro.empty() && drive.wheels.empty()) return std::nullopt;
   return row_noise(drive, row.row, row.part, row.duration, robot, noise);
 }
 
@@ -91,14 +91,14 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
   const auto slip_in = [&slip](const DriveRow& row) {
     return slip.empty() ? 0.0 : row.part * slip[row.row];
   };
-  if (drive.has_compass() || drive.has_gyro()) {
+  if (drive.has_compass() || drive.has_gyro() || !drive.wheels.empty()) {
     RowReckoner reckoner(start, drive.has_compass());
     for (const DriveRow& row : rows) {
       const bool reads = drive.has_compass() && row.ends && drive.t[row.row] > readings_used_until;
-      reckoner.take(
-          {travel_of(drive, row), row.duration, slip_in(row),
-           reads ? drive.heading[row.row] : kAbsent, noise_with_gyro(drive, row, robot, noise)},
-          robot, noise);
+      reckoner.take({travel_of(drive, row), row.duration, slip_in(row),
+                     reads ? drive.heading[row.row] : kAbsent,
+                     noise_of_row(drive, row, robot, noise), row.part * drive.slip(row.row)},
+                    robot, noise);
     }
     return reckoner.at();
   }
@@ -136,7 +136,8 @@ std::vector<PoseEstimate> dead_reckoned_estimates(const Drive& drive, const Robo
                    drive.duration(row),
                    slip.empty() ? 0.0 : slip[row],
                    reads ? drive.heading[row] : kAbsent,
-                   noise_with_gyro(drive, {row, 1.0, drive.duration(row)}, robot, noise)},
+                   noise_of_row(drive, {row, 1.0, drive.duration(row)}, robot, noise),
+                   drive.slip(row)},
                   robot, noise);
     result.push_back(reckoner.at());
   }

@@ -28,8 +28,8 @@ void correct_heading(PoseEstimate& estimate, double reading, double variance) {
 
 Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
   if (!row.noise) return arc_covariance(row.travel, row.duration, robot, noise);
-  return arc_covariance(0.5 * (row.travel.left + row.travel.right),
-                        (row.travel.right - row.travel.left) / robot.wheelbase, *row.noise);
+  return slanting_covariance(Vector2(0.5 * (row.travel.left + row.travel.right), row.sideways),
+                             (row.travel.right - row.travel.left) / robot.wheelbase, *row.noise);
 }
 
 Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
@@ -69,7 +69,7 @@ double white_equivalent(const Noise& noise, double duration, double way) {
 }
 
 void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
-  const Pose displacement = displacement_of(row.travel, row.slip, robot.wheelbase);
+  const Pose displacement = displacement_of(row.travel, row.slip + row.sideways, robot.wheelbase);
   if (compass_ || row.noise) {
     at_ = moved(at_, displacement, covariance_of(row, robot, noise));
     if (!std::isnan(row.reading)) {

@@ -6,7 +6,7 @@
 //   without a compass   covariance by the arc that the row belongs to: from the arc's start, one
 //                       closed form over all of its rows so far
 //   with one            row by row, and each reading corrects (extended Kalman filter)
-//   with a gyro         row by row
+//   with a gyro, or with other wheels than two   row by row
 #pragma once
 
 #include "odometry/merge.hpp"
@@ -33,8 +33,9 @@ struct ReckonedRow {
   double duration = 0.0;     ///< s
   double slip = 0.0;         ///< m to the left
   double reading = kAbsent;  ///< rad, compass at the row's end; NaN: none
-  /// Where a gyro was taken in: the row's noise. Absent: the wheels'.
+  /// Where a gyro was taken in, or of other wheels than two: the row's noise. Absent: the wheels'.
   std::optional<ArcNoise> noise = std::nullopt;
+  double sideways = 0.0;  ///< m to the left, that the wheels show
 };
 
 /// Of the row's motion, in the frame of its start.

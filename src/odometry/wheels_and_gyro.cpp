@@ -21,10 +21,46 @@ WheelTravel wheels_of(const Drive& drive, std::size_t row, double part) {
   return {part * drive.left[row], part * drive.right[row]};
 }
 
+/// Each wheel's noise, and that of the steering, as it moves the body; with what the model knows
+/// besides.
+ArcNoise columns_noise(const Drive& drive, std::size_t row, double part, double duration,
+                       const Robot& robot, const Noise& noise) {
+  const double k2 = 0.5 * (noise.left * noise.left + noise.right * noise.right);
+  Matrix3 Q = Matrix3::Zero();
+  for (const WheelColumn& column : drive.wheels) {
+    const Eigen::Vector3d by(column.by_reading[row].data());
+    const double way = std::abs(drive.wheels.front().reading[row]);  // what is steered
+    const double variance = !column.steers ? k2 * std::abs(column.reading[row])
+                            : way > 0.0    ? noise.steer * noise.steer / way
+                                           : 0.0;
+    Q += part * variance * by * by.transpose();
+  }
+  const double travel = noise.travel_per_s * noise.travel_per_s * duration;
+  const double turn = std::abs(part * (drive.right[row] - drive.left[row]) / robot.wheelbase);
+  const double heading = noise.heading_per_s * noise.heading_per_s * duration +
+                         noise.heading_per_rad * noise.heading_per_rad * turn;
+  return {Q(0, 0) + travel, Q(2, 2) + heading,
+          Q(0, 2),          Q(1, 1) + (drive.sideways.empty() ? 0.0 : travel),
+          Q(0, 1),          Q(1, 2)};
+}
+
+/// Of the wheels, without the gyro.
+ArcNoise wheels_noise(const Drive& drive, std::size_t row, double part, double duration,
+                      const Robot& robot, const Noise& noise) {
+  return drive.wheels.empty() ? arc_noise(wheels_of(drive, row, part), duration, robot, noise)
+                              : columns_noise(drive, row, part, duration, robot, noise);
+}
+
 }  // namespace
 
 GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
                      const Robot& robot, const Noise& noise) {
+  return gyro_share(wheels, yaw_rate, duration, robot, noise,
+                    arc_noise(wheels, duration, robot, noise));
+}
+
+GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
+                     const Robot& robot, const Noise& noise, const ArcNoise& of_wheels) {
   GyroShare share{wheels.left, wheels.right};
   if (std::isnan(yaw_rate)) {
     share.variance = std::numeric_limits<double>::infinity();
@@ -33,11 +69,11 @@ GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration
   share.excess = yaw_rate * duration - (share.right - share.left) / robot.wheelbase;
   share.variance = gyro_variance(noise, duration);
   if (share.left == 0.0 && share.right == 0.0) return share;
-  const ArcNoise of_wheels = arc_noise(wheels, duration, robot, noise);
   const double total = of_wheels.heading + share.variance;
   if (!(total > 0.0)) return share;
   share.along = of_wheels.shared / total;
   share.turn = of_wheels.heading / total;
+  share.aside = of_wheels.heading_aside / total;
   return share;
 }
 
@@ -53,9 +89,15 @@ ArcNoise noise_together(const GyroShare& share, const ArcNoise& wheels, double d
   const double along = share.along;
   const double r = gyro_variance(noise, duration);
   const double kept = 1.0 - share.turn;
-  return {wheels.along - 2.0 * along * wheels.shared + along * along * (wheels.heading + r),
+  const double aside = share.aside;
+  const double both = wheels.heading + r;
+  return {wheels.along - 2.0 * along * wheels.shared + along * along * both,
           kept * kept * wheels.heading + share.turn * share.turn * r,
-          kept * (wheels.shared - along * wheels.heading) + share.turn * along * r};
+          kept * (wheels.shared - along * wheels.heading) + share.turn * along * r,
+          wheels.aside - 2.0 * aside * wheels.heading_aside + aside * aside * both,
+          wheels.along_aside - along * wheels.heading_aside - aside * wheels.shared +
+              along * aside * both,
+          kept * (wheels.heading_aside - aside * wheels.heading) + share.turn * aside * r};
 }
 
 Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
@@ -63,11 +105,14 @@ Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
   if (!drive.has_gyro() || !drive.gyro.empty()) return result;
   result.gyro.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const GyroShare share = gyro_share({drive.left[row], drive.right[row]}, drive.yaw_rate[row],
-                                       drive.duration(row), robot, noise);
+    const double duration = drive.duration(row);
+    GyroShare share = gyro_share(wheels_of(drive, row, 1.0), drive.yaw_rate[row], duration, robot,
+                                 noise, wheels_noise(drive, row, 1.0, duration, robot, noise));
+    share.sideways = drive.slip(row);
     const WheelTravel both = together(share, robot);
     result.left[row] = both.left;
     result.right[row] = both.right;
+    if (!drive.sideways.empty()) result.sideways[row] += share.aside * share.excess;
     result.gyro.push_back(share);
   }
   return result;
@@ -87,17 +132,19 @@ bool has_gyro(const std::vector<Recording>& recordings) {
 
 ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double duration,
                    const Robot& robot, const Noise& noise) {
-  const ArcNoise wheels = arc_noise(wheels_of(drive, row, part), duration, robot, noise);
+  const ArcNoise wheels = wheels_noise(drive, row, part, duration, robot, noise);
   return drive.gyro.empty() ? wheels : noise_together(drive.gyro[row], wheels, duration, noise);
 }
 
 Matrix3 row_covariance(const Drive& drive, std::size_t row, double part, double duration,
                        const Robot& robot, const Noise& noise) {
   const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
-  if (drive.gyro.empty()) return arc_covariance(travel, duration, robot, noise);
-  return arc_covariance(0.5 * (travel.left + travel.right),
-                        (travel.right - travel.left) / robot.wheelbase,
-                        row_noise(drive, row, part, duration, robot, noise));
+  if (drive.gyro.empty() && drive.wheels.empty()) {
+    return arc_covariance(travel, duration, robot, noise);
+  }
+  return slanting_covariance(Vector2(0.5 * (travel.left + travel.right), part * drive.slip(row)),
+                             (travel.right - travel.left) / robot.wheelbase,
+                             row_noise(drive, row, part, duration, robot, noise));
 }
 
 double excess_variance(const Drive& drive, std::size_t row, double part, double duration,
@@ -106,8 +153,9 @@ double excess_variance(const Drive& drive, std::size_t row, double part, double 
     return std::numeric_limits<double>::infinity();
   }
   const WheelTravel wheels = wheels_of(drive, row, part);
-  const bool rests = wheels.left == 0.0 && wheels.right == 0.0;
-  const double of_wheels = rests ? 0.0 : arc_noise(wheels, duration, robot, noise).heading;
+  const bool rests = wheels.left == 0.0 && wheels.right == 0.0 && drive.slip(row) == 0.0;
+  const double of_wheels =
+      rests ? 0.0 : wheels_noise(drive, row, part, duration, robot, noise).heading;
   return of_wheels + gyro_variance(noise, duration);
 }
 

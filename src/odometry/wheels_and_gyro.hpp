@@ -3,7 +3,8 @@
 //
 // Wheels and gyro, row by row, as one motion.
 //
-//   s = (path, turn)   of the wheels, covariance Q (2 x 2) of their noise in the row
+//   s = (path, turn)   of the wheels, covariance Q (2 x 2) of their noise in the row; and the way
+//                      to the side, where they show one
 //   w, g               the wheels' turn and the gyro's, which errs by N(0, r), r = gyro^2 duration
 //   e = g - w          the excess;  u = (0, 1)
 //
@@ -28,6 +29,10 @@ namespace trussmap {
 /// Of one row, from its wheels' travels and the gyro's reading (rad/s, NaN: none).
 [[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
                                    const Robot& robot, const Noise& noise);
+/// The same of wheels whose noise is known.
+[[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
+                                   const Robot& robot, const Noise& noise,
+                                   const ArcNoise& of_wheels);
 /// s', as wheel travels that lead along it.
 [[nodiscard]] WheelTravel together(const GyroShare& share, const Robot& robot);
 /// Q' of a row, or of a part that lasts `duration` s, in which the wheels' noise is `wheels`.

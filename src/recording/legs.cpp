@@ -34,7 +34,7 @@ std::vector<double> driven_path(const Drive& drive) {
   std::vector<double> path(drive.rows());
   double sum = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    sum += std::abs(0.5 * (drive.left[row] + drive.right[row]));
+    sum += drive.way(row);
     path[row] = sum;
   }
   return path;

@@ -103,8 +103,14 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    kinds.push_back(
-        motion_kind(drive.wheel_left(row), drive.wheel_right(row), drive.duration(row)));
+    const double left = drive.wheel_left(row);
+    const double right = drive.wheel_right(row);
+    // Who moves to the side drives as who moves ahead.
+    const double more =
+        drive.sideways.empty()
+            ? 0.0
+            : std::hypot(0.5 * (left + right), drive.wheel_slip(row)) - 0.5 * (left + right);
+    kinds.push_back(motion_kind(left + more, right + more, drive.duration(row)));
   }
   return kinds;
 }
@@ -173,8 +179,8 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
     travel[row] = 0.5 * (drive.left[row] + drive.right[row]);
     turn[row] = (drive.right[row] - drive.left[row]) / wheelbase;
     t.push_back(drive.t[row] - 0.5 * drive.duration(row) - drive.start());
-    distance.push_back(driven + 0.5 * std::abs(travel[row]));
-    driven += std::abs(travel[row]);
+    distance.push_back(driven + 0.5 * drive.way(row));
+    driven += drive.way(row);
   }
   variables["speed"] = smoothed_rate(drive, spans, travel);
   variables["turn_rate"] = smoothed_rate(drive, spans, turn);
@@ -237,7 +243,7 @@ RowVariables instant_variables(const Drive& drive, double wheelbase,
   std::vector<double>& y = variables["y"];
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::size_t row = rows[k];
-    const double length = 0.5 * std::abs(drive.left[row] + drive.right[row]);
+    const double length = drive.way(row);
     const double share = 1.0 - (drive.t[row] - instants[k]) / drive.duration(row);
     t[k] = instants[k] - drive.start();
     distance[k] = middle[row] + (share - 0.5) * length;

@@ -67,8 +67,8 @@ PageTable table_of(const WheelCalibration& wheels) {
   PageTable table;
   table.caption = "What was found";
   table.headings = {"", "value", "standard error", "unit"};
-  const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
-                            const char* unit) {
+  const auto row = [&table](const std::string& name, const std::optional<Calibrated>& one,
+                            const std::string& unit) {
     if (!one) {
       table.rows.push_back({name, "not determined", "", unit});
       return;
@@ -76,6 +76,13 @@ PageTable table_of(const WheelCalibration& wheels) {
     const QuantityText text = quantity_text(one->value, one->sd);
     table.rows.push_back({name, text.value, text.error, unit});
   };
+  if (!wheels.constants.empty()) {
+    for (const DriveConstant& one : wheels.constants) {
+      const ChannelFacts& facts = facts_of(one.channel);
+      row(std::string(facts.does_what), one.g, std::string(facts.unit));
+    }
+    return table;
+  }
   row("E_d, right wheel over left", wheels.diameter_ratio, "");
   row("E_b, wheelbase over nominal", wheels.wheelbase_ratio, "");
   row("E_s, true over measured travel", wheels.scale, "");
@@ -106,6 +113,10 @@ Page truth_page(const TruthCalibration& found, const std::string& subject) {
   for (const std::string& one : wheels.undetermined) page.notes.push_back("Not determined: " + one);
   if (judged) {
     page.sections.push_back({"What the calibration gains", {ChartRow{arrival_chart(found)}}});
+  }
+  if (!wheels.constants.empty()) {
+    page.sections.push_back({"What was found", {table_of(wheels)}});
+    return page;
   }
   ChartRow charts{interval_chart("ratios", "Wheels and wheelbase, in percent of nominal",
                                  "With 95 % intervals; 0 is a robot that is as its model has it.",

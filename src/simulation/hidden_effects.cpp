@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/hidden_effects.hpp"
 
+#include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
 #include "simulation/effect_gains.hpp"
 #include "simulation/motion_variables.hpp"
@@ -18,6 +19,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -59,13 +61,17 @@ class Draw {
         robot_(robot),
         surveyed_(surveyed),
         variables_(motion_variables(motion, true_rates(motion), robot.wheelbase)),
-        random_(random_stream(seed, Stream::hidden)) {}
+        random_(random_stream(seed, Stream::hidden)) {
+    for (const CatalogueEntry& entry : catalogue()) {
+      if (is_of_drive(entry.channel, Robot())) entries_.push_back(entry);
+    }
+  }
 
   std::vector<Effect> effects() {
     const std::size_t wanted = uniform(0.0, 1.0) < kSecondShare ? 2 : 1;
     std::vector<Effect> drawn;
     for (int k = 0; k < kMostDraws && drawn.size() < wanted; ++k) {
-      const CatalogueEntry& entry = one_of(catalogue());
+      const CatalogueEntry& entry = one_of(entries_);
       std::optional<Effect> effect = draw(entry);
       if (effect && fits(*effect, drawn)) drawn.push_back(std::move(*effect));
     }
@@ -166,6 +172,7 @@ class Draw {
   bool surveyed_;
   MotionVariables variables_;
   std::mt19937_64 random_;
+  std::vector<CatalogueEntry> entries_;  ///< of a drive with two wheels
 };
 
 }  // namespace

@@ -34,6 +34,7 @@ Scale scale_of(Channel channel) {
     case Channel::compass:
     case Channel::bearing:
     case Channel::truth_heading:
+    case Channel::steer:
       return {kDegrees, " deg"};
     case Channel::delay:
     case Channel::fix_delay:
@@ -96,6 +97,26 @@ Phrase phrase_of(Channel channel) {
       return {"fixes lie", "too far along x", "too far against x"};
     case Channel::fix_y:
       return {"fixes lie", "too far along y", "too far against y"};
+    case Channel::sideways:
+      return {"the robot moves to the side", "more than its wheels say",
+              "less than its wheels say"};
+    case Channel::wheel1:
+      return {"the first wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheel2:
+      return {"the second wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheel3:
+      return {"the third wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheel4:
+      return {"the fourth wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheel5:
+      return {"the fifth wheel rolls", "further than it says", "less far than it says"};
+    case Channel::wheel6:
+      return {"the sixth wheel rolls", "further than it says", "less far than it says"};
+    case Channel::steer:
+      return {"the steered wheel points", "further to the left than it says",
+              "further to the right than it says"};
+    case Channel::steer_gain:
+      return {"the steered wheel turns", "further than it says", "less far than it says"};
   }
   return {"", "", ""};
 }
@@ -152,6 +173,24 @@ const char* noun_of(Channel channel) {
       return "error of fixes along x";
     case Channel::fix_y:
       return "error of fixes along y";
+    case Channel::sideways:
+      return "error of the way to the side";
+    case Channel::wheel1:
+      return "first wheel's error";
+    case Channel::wheel2:
+      return "second wheel's error";
+    case Channel::wheel3:
+      return "third wheel's error";
+    case Channel::wheel4:
+      return "fourth wheel's error";
+    case Channel::wheel5:
+      return "fifth wheel's error";
+    case Channel::wheel6:
+      return "sixth wheel's error";
+    case Channel::steer:
+      return "steering offset";
+    case Channel::steer_gain:
+      return "error of the steering's gain";
   }
   return "";
 }
@@ -207,6 +246,24 @@ std::string channel_in_words(Channel channel) {
       return "fixes too far along x by";
     case Channel::fix_y:
       return "fixes too far along y by";
+    case Channel::sideways:
+      return "way to the side, measured too short by";
+    case Channel::wheel1:
+      return "first wheel, measured too short by";
+    case Channel::wheel2:
+      return "second wheel, measured too short by";
+    case Channel::wheel3:
+      return "third wheel, measured too short by";
+    case Channel::wheel4:
+      return "fourth wheel, measured too short by";
+    case Channel::wheel5:
+      return "fifth wheel, measured too short by";
+    case Channel::wheel6:
+      return "sixth wheel, measured too short by";
+    case Channel::steer:
+      return "steering further left than measured by";
+    case Channel::steer_gain:
+      return "steering, measured too little by";
   }
   return "";
 }

@@ -91,7 +91,8 @@ TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
     EXPECT_DOUBLE_EQ(twice.advance, -2.0 * found.advance);
     EXPECT_DOUBLE_EQ(twice.turn, -2.0 * found.turn);
   }
-  EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views && !of_gyro(GetParam()));
+  EXPECT_EQ(acts, acts_on(GetParam()) != ActsOn::views && !of_gyro(GetParam()) &&
+                      is_of_drive(GetParam(), Robot()));
 }
 
 /// Where a gyro is believed by a share, a row moves by that share of what the gyro says, and by the
@@ -199,13 +200,14 @@ TEST(ChannelPhysics, ASightingIsFreedFromWhatWasAddedToIt) {
 /// An effect of one wheel is believed to be as large as one of both, or of all travel.
 TEST(Channels, ProportionsHaveOnePrior) {
   using enum Channel;
-  for (const Channel channel : {travel, left, right, wheels, difference, turn, gyro_scale}) {
+  for (const Channel channel : {travel, left, right, wheels, difference, turn, gyro_scale, sideways,
+                                wheel1, wheel6, steer_gain}) {
     EXPECT_EQ(facts_of(channel).prior_sd, 0.1) << name_of(channel);
   }
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 25U);
+  EXPECT_EQ(channels().size(), 34U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);
@@ -214,11 +216,11 @@ TEST(Channels, HaveOneNameEach) {
   }
   EXPECT_EQ(parse_channel("Turn"), std::nullopt);
   try {
-    (void)channel_named("steer");
+    (void)channel_named("spin");
     ADD_FAILURE() << "an unknown channel was accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_EQ(
-        std::string(error.what()).rfind("channel \"steer\" is unknown, expected one of travel,", 0),
+        std::string(error.what()).rfind("channel \"spin\" is unknown, expected one of travel,", 0),
         0U);
   }
 }

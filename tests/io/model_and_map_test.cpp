@@ -7,6 +7,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <random>
@@ -58,7 +59,40 @@ const Refused kBadModels[] = {
     {"NoToml", "[robot\n", ":1: no TOML: "},
     {"UnknownTable", "[robto]\n", ":1: key \"robto\" is unknown, expected robot, noise or effect"},
     {"UnknownKey", "[robot]\nbase = 1\n",
-     ":2: key \"base\" in [robot] is unknown, expected wheelbase"},
+     ":2: key \"base\" in [robot] is unknown for drive differential, expected drive, columns, "
+     "wheelbase"},
+    {"UnknownDrive", "[robot]\ndrive = \"hover\"\n",
+     ":2: drive \"hover\" is unknown, expected one of differential, skid-steer, tricycle, "
+     "ackermann, omni3, mecanum, wheels"},
+    {"KeyOfAnotherDrive", "[robot]\ndrive = \"omni3\"\nwheelbase = 0.3\n",
+     ":3: key \"wheelbase\" in [robot] is unknown for drive omni3, expected drive, columns, "
+     "radius"},
+    {"LengthOfTricycle", "[robot]\ndrive = \"tricycle\"\n",
+     ":1: [robot] has no length, expected one of drive tricycle"},
+    {"NegativeLength", "[robot]\ndrive = \"tricycle\"\nlength = -1\n",
+     ":3: length is -1, expected more than 0 (m)"},
+    {"ColumnTwice", "[robot]\ndrive = \"tricycle\"\nlength = 1\ncolumns = [\"a\", \"a\"]\n",
+     ":4: column \"a\" is named twice, expected each wheel once"},
+    {"TooFewColumns", "[robot]\ndrive = \"omni3\"\nradius = 1\ncolumns = [\"a\", \"b\"]\n",
+     ":1: drive omni3 has 2 columns, expected 3"},
+    {"OddSkidSteer",
+     "[robot]\ndrive = \"skid-steer\"\nwheelbase = 1\ncolumns = [\"a\", \"b\", \"c\"]\n",
+     ":1: drive skid-steer has 3 columns, expected 2, 4 or 6, those of the left side first"},
+    {"WheelsWithoutMatrix", "[robot]\ndrive = \"wheels\"\ncolumns = [\"a\", \"b\"]\n",
+     ":1: drive wheels needs either [[robot.wheel]] or columns and a matrix, expected one"},
+    {"ShortMatrix",
+     "[robot]\ndrive = \"wheels\"\ncolumns = [\"a\", \"b\"]\nmatrix = [[1, 1], [0], [1, 1]]\n",
+     ":4: a row of matrix is no list of 2 numbers, expected one per column"},
+    {"WheelWithoutColumn", "[robot]\ndrive = \"wheels\"\n[[robot.wheel]]\ny = 1\n",
+     ":3: a wheel has no column, expected the name of its column of drive.csv"},
+    {"WheelsOnOneLine",
+     "[robot]\ndrive = \"wheels\"\n[[robot.wheel]]\ncolumn = \"a\"\n[[robot.wheel]]\ncolumn = "
+     "\"b\"\n",
+     ":1: the wheels do not tell forward and turn apart, expected two at least that roll side by "
+     "side"},
+    {"ChannelOfAnotherDrive",
+     "[robot]\n[[effect]]\nname = \"slip\"\nchannel = \"sideways\"\nshape = [\"1\"]\n",
+     ":5: effect \"slip\": channel \"sideways\" is of another drive than differential"},
     {"Wheelbase", "[robot]\nwheelbase = 0\n", ":2: wheelbase is 0, expected more than 0 (m)"},
     {"TextWheelbase", "[robot]\nwheelbase = \"wide\"\n",
      ":2: wheelbase is no number, expected one"},
@@ -402,6 +436,38 @@ const Refused kBadMaps[] = {
 
 INSTANTIATE_TEST_SUITE_P(EveryWay, BadMap, ::testing::ValuesIn(kBadMaps),
                          [](const auto& one) { return std::string(one.param.name); });
+
+TEST(ModelFile, DrivesComeBack) {
+  const testing::ScratchFolder scratch;
+  const std::filesystem::path file = scratch.path() / "model.toml";
+  const char* const texts[] = {
+      "drive = \"skid-steer\"\nwheelbase = 0.5\ncolumns = [\"a\", \"b\", \"c\", \"d\"]\n",
+      "drive = \"tricycle\"\nlength = 1.25\n",
+      "drive = \"ackermann\"\nlength = 2.83\nwheel_left = 0.76\ncolumns = [\"v\", \"phi\"]\n",
+      "drive = \"omni3\"\nradius = 0.195\n",
+      "drive = \"mecanum\"\nwheelbase = 0.4\nlength = 0.5\n",
+      "drive = \"wheels\"\ncolumns = [\"f\", \"s\", \"a\"]\n"
+      "matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n",
+      "drive = \"wheels\"\n[[robot.wheel]]\ncolumn = \"a\"\ny = 0.2\n"
+      "[[robot.wheel]]\ncolumn = \"b\"\ny = -0.2\nx = 0.1\n"
+      "[[robot.wheel]]\ncolumn = \"c\"\nx = -0.3\ndirection = 1.5\nroller = 0.1\n"};
+  for (const char* const text : texts) {
+    write_file(file, "[robot]\n" + std::string(text) + "\n[noise]\nwheel = 0.007\nsteer = 0.01\n");
+    const Model out = read_model(file);
+    EXPECT_EQ(out.noise.left, 0.007);
+    EXPECT_EQ(out.noise.right, 0.007);
+    write_model(file, out);
+    const Model in = read_model(file);
+    EXPECT_EQ(in.robot.drive, out.robot.drive) << text;
+    EXPECT_EQ(in.robot.columns, out.robot.columns);
+    EXPECT_EQ(in.robot.wheelbase, out.robot.wheelbase);
+    EXPECT_EQ(in.robot.length, out.robot.length);
+    EXPECT_EQ(in.robot.wheel_left, out.robot.wheel_left);
+    EXPECT_TRUE(in.robot.matrix == out.robot.matrix);
+    EXPECT_EQ(in.noise.steer, 0.01);
+    EXPECT_NEAR(in.noise.left, 0.007, 1e-17);
+  }
+}
 
 }  // namespace
 }  // namespace trussmap

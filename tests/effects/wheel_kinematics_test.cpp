@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Wheels of every drive against the motion of their contact points, as a rigid body has it.
+#include "trussmap/model.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+struct Twist {
+  double f, s, a;  // forward, to the left, turn
+};
+
+/// Of the point (x, y) of the body, along the direction.
+double way_along(const Twist& body, double x, double y, double direction) {
+  return (body.f - body.a * y) * std::cos(direction) + (body.s + body.a * x) * std::sin(direction);
+}
+
+const std::vector<Twist>& twists(bool to_the_side) {
+  static const std::vector<Twist> omni{{0.3, 0.1, 0.2}, {-0.2, 0.4, -0.1}, {0.0, -0.3, 0.0}};
+  static const std::vector<Twist> bound{{0.3, 0.0, 0.2}, {0.4, 0.0, -0.1}, {0.25, 0.0, 0.0}};
+  return to_the_side ? omni : bound;
+}
+
+Recording recording_of(const std::vector<std::string>& columns,
+                       const std::vector<std::vector<double>>& readings) {
+  Recording recording;
+  recording.name = "drive";
+  for (std::size_t row = 0; row < readings.front().size(); ++row) {
+    recording.drive.t.push_back(static_cast<double>(row));
+  }
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    recording.drive.covariates.push_back({columns[k], readings[k]});
+  }
+  return recording;
+}
+
+void expect_motion(const Drive& drive, const std::vector<Twist>& expected, const Robot& robot) {
+  for (std::size_t row = 0; row < expected.size(); ++row) {
+    EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), expected[row].f, 1e-14);
+    EXPECT_NEAR(drive.slip(row), expected[row].s, 1e-14);
+    EXPECT_NEAR((drive.right[row] - drive.left[row]) / robot.wheelbase, expected[row].a, 1e-13);
+  }
+}
+
+/// by_reading against differences of what a slightly other reading makes of the row.
+void expect_derivatives(const Recording& recording, const Robot& robot) {
+  constexpr double kStep = 1e-6;
+  const Recording here = with_wheels(recording, robot);
+  for (std::size_t k = 0; k < robot.columns.size(); ++k) {
+    Recording more = recording;
+    Recording less = recording;
+    for (double& one : more.drive.covariates[k].values) one += kStep;
+    for (double& one : less.drive.covariates[k].values) one -= kStep;
+    const Drive up = with_wheels(more, robot).drive;
+    const Drive down = with_wheels(less, robot).drive;
+    for (std::size_t row = 0; row < up.rows(); ++row) {
+      const std::array<double, 3>& by = here.drive.wheels[k].by_reading[row];
+      const double left = (up.left[row] - down.left[row]) / (2.0 * kStep);
+      const double right = (up.right[row] - down.right[row]) / (2.0 * kStep);
+      EXPECT_NEAR(by[0], 0.5 * (left + right), 1e-8);
+      EXPECT_NEAR(by[1], (up.slip(row) - down.slip(row)) / (2.0 * kStep), 1e-8);
+      EXPECT_NEAR(by[2], (right - left) / robot.wheelbase, 1e-7);
+    }
+  }
+}
+
+TEST(WheelKinematics, Omni3) {
+  Robot robot;
+  robot.drive = DriveKind::omni3;
+  robot.length = 0.195;
+  robot.columns = {"wheel1", "wheel2", "wheel3"};
+  const double places[] = {-M_PI / 3.0, M_PI / 3.0, M_PI};
+  std::vector<std::vector<double>> readings(3);
+  for (const Twist& body : twists(true)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Clockwise as seen from above.
+      readings[k].push_back(way_along(body, robot.length * std::cos(places[k]),
+                                      robot.length * std::sin(places[k]), places[k] - M_PI / 2.0));
+    }
+  }
+  const Recording recording = recording_of(robot.columns, readings);
+  expect_motion(with_wheels(recording, robot).drive, twists(true), robot);
+  expect_derivatives(recording, robot);
+}
+
+TEST(WheelKinematics, Mecanum) {
+  Robot robot;
+  robot.drive = DriveKind::mecanum;
+  robot.wheelbase = 0.4;
+  robot.length = 0.5;
+  robot.columns = {"front_left", "front_right", "rear_left", "rear_right"};
+  const double x[] = {0.25, 0.25, -0.25, -0.25};
+  const double y[] = {0.2, -0.2, 0.2, -0.2};
+  const double axis[] = {-M_PI / 4.0, M_PI / 4.0, M_PI / 4.0, -M_PI / 4.0};  // of the rollers
+  std::vector<std::vector<double>> readings(4);
+  for (const Twist& body : twists(true)) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Along the rollers' axes nothing slips: there the wheel's own way is w cos(axis).
+      readings[k].push_back(way_along(body, x[k], y[k], axis[k]) / std::cos(axis[k]));
+    }
+  }
+  const Recording recording = recording_of(robot.columns, readings);
+  expect_motion(with_wheels(recording, robot).drive, twists(true), robot);
+  expect_derivatives(recording, robot);
+}
+
+TEST(WheelKinematics, Tricycle) {
+  Robot robot;
+  robot.drive = DriveKind::tricycle;
+  robot.length = 1.2;
+  robot.columns = {"wheel", "steer"};
+  std::vector<std::vector<double>> readings(2);
+  for (const Twist& body : twists(false)) {
+    const double aside = body.a * robot.length;  // at the steered wheel
+    readings[0].push_back(std::hypot(body.f, aside));
+    readings[1].push_back(std::atan2(aside, body.f));
+  }
+  const Recording recording = recording_of(robot.columns, readings);
+  expect_motion(with_wheels(recording, robot).drive, twists(false), robot);
+  expect_derivatives(recording, robot);
+}
+
+TEST(WheelKinematics, AckermannWithAWheelToTheLeft) {
+  Robot robot;
+  robot.drive = DriveKind::ackermann;
+  robot.length = 2.83;
+  robot.wheel_left = 0.76;
+  robot.columns = {"wheel", "steer"};
+  std::vector<std::vector<double>> readings(2);
+  for (const Twist& body : twists(false)) {
+    readings[0].push_back(way_along(body, 0.0, robot.wheel_left, 0.0));
+    readings[1].push_back(std::atan(robot.length * body.a / body.f));
+  }
+  const Recording recording = recording_of(robot.columns, readings);
+  expect_motion(with_wheels(recording, robot).drive, twists(false), robot);
+  expect_derivatives(recording, robot);
+}
+
+TEST(WheelKinematics, SkidSteerTakesTheMeansOfItsSides) {
+  Robot robot;
+  robot.drive = DriveKind::skid_steer;
+  robot.wheelbase = 0.8;
+  robot.columns = {"fl", "rl", "fr", "rr"};
+  const Recording recording = recording_of(robot.columns, {{0.1}, {0.3}, {0.5}, {0.7}});
+  const Drive drive = with_wheels(recording, robot).drive;
+  EXPECT_NEAR(drive.left[0], 0.2, 1e-15);
+  EXPECT_NEAR(drive.right[0], 0.6, 1e-15);
+  EXPECT_TRUE(drive.sideways.empty());
+  expect_derivatives(recording, robot);
+}
+
+TEST(WheelKinematics, AnyWheelsAtAnyPlaces) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  for (int round = 0; round < 20; ++round) {
+    Robot robot;
+    robot.drive = DriveKind::wheels;
+    std::vector<std::vector<double>> readings;
+    for (int k = 0; k < 5; ++k) {
+      const WheelPlace place{draw(random), draw(random), 3.0 * draw(random), draw(random)};
+      robot.places.push_back(place);
+      robot.columns.push_back("w" + std::to_string(k));
+      readings.emplace_back();
+      for (const Twist& body : twists(true)) {
+        readings.back().push_back(
+            way_along(body, place.x, place.y, place.direction + place.roller) /
+            std::cos(place.roller));
+      }
+    }
+    robot.matrix = wheel_matrix(robot.places);
+    const Recording recording = recording_of(robot.columns, readings);
+    const Drive drive = with_wheels(recording, robot).drive;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      EXPECT_NEAR(0.5 * (drive.left[row] + drive.right[row]), twists(true)[row].f, 1e-11);
+      EXPECT_NEAR(drive.slip(row), twists(true)[row].s, 1e-11);
+    }
+  }
+}
+
+TEST(WheelKinematics, ParallelTrackingWheelsLeaveNoWayToTheSide) {
+  const Eigen::MatrixXd M = wheel_matrix({{0.1, 0.2, 0.0, 0.0}, {-0.1, -0.3, 0.0, 0.0}});
+  EXPECT_TRUE(M.row(1).isZero(0.0));
+  const Eigen::Vector3d straight = M * Eigen::Vector2d(0.5, 0.5);
+  EXPECT_NEAR(straight[0], 0.5, 1e-15);
+  EXPECT_NEAR(straight[2], 0.0, 1e-15);
+}
+
+TEST(WheelKinematics, WhatShowsTooLittleIsRefused) {
+  EXPECT_THROW(static_cast<void>(wheel_matrix({{0, 0.2, 0, 0}, {0.1, 0.2, 0, 0}})),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(wheel_matrix({{0, 0.2, 0, 0}, {0.1, 0.2, 1.0, 0}})),
+               std::invalid_argument);
+}
+
+TEST(WheelKinematics, TwoNamedWheelsAreADifferentialDrive) {
+  Robot robot;
+  robot.columns = {"port", "starboard"};
+  const Drive drive =
+      with_wheels(recording_of({"port", "starboard"}, {{0.1, 0.2}, {0.3, 0.4}}), robot).drive;
+  EXPECT_EQ(drive.left, (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(drive.right, (std::vector<double>{0.3, 0.4}));
+  EXPECT_TRUE(drive.wheels.empty());
+}
+
+std::string refusal(const Recording& recording, const Robot& robot) {
+  try {
+    static_cast<void>(with_wheels(recording, robot));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(WheelKinematics, AMissingColumnIsNamed) {
+  Robot robot;
+  robot.drive = DriveKind::tricycle;
+  robot.length = 1.0;
+  robot.columns = {"wheel", "steer"};
+  EXPECT_EQ(refusal(recording_of({"wheel", "angle"}, {{0.1}, {0.0}}), robot),
+            "recording \"drive\": the drive has no column \"steer\" that the model's [robot] "
+            "names, there are wheel, angle");
+  EXPECT_EQ(refusal(recording_of({"wheel", "angle"}, {{0.1}, {0.0}}), Robot()),
+            "recording \"drive\": the drive has no columns left and right, expected them, or a "
+            "model whose [robot] says which drive the columns wheel, angle are of");
+}
+
+TEST(WheelKinematics, AnImpossibleSteeringAngleIsRefused) {
+  Robot robot;
+  robot.drive = DriveKind::ackermann;
+  robot.length = 1.0;
+  robot.columns = {"wheel", "steer"};
+  EXPECT_NE(refusal(recording_of({"wheel", "steer"}, {{0.1, 0.1}, {0.0, 1.6}}), robot)
+                .find("a steering angle of 1.6 rad at t = 1 s"),
+            std::string::npos);
+}
+
+TEST(WheelKinematics, NamesComeBack) {
+  for (const DriveKind drive :
+       {DriveKind::differential, DriveKind::skid_steer, DriveKind::tricycle, DriveKind::ackermann,
+        DriveKind::omni3, DriveKind::mecanum, DriveKind::wheels}) {
+    EXPECT_EQ(drive_named(name_of(drive)), drive);
+  }
+  EXPECT_THROW(static_cast<void>(drive_named("hover")), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace trussmap
