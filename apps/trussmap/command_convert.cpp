@@ -110,6 +110,18 @@ void convert_phil(const fs::path& in, const fs::path& out) {
   fmt::print("  {}\n", clocks);
 }
 
+void convert_steered_truck(const fs::path& in, const fs::path& out) {
+  const TruckRecording foreign = read_steered_truck(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("a truck with steering and GPS, {}", in.string()),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: a truck with steering and GPS {} to the recording {}\n\n", in.string(),
+             out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows, of one wheel and the steering");
+  count(static_cast<int>(recording.fixes.size()), "fixes");
+  count(foreign.repeated_fixes, "fixes whose time repeats or runs backwards dropped");
+}
+
 /// A recording is a folder; a map's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
@@ -123,7 +135,8 @@ void run_convert(const ConvertOptions& options) {
   const bool ranges = is_radio_ranges(in);
   const bool loops = is_place_loops(in);
   const bool phil = is_phil(in);
-  if (is_mrclam(in) || is_optiodom(in) || ranges || loops || phil) check_folder(out);
+  const bool truck = is_steered_truck(in);
+  if (is_mrclam(in) || is_optiodom(in) || ranges || loops || phil || truck) check_folder(out);
   if (is_mrclam(in)) {
     convert_mrclam(in, out);
     return;
@@ -144,12 +157,17 @@ void run_convert(const ConvertOptions& options) {
     convert_phil(in, out);
     return;
   }
+  if (truck) {
+    convert_steered_truck(in, out);
+    return;
+  }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
     throw UsageError("cannot tell what " + in.string() +
                      " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
                      "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
                      "beacons (NAME_DR.txt, NAME_TD.txt), DIR/NAME of places that look alike "
-                     "(NAME_Input.txt), or a trial of PHIL's Turtlebot (a folder with "
+                     "(NAME_Input.txt), DIR/NAME of a truck with steering and GPS (NAME_dr.mat, "
+                     "NAME_gpsx.mat), or a trial of PHIL's Turtlebot (a folder with "
                      "kobuki_data.csv)");
   }
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
@@ -171,8 +189,9 @@ void setup_convert(const Command& app) {
   command
       .add_option("IN", options->in,
                   "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
-                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons or of places that look "
-                  "alike (TUC SLAM), or DIR/trial_N of PHIL's Turtlebot (plain or .xz files)")
+                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons of places that look "
+                  "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), or "
+                  "DIR/trial_N of PHIL's Turtlebot (plain or .xz files)")
       .required()
       .type_name("FILE");
   command

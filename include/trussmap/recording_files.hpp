@@ -148,6 +148,29 @@ struct PlaceLoopRecording {
 /// Throws InputError, with the line where there is one.
 [[nodiscard]] PlaceLoopRecording read_place_loops(const std::filesystem::path& prefix);
 
+// ----------------------------------------
+// A truck with steering and GPS (Guivant & Nebot, 2001; "Victoria Park") as a recording.
+//
+//   PREFIX_dr.mat     time [ms], speed [m/s] of the rear left wheel, steering [rad]
+//   PREFIX_gpsx.mat   timeGps [ms], Lo_m, La_m: to the east and to the north [m]
+//
+// MATLAB files of level 5. A speed and a steering angle hold from their row's time until the next
+// row's. The laser and its trees are not read.
+
+struct TruckRecording {
+  Recording recording;
+  Model model;  ///< the truck's axles and wheel as stated, and noise that suits it
+
+  int repeated_fixes = 0;  ///< with a time no later than the one before, dropped
+};
+
+/// True if `prefix` (DIR/NAME) names such files, complete or not.
+[[nodiscard]] bool is_steered_truck(const std::filesystem::path& prefix);
+
+/// Throws InputError.
+[[nodiscard]] TruckRecording read_steered_truck(const std::filesystem::path& prefix);
+
+// ----------------------------------------
 // A Turtlebot's wheels and gyro under motion capture (PHIL, Worcester Polytechnic Institute, 2018)
 // as a recording.
 //

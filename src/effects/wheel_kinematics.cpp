@@ -211,9 +211,18 @@ Recording with_wheels(Recording recording, const Robot& robot) {
            "which drive the columns " +
                there + " are of");
   }
+  constexpr double kLargest = 1e6;  // m, rad: beyond all that a row may hold
   std::vector<WheelColumn> wheels;
   for (const std::string& name : robot.columns) {
     wheels.push_back({name, false, column_named(recording, name), {}});
+    const std::vector<double>& reading = wheels.back().reading;
+    for (std::size_t row = 0; row < reading.size(); ++row) {
+      if (std::abs(reading[row]) <= kLargest) continue;
+      refuse(recording, joined("column ", name, " is ", short_text(reading[row]),
+                               " at t = ", short_text(drive.t[row]),
+                               " s, expected a travel in metres or an "
+                               "angle in radians"));
+    }
   }
   if (robot.drive == DriveKind::differential) {
     drive.left = wheels[0].reading;

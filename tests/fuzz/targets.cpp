@@ -93,8 +93,23 @@ void fuzz_recording(std::string_view bytes) {
   write_parts(bytes,
               {"drive.csv", "sightings.csv", "survey.csv", "truth.csv", "fixes.csv", "loops.csv"});
   may_refuse([] {
-    const Recording recording = read_recording(folder().path());
-    const Model model;
+    Recording recording = read_recording(folder().path());
+    Model model;
+    if (recording.drive.left.empty()) {
+      // Its columns are the wheels of whatever drive has so many.
+      model.robot.drive =
+          recording.drive.covariates.size() == 2 ? DriveKind::ackermann : DriveKind::omni3;
+      model.robot.length = 0.3;
+      for (const Covariate& one : recording.drive.covariates) {
+        model.robot.columns.push_back(one.name);
+      }
+      if (model.robot.columns.size() < 2 || model.robot.columns.size() > 3) return;
+      try {
+        recording = with_wheels(std::move(recording), model.robot);
+      } catch (const std::invalid_argument&) {
+        return;
+      }
+    }
     for (const CheckFinding& one : check_recordings({recording}, &model, "model.toml")) {
       if (in_words(one).find('\n') != std::string::npos) throw std::logic_error("two lines");
     }
@@ -153,6 +168,11 @@ void fuzz_loops(std::string_view bytes) {
 void fuzz_phil(std::string_view bytes) {
   write_parts(bytes, {"kobuki_data.csv", "rio_data.csv", "mocap_robot.csv"});
   may_refuse([] { static_cast<void>(read_phil(folder().path())); });
+}
+
+void fuzz_truck(std::string_view bytes) {
+  write_parts(bytes, {"a_dr.mat", "a_gpsx.mat"});
+  may_refuse([] { static_cast<void>(read_steered_truck(folder().path() / "a")); });
 }
 
 void fuzz_runs(std::string_view bytes) {
@@ -244,19 +264,14 @@ void fuzz_store(std::string_view bytes) {
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> kTargets = {{"recording", &fuzz_recording},
-                                                         {"model", &fuzz_model},
-                                                         {"graphml", &fuzz_graphml},
-                                                         {"g2o", &fuzz_g2o},
-                                                         {"mrclam", &fuzz_mrclam},
-                                                         {"optiodom", &fuzz_optiodom},
-                                                         {"ranges", &fuzz_ranges},
-                                                         {"loops", &fuzz_loops},
-                                                         {"phil", &fuzz_phil},
-                                                         {"runs", &fuzz_runs},
-                                                         {"store", &fuzz_store},
-                                                         {"words", &fuzz_words},
-                                                         {"xz", &fuzz_xz}};
+  static const std::map<std::string, Target> kTargets = {
+      {"recording", &fuzz_recording}, {"model", &fuzz_model},
+      {"graphml", &fuzz_graphml},     {"g2o", &fuzz_g2o},
+      {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
+      {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
+      {"phil", &fuzz_phil},           {"truck", &fuzz_truck},
+      {"runs", &fuzz_runs},           {"store", &fuzz_store},
+      {"words", &fuzz_words},         {"xz", &fuzz_xz}};
   return kTargets;
 }
 
