@@ -110,6 +110,19 @@ void convert_phil(const fs::path& in, const fs::path& out) {
   fmt::print("  {}\n", clocks);
 }
 
+void convert_pose_graph(const fs::path& in, const fs::path& out) {
+  const GraphRecording foreign = read_graph_recording(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("the pose graph {}, a second per pose", in.string()),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: the pose graph {} to the recording {}\n\n", in.string(), out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows, a second per pose");
+  count(static_cast<int>(recording.loops.size()), "loops");
+  count(static_cast<int>(recording.sightings.size()), "sightings");
+  count(foreign.uneven_edges,
+        "rows whose noise is not half to twice the median, which the model has");
+}
+
 void convert_steered_truck(const fs::path& in, const fs::path& out) {
   const TruckRecording foreign = read_steered_truck(in);
   const Recording& recording = foreign.recording;
@@ -161,6 +174,11 @@ void run_convert(const ConvertOptions& options) {
     convert_steered_truck(in, out);
     return;
   }
+  const bool graph = in.extension() == ".g2o" || in.string().ends_with(".g2o.xz");
+  if (graph && out.extension().empty()) {
+    convert_pose_graph(in, out);
+    return;
+  }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
     throw UsageError("cannot tell what " + in.string() +
                      " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
@@ -196,7 +214,8 @@ void setup_convert(const Command& app) {
       .type_name("FILE");
   command
       .add_option("OUT", options->out,
-                  "A map (.graphml, .g2o, .geojson, .dot, .db), or the recording's folder")
+                  "A map (.graphml, .g2o, .geojson, .dot, .db), or the recording's folder (of a "
+                  "pose graph, too: a name without an ending)")
       .required()
       .type_name("FILE|DIR");
   command.callback([options] { run_convert(*options); });

@@ -171,6 +171,29 @@ struct TruckRecording {
 [[nodiscard]] TruckRecording read_steered_truck(const std::filesystem::path& prefix);
 
 // ----------------------------------------
+// A pose graph (g2o) as a recording: what SLAM benchmarks are kept in.
+//
+//   poses, in order of their ids   a second apart, the first at t = 0
+//   edge from one to the next      a row of the drive `wheels`, whose columns forward, sideways [m]
+//                                  and turn [rad] move the body evenly along one arc
+//   every other edge of poses      a loop, with its own standard deviations
+//   edge to a point                a sighting by range and bearing, of a landmark named by its id
+//
+// A recording has one noise for all rows and all sightings: the median of the edges'. The noise of
+// a row arises evenly along it. Estimates of the vertices are not read.
+
+struct GraphRecording {
+  Recording recording;
+  Model model;  ///< the drive, and the noise
+
+  int uneven_edges = 0;  ///< rows whose noise is not half to twice the median
+};
+
+/// Throws InputError where consecutive poses have no edge between them, or where there are fewer
+/// than three poses or edges between points.
+[[nodiscard]] GraphRecording read_graph_recording(const std::filesystem::path& file);
+
+// ----------------------------------------
 // A Turtlebot's wheels and gyro under motion capture (PHIL, Worcester Polytechnic Institute, 2018)
 // as a recording.
 //

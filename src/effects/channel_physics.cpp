@@ -145,7 +145,7 @@ bool is_of_drive(Channel channel, const Robot& robot) {
   const bool two = robot.drive == DriveKind::differential;
   const bool steers = robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann;
   if (const std::optional<std::size_t> wheel = wheel_of(channel)) {
-    return !two && *wheel < robot.columns.size() - (steers ? 1 : 0);
+    return !two && !steers && *wheel < robot.columns.size();  // one that is steered: `wheels`
   }
   switch (channel) {
     case Channel::left:

@@ -142,6 +142,8 @@ void fuzz_g2o(std::string_view bytes) {
     const PoseGraph graph = parse_g2o(bytes, "graph.g2o");
     static_cast<void>(format_g2o(graph));
   });
+  const fs::path file = folder().write("graph.g2o", bytes);
+  may_refuse([&file] { static_cast<void>(read_graph_recording(file)); });
 }
 
 void fuzz_mrclam(std::string_view bytes) {
