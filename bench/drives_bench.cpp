@@ -5,9 +5,15 @@
 // drive's constants off by a random amount: is chi^2 per degree of freedom 1, and do intervals hold
 // the truth?
 #include "other_drives.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/diagnose.hpp"
 #include "trussmap/fit_model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -22,13 +28,12 @@ struct Count {
   int intervals = 0;
 };
 
-/// One drive with one constant off.
-void take(testing::OtherDrive drive, Channel channel, std::mt19937_64& random, Count& count) {
+/// The drive's noise, and its recording with g of this channel.
+Recording drawn(testing::OtherDrive& drive, Channel channel, double g, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Noise& noise = drive.model.noise;
   noise.left = noise.right = 0.004;
   noise.steer = 0.003;
-  const double g = 0.01 * normal(random);
   Recording recording = with_wheels(
       recorded(drive, noisy(drive, with_effect(drive, channel, g), random)), drive.model.robot);
   for (TruthRow& row : recording.truth) {
@@ -36,6 +41,13 @@ void take(testing::OtherDrive drive, Channel channel, std::mt19937_64& random, C
     row.y += noise.truth * normal(random);
     row.heading += noise.truth_heading * normal(random);
   }
+  return recording;
+}
+
+/// One drive with one constant off.
+void take(testing::OtherDrive drive, Channel channel, std::mt19937_64& random, Count& count) {
+  const double g = 0.01 * std::normal_distribution<double>()(random);
+  const Recording recording = drawn(drive, channel, g, random);
   drive.model.effects.push_back({"hidden", channel, {"1"}, {}, false});
   const ModelFit fit = fit_model({recording}, drive.model);
   const double ratio = fit.chi2 / fit.dof;
@@ -64,6 +76,64 @@ void run(int drives, std::uint64_t seed) {
   }
 }
 
+struct Hidden {
+  DriveKind drive;
+  const char* name;  ///< of the catalogue
+};
+
+constexpr Hidden kHidden[] = {
+    {DriveKind::tricycle, "steering offset"}, {DriveKind::tricycle, "wheel scale"},
+    {DriveKind::omni3, "radius of wheel 1"},  {DriveKind::omni3, "radius of wheel 3"},
+    {DriveKind::skid_steer, "wheelbase"},     {DriveKind::skid_steer, "wheel scale"},
+    {DriveKind::ackermann, "wheelbase"},      {DriveKind::ackermann, "wheel scale"},
+    {DriveKind::mecanum, "roller slip"},      {DriveKind::mecanum, "radius of wheel 1"},
+    {DriveKind::wheels, "radius of wheel 2"}, {DriveKind::wheels, "radius of wheel 3"}};
+
+bool is_named(const Finding& finding, const std::string& name) {
+  if (finding.effect.name == name) return true;
+  return std::any_of(finding.look_alikes.begin(), finding.look_alikes.end(),
+                     [&name](const LookAlike& rival) { return rival.effect.name == name; });
+}
+
+/// Of drives with three times what is just seen of an effect, and of drives with none.
+void identify(int drives, std::uint64_t seed) {
+  std::map<DriveKind, std::pair<int, int>> alarms;  // of so many
+  fmt::print("{:<12} {:<20} {:>8}  named first, or as looking the same\n", "drive", "effect", "g");
+  for (const Hidden& hidden : kHidden) {
+    std::mt19937_64 random(seed);
+    const Channel channel = catalogue_effect(hidden.name).channel;
+    int named = 0;
+    int tried = 0;
+    double size = 0.0;
+    for (int k = 0; k < drives; ++k) {
+      testing::OtherDrive drive = testing::other_drive(hidden.drive);
+      const Diagnosis none = diagnose({drawn(drive, channel, 0.0, random)}, drive.model);
+      auto& [wrong, all] = alarms[hidden.drive];
+      wrong += none.verdict == Diagnosis::Verdict::missing ? 1 : 0;
+      ++all;
+      const auto seen =
+          std::find_if(none.findings.begin(), none.findings.end(),
+                       [&hidden](const Finding& one) { return one.effect.name == hidden.name; });
+      if (seen == none.findings.end()) continue;
+      ++tried;
+      size = 3.0 * seen->minimal_detectable.front();
+      const Diagnosis found = diagnose({drawn(drive, channel, size, random)}, drive.model);
+      const bool right = found.verdict == Diagnosis::Verdict::missing &&
+                         is_named(found.findings.front(), hidden.name);
+      named += right ? 1 : 0;
+      if (!right && !found.findings.empty()) {
+        fmt::print(stderr, "  {}: {} instead\n", hidden.name, found.findings.front().effect.name);
+      }
+    }
+    fmt::print("{:<12} {:<20} {:>8.4f}  {} of {}\n", name_of(hidden.drive), hidden.name, size,
+               named, tried);
+  }
+  for (const auto& [drive, counts] : alarms) {
+    fmt::print("{:<12} without effect: {} of {} drives miss something\n", name_of(drive),
+               counts.first, counts.second);
+  }
+}
+
 }  // namespace
 }  // namespace trussmap
 
@@ -75,7 +145,15 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::Range(2, 1000000));
   app.add_option("--seed", seed, "Of the random numbers")->capture_default_str();
+  bool identify = false;
+  app.add_flag("--identify", identify,
+               "Instead: what diagnose names where an effect is three times what is just seen, and "
+               "where none is");
   CLI11_PARSE(app, argc, argv);
+  if (identify) {
+    trussmap::identify(drives, seed);
+    return 0;
+  }
   trussmap::run(drives, seed);
   return 0;
 }
