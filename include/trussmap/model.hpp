@@ -69,8 +69,8 @@ struct Robot {
 
 /// The recording with its robot's wheels taken in: `left`, `right`, `sideways` and `wheels` of its
 /// drive from the columns that the robot names, which stay covariates. Unchanged of two wheels
-/// named left and right. Throws std::invalid_argument where a column is not there, or where the
-/// drive has no wheels at all.
+/// named left and right. Throws InputError where a column is not there, a reading is impossible, or
+/// where the drive has no wheels at all.
 [[nodiscard]] Recording with_wheels(Recording recording, const Robot& robot);
 
 /// How an error of a channel's g lasts.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "text/number_text.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/model.hpp"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr std::array<std::pair<DriveKind, std::string_view>, 7> kNames{{
 }};
 
 [[noreturn]] void refuse(const Recording& recording, const std::string& what) {
-  throw std::invalid_argument("recording \"" + recording.name + "\": " + what);
+  throw InputError(recording.name.empty() ? "drive.csv" : recording.name + "/drive.csv", 0, what);
 }
 
 /// 3 x columns, of the drives that have one.
@@ -95,8 +96,8 @@ const std::vector<double>& column_named(const Recording& recording, const std::s
     if (one.name == name) return one.values;
     there += (there.empty() ? "" : ", ") + one.name;
   }
-  refuse(recording, "the drive has no column \"" + name + "\" that the model's [robot] names, " +
-                        (there.empty() ? "and no other" : "there are " + there));
+  refuse(recording, "has no column \"" + name + "\", which the model's [robot] names" +
+                        (there.empty() ? "" : ", expected one of " + there));
 }
 
 void take_body(Drive& drive, std::size_t row, const Eigen::Vector3d& motion, double wheelbase) {
@@ -206,10 +207,10 @@ Recording with_wheels(Recording recording, const Robot& robot) {
     for (const Covariate& one : drive.covariates) {
       there += (there.empty() ? "" : ", ") + one.name;
     }
-    refuse(recording,
-           "the drive has no columns left and right, expected them, or a model whose [robot] says "
-           "which drive the columns " +
-               there + " are of");
+    refuse(
+        recording,
+        "has no columns left and right, expected them, or a model whose [robot] says which drive " +
+            there + " are of");
   }
   constexpr double kLargest = 1e6;  // m, rad: beyond all that a row may hold
   std::vector<WheelColumn> wheels;

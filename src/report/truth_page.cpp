@@ -79,7 +79,9 @@ PageTable table_of(const WheelCalibration& wheels) {
   if (!wheels.constants.empty()) {
     for (const DriveConstant& one : wheels.constants) {
       const ChannelFacts& facts = facts_of(one.channel);
-      row(std::string(facts.does_what), one.g, std::string(facts.unit));
+      const double size = facts.unit.empty() ? 100.0 : 1.0;
+      row(std::string(facts.does_what), Calibrated{size * one.g.value, size * one.g.sd},
+          facts.unit.empty() ? "%" : std::string(facts.unit));
     }
     return table;
   }

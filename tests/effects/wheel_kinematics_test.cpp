@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Wheels of every drive against the motion of their contact points, as a rigid body has it.
+#include "trussmap/error.hpp"
 #include "trussmap/model.hpp"
 
 #include <cmath>
@@ -211,7 +212,7 @@ TEST(WheelKinematics, TwoNamedWheelsAreADifferentialDrive) {
 std::string refusal(const Recording& recording, const Robot& robot) {
   try {
     static_cast<void>(with_wheels(recording, robot));
-  } catch (const std::invalid_argument& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";
@@ -222,12 +223,13 @@ TEST(WheelKinematics, AMissingColumnIsNamed) {
   robot.drive = DriveKind::tricycle;
   robot.length = 1.0;
   robot.columns = {"wheel", "steer"};
-  EXPECT_EQ(refusal(recording_of({"wheel", "angle"}, {{0.1}, {0.0}}), robot),
-            "recording \"drive\": the drive has no column \"steer\" that the model's [robot] "
-            "names, there are wheel, angle");
+  EXPECT_EQ(
+      refusal(recording_of({"wheel", "angle"}, {{0.1}, {0.0}}), robot),
+      "drive/drive.csv: has no column \"steer\", which the model's [robot] names, expected one "
+      "of wheel, angle");
   EXPECT_EQ(refusal(recording_of({"wheel", "angle"}, {{0.1}, {0.0}}), Robot()),
-            "recording \"drive\": the drive has no columns left and right, expected them, or a "
-            "model whose [robot] says which drive the columns wheel, angle are of");
+            "drive/drive.csv: has no columns left and right, expected them, or a model whose "
+            "[robot] says which drive wheel, angle are of");
 }
 
 TEST(WheelKinematics, AnImpossibleSteeringAngleIsRefused) {
