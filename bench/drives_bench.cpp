@@ -4,6 +4,7 @@
 // Many drives on other wheels than two, with the noise that the model states and each of the
 // drive's constants off by a random amount: is chi^2 per degree of freedom 1, and do intervals hold
 // the truth?
+#include "bench_program.hpp"
 #include "other_drives.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/diagnose.hpp"
@@ -15,7 +16,6 @@
 #include <string>
 #include <utility>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -138,22 +138,22 @@ void identify(int drives, std::uint64_t seed) {
 }  // namespace trussmap
 
 int main(int argc, char** argv) {
-  CLI::App app("Drives on other wheels than two: chi^2 per degree of freedom, and intervals");
-  int drives = 500;
-  std::uint64_t seed = 1;
-  app.add_option("--drives", drives, "Of each kind")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 1000000));
-  app.add_option("--seed", seed, "Of the random numbers")->capture_default_str();
-  bool identify = false;
-  app.add_flag("--identify", identify,
-               "Instead: what diagnose names where an effect is three times what is just seen, and "
-               "where none is");
-  CLI11_PARSE(app, argc, argv);
-  if (identify) {
-    trussmap::identify(drives, seed);
-    return 0;
-  }
-  trussmap::run(drives, seed);
-  return 0;
+  struct Options {
+    int drives = 500;
+    std::uint64_t seed = 1;
+  };
+  using trussmap::bench::Part;
+  return trussmap::bench::run_bench<Options>(
+      argc, argv, "Drives on other wheels than two",
+      {Part<Options>{"intervals",
+                     [](const Options& options) { trussmap::run(options.drives, options.seed); }},
+       Part<Options>{
+           "identify",
+           [](const Options& options) { trussmap::identify(options.drives, options.seed); }}},
+      [](CLI::App& app, Options& options) {
+        app.add_option("--drives", options.drives, "Of each kind, or of each effect")
+            ->capture_default_str()
+            ->check(CLI::Range(2, 1000000));
+        app.add_option("--seed", options.seed, "Of the random numbers")->capture_default_str();
+      });
 }

@@ -78,7 +78,7 @@ class GraphReader {
   }
 
   [[nodiscard]] Matrix3 covariance_of(const PoseEdge& edge) const {
-    const Matrix3 covariance = edge.information.inverse();
+    Matrix3 covariance = edge.information.inverse();
     if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) {
       unknown(edge.from, edge.to);
     }
