@@ -207,7 +207,7 @@ void setup_convert(const Command& app) {
   command
       .add_option("IN", options->in,
                   "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
-                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons of places that look "
+                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
                   "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), or "
                   "DIR/trial_N of PHIL's Turtlebot (plain or .xz files)")
       .required()

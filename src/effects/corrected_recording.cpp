@@ -32,17 +32,6 @@ std::vector<double> gains(const Effect& effect, const RowVariables& variables, i
   return g;
 }
 
-void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
-  for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const RowTravel nominal = without(channel, g[row], shown_travel(drive, row), wheelbase);
-    drive.left[row] = nominal.left;
-    drive.right[row] = nominal.right;
-    if (!drive.sideways.empty()) drive.sideways[row] = nominal.sideways;
-    if (drive.has_gyro())
-      drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
-  }
-}
-
 void free_sightings(Channel channel, const std::vector<double>& g, Recording& recording) {
   for (Sighting& sighting : recording.sightings) {
     if (sighting.standing()) continue;
@@ -75,6 +64,17 @@ void apply(Channel channel, const std::vector<double>& g, double wheelbase, Reco
 }
 
 }  // namespace
+
+void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const RowTravel nominal = without(channel, g[row], shown_travel(drive, row), wheelbase);
+    drive.left[row] = nominal.left;
+    drive.right[row] = nominal.right;
+    if (!drive.sideways.empty()) drive.sideways[row] = nominal.sideways;
+    if (drive.has_gyro())
+      drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
+  }
+}
 
 void require_shapes(const Effect& effect) {
   if (!effect.shape.empty()) return;

@@ -10,13 +10,19 @@
 // recording; the adjustment knows them.
 #pragma once
 
+#include "trussmap/channel.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+
+#include <vector>
 
 namespace trussmap {
 
 /// Throws std::invalid_argument where an effect has no shape.
 void require_shapes(const Effect& effect);
+
+/// Takes g, per row, of a recordable channel that acts on drives out of what wheels and gyro show.
+void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive);
 
 /// `variables` are this recording's. Throws std::invalid_argument, naming the effect: one of the
 /// other channels, a shape that cannot be evaluated, coefficients that do not match. Effects

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/channel_physics.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model.hpp"
@@ -233,7 +234,7 @@ Recording with_wheels(Recording recording, const Robot& robot) {
   drive.wheels = std::move(wheels);
   drive.left.assign(drive.rows(), 0.0);
   drive.right.assign(drive.rows(), 0.0);
-  if (robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann) {
+  if (is_of_drive(Channel::steer, robot)) {
     drive.wheels[1].steers = true;
     take_steered(recording, robot, drive);
   } else {

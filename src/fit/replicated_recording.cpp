@@ -3,6 +3,7 @@
 #include "fit/replicated_recording.hpp"
 
 #include "effects/channel_physics.hpp"
+#include "effects/corrected_recording.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/noise_free.hpp"
@@ -352,16 +353,7 @@ class Replicator {
         }
         return;
       case ActsOn::drives:
-        for (std::size_t row = 0; row < drive.rows(); ++row) {
-          const RowTravel other = without(process.channel, g[row], shown_travel(drive, row),
-                                          fit_.model.robot.wheelbase);
-          drive.left[row] = other.left;
-          drive.right[row] = other.right;
-          if (!drive.sideways.empty()) drive.sideways[row] = other.sideways;
-          if (drive.has_gyro()) {
-            drive.yaw_rate[row] = yaw_rate_without(process.channel, g[row], drive.yaw_rate[row]);
-          }
-        }
+        free_drive(process.channel, g, fit_.model.robot.wheelbase, drive);
         return;
       case ActsOn::views:
         see_through(process, g, timed_[s]);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
+#include "statistics/median.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/pose_graph.hpp"
@@ -17,12 +18,6 @@
 
 namespace trussmap {
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// An edge the other way round; its information goes along.
 PoseEdge reversed(const PoseEdge& edge) {

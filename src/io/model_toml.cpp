@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
+#include "fit/noise_reml.hpp"
 #include "io/csv.hpp"
 #include "io/toml_parser.hpp"
 #include "text/plain_text.hpp"
@@ -587,9 +588,7 @@ std::string format_model(const Model& model) {
   const bool two = model.robot.drive == DriveKind::differential;
   const bool steers = is_of_drive(Channel::steer, model.robot);
   if (!two) {
-    const double k = std::sqrt(
-        0.5 * (model.noise.left * model.noise.left + model.noise.right * model.noise.right));
-    text += "wheel = " + toml_number(k) +
+    text += "wheel = " + toml_number(mean_wheel_noise(model.noise)) +
             "  # m^1/2: variance of each wheel's travel = wheel^2 * |travel|\n";
   }
   for (const NoiseKey& key : kNoise) {

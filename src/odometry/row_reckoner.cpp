@@ -33,14 +33,9 @@ Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& n
 }
 
 Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
-  Pose end = arc_displacement(travel, wheelbase);
-  if (slip == 0.0) return end;
-  const double swing = 0.5 * (travel.right - travel.left);
-  const Vector2 aside =
-      quarter_turn(arc_displacement({slip - swing, slip + swing}, wheelbase).position());
-  end.x += aside.x();
-  end.y += aside.y();
-  return end;
+  if (slip == 0.0) return arc_displacement(travel, wheelbase);
+  return slanting_displacement({0.5 * (travel.left + travel.right), slip},
+                               (travel.right - travel.left) / wheelbase);
 }
 
 double reading_variance(const Noise& noise) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Wheels of every drive against the motion of their contact points, as a rigid body has it.
+#include "other_drives.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model.hpp"
 
@@ -13,14 +14,10 @@
 namespace trussmap {
 namespace {
 
-struct Twist {
-  double f, s, a;  // forward, to the left, turn
-};
-
-/// Of the point (x, y) of the body, along the direction.
-double way_along(const Twist& body, double x, double y, double direction) {
-  return (body.f - body.a * y) * std::cos(direction) + (body.s + body.a * x) * std::sin(direction);
-}
+using testing::other_drive;
+using testing::OtherDrive;
+using testing::Twist;
+using testing::way_along;
 
 const std::vector<Twist>& twists(bool to_the_side) {
   static const std::vector<Twist> omni{{0.3, 0.1, 0.2}, {-0.2, 0.4, -0.1}, {0.0, -0.3, 0.0}};
@@ -71,79 +68,34 @@ void expect_derivatives(const Recording& recording, const Robot& robot) {
   }
 }
 
-TEST(WheelKinematics, Omni3) {
-  Robot robot;
-  robot.drive = DriveKind::omni3;
-  robot.length = 0.195;
-  robot.columns = {"wheel1", "wheel2", "wheel3"};
-  const double places[] = {-M_PI / 3.0, M_PI / 3.0, M_PI};
-  std::vector<std::vector<double>> readings(3);
-  for (const Twist& body : twists(true)) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Clockwise as seen from above.
-      readings[k].push_back(way_along(body, robot.length * std::cos(places[k]),
-                                      robot.length * std::sin(places[k]), places[k] - M_PI / 2.0));
-    }
+class WheelKinematics : public ::testing::TestWithParam<DriveKind> {};
+
+TEST_P(WheelKinematics, ContactPointsGiveTheBodysMotionBack) {
+  const OtherDrive drive = other_drive(GetParam());
+  const Robot& robot = drive.model.robot;
+  const std::vector<Twist>& bodies =
+      twists(GetParam() == DriveKind::omni3 || GetParam() == DriveKind::mecanum);
+  std::vector<std::vector<double>> readings(robot.columns.size());
+  for (const Twist& body : bodies) {
+    const std::vector<double> shown = drive.wheels(body);
+    for (std::size_t k = 0; k < readings.size(); ++k) readings[k].push_back(shown[k]);
   }
   const Recording recording = recording_of(robot.columns, readings);
-  expect_motion(with_wheels(recording, robot).drive, twists(true), robot);
+  expect_motion(with_wheels(recording, robot).drive, bodies, robot);
   expect_derivatives(recording, robot);
 }
 
-TEST(WheelKinematics, Mecanum) {
-  Robot robot;
-  robot.drive = DriveKind::mecanum;
-  robot.wheelbase = 0.4;
-  robot.length = 0.5;
-  robot.columns = {"front_left", "front_right", "rear_left", "rear_right"};
-  const double x[] = {0.25, 0.25, -0.25, -0.25};
-  const double y[] = {0.2, -0.2, 0.2, -0.2};
-  const double axis[] = {-M_PI / 4.0, M_PI / 4.0, M_PI / 4.0, -M_PI / 4.0};  // of the rollers
-  std::vector<std::vector<double>> readings(4);
-  for (const Twist& body : twists(true)) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      // Along the rollers' axes nothing slips: there the wheel's own way is w cos(axis).
-      readings[k].push_back(way_along(body, x[k], y[k], axis[k]) / std::cos(axis[k]));
-    }
-  }
-  const Recording recording = recording_of(robot.columns, readings);
-  expect_motion(with_wheels(recording, robot).drive, twists(true), robot);
-  expect_derivatives(recording, robot);
-}
+INSTANTIATE_TEST_SUITE_P(Drives, WheelKinematics,
+                         ::testing::Values(DriveKind::skid_steer, DriveKind::tricycle,
+                                           DriveKind::ackermann, DriveKind::omni3,
+                                           DriveKind::mecanum),
+                         [](const auto& one) {
+                           std::string name(name_of(one.param));
+                           std::erase(name, '-');
+                           return name;
+                         });
 
-TEST(WheelKinematics, Tricycle) {
-  Robot robot;
-  robot.drive = DriveKind::tricycle;
-  robot.length = 1.2;
-  robot.columns = {"wheel", "steer"};
-  std::vector<std::vector<double>> readings(2);
-  for (const Twist& body : twists(false)) {
-    const double aside = body.a * robot.length;  // at the steered wheel
-    readings[0].push_back(std::hypot(body.f, aside));
-    readings[1].push_back(std::atan2(aside, body.f));
-  }
-  const Recording recording = recording_of(robot.columns, readings);
-  expect_motion(with_wheels(recording, robot).drive, twists(false), robot);
-  expect_derivatives(recording, robot);
-}
-
-TEST(WheelKinematics, AckermannWithAWheelToTheLeft) {
-  Robot robot;
-  robot.drive = DriveKind::ackermann;
-  robot.length = 2.83;
-  robot.wheel_left = 0.76;
-  robot.columns = {"wheel", "steer"};
-  std::vector<std::vector<double>> readings(2);
-  for (const Twist& body : twists(false)) {
-    readings[0].push_back(way_along(body, 0.0, robot.wheel_left, 0.0));
-    readings[1].push_back(std::atan(robot.length * body.a / body.f));
-  }
-  const Recording recording = recording_of(robot.columns, readings);
-  expect_motion(with_wheels(recording, robot).drive, twists(false), robot);
-  expect_derivatives(recording, robot);
-}
-
-TEST(WheelKinematics, SkidSteerTakesTheMeansOfItsSides) {
+TEST(WheelColumns, SkidSteerTakesTheMeansOfItsSides) {
   Robot robot;
   robot.drive = DriveKind::skid_steer;
   robot.wheelbase = 0.8;
@@ -156,7 +108,7 @@ TEST(WheelKinematics, SkidSteerTakesTheMeansOfItsSides) {
   expect_derivatives(recording, robot);
 }
 
-TEST(WheelKinematics, AnyWheelsAtAnyPlaces) {
+TEST(WheelColumns, AnyWheelsAtAnyPlaces) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> draw(-1.0, 1.0);
   for (int round = 0; round < 20; ++round) {
@@ -184,7 +136,7 @@ TEST(WheelKinematics, AnyWheelsAtAnyPlaces) {
   }
 }
 
-TEST(WheelKinematics, ParallelTrackingWheelsLeaveNoWayToTheSide) {
+TEST(WheelColumns, ParallelTrackingWheelsLeaveNoWayToTheSide) {
   const Eigen::MatrixXd M = wheel_matrix({{0.1, 0.2, 0.0, 0.0}, {-0.1, -0.3, 0.0, 0.0}});
   EXPECT_TRUE(M.row(1).isZero(0.0));
   const Eigen::Vector3d straight = M * Eigen::Vector2d(0.5, 0.5);
@@ -192,14 +144,14 @@ TEST(WheelKinematics, ParallelTrackingWheelsLeaveNoWayToTheSide) {
   EXPECT_NEAR(straight[2], 0.0, 1e-15);
 }
 
-TEST(WheelKinematics, WhatShowsTooLittleIsRefused) {
+TEST(WheelColumns, WhatShowsTooLittleIsRefused) {
   EXPECT_THROW(static_cast<void>(wheel_matrix({{0, 0.2, 0, 0}, {0.1, 0.2, 0, 0}})),
                std::invalid_argument);
   EXPECT_THROW(static_cast<void>(wheel_matrix({{0, 0.2, 0, 0}, {0.1, 0.2, 1.0, 0}})),
                std::invalid_argument);
 }
 
-TEST(WheelKinematics, TwoNamedWheelsAreADifferentialDrive) {
+TEST(WheelColumns, TwoNamedWheelsAreADifferentialDrive) {
   Robot robot;
   robot.columns = {"port", "starboard"};
   const Drive drive =
@@ -218,7 +170,7 @@ std::string refusal(const Recording& recording, const Robot& robot) {
   return "";
 }
 
-TEST(WheelKinematics, AMissingColumnIsNamed) {
+TEST(WheelColumns, AMissingColumnIsNamed) {
   Robot robot;
   robot.drive = DriveKind::tricycle;
   robot.length = 1.0;
@@ -232,7 +184,7 @@ TEST(WheelKinematics, AMissingColumnIsNamed) {
             "[robot] says which drive wheel, angle are of");
 }
 
-TEST(WheelKinematics, AnImpossibleSteeringAngleIsRefused) {
+TEST(WheelColumns, AnImpossibleSteeringAngleIsRefused) {
   Robot robot;
   robot.drive = DriveKind::ackermann;
   robot.length = 1.0;
@@ -242,7 +194,7 @@ TEST(WheelKinematics, AnImpossibleSteeringAngleIsRefused) {
             std::string::npos);
 }
 
-TEST(WheelKinematics, NamesComeBack) {
+TEST(WheelColumns, NamesComeBack) {
   for (const DriveKind drive :
        {DriveKind::differential, DriveKind::skid_steer, DriveKind::tricycle, DriveKind::ackermann,
         DriveKind::omni3, DriveKind::mecanum, DriveKind::wheels}) {
