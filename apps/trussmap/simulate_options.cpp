@@ -143,6 +143,10 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
                "Standard deviation of a loop [m per coordinate]");
   add_positive("--loop-heading-noise", options.loop_heading_noise,
                "Standard deviation of a loop's turn [rad]");
+  command.add_flag("--markers", options.markers,
+                   "Landmarks have an axis, as tags and floor codes do: each sighting also reads "
+                   "its yaw, and the survey its heading");
+  add_positive("--yaw-noise", options.yaw_noise, "Standard deviation of a landmark's yaw [rad]");
   add_positive("--reach", options.reach, "Reach of the range sensor [m]");
 }
 
@@ -169,6 +173,8 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   if (options.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
   if (options.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;
   robot.loops = options.loops;
+  robot.markers = options.markers;
+  robot.noise.yaw = options.yaw_noise;
   robot.noise.loop = options.loop_noise;
   robot.noise.loop_heading = options.loop_heading_noise;
   robot.reach = options.reach;
@@ -220,6 +226,7 @@ Model nominal_model(const SimulateOptions& options) {
   model.noise.survey = options.survey_noise;
   if (options.gyro) model.noise.gyro = options.gyro_noise;
   model.noise.fix = options.fix_noise;
+  if (options.markers) model.noise.yaw = options.yaw_noise;
   model.noise.loop = options.loop_noise;
   model.noise.loop_heading = options.loop_heading_noise;
   return model;

@@ -44,6 +44,7 @@ struct SimulateOptions {
   double fix_noise = 0.05;           // m
   double loop_noise = 0.05;          // m
   double loop_heading_noise = 0.01;  // rad
+  double yaw_noise = 0.02;           // rad
   int full_turns = 0;
   std::vector<double> speeds = {0.25, 0.9};     // m/s
   std::vector<double> turn_rates = {0.3, 1.1};  // rad/s
@@ -54,6 +55,7 @@ struct SimulateOptions {
   bool true_rates = false;
   bool hide = false;
   bool loops = false;
+  bool markers = false;
   std::string out;
   std::string json;
 };

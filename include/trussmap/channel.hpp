@@ -62,7 +62,8 @@ enum class Channel {
   wheel5,
   wheel6,
   steer,
-  steer_gain
+  steer_gain,
+  sighting_yaw
 };
 
 /// wheel1 is 0, wheel6 is 5; nothing of other channels.

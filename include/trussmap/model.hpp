@@ -128,6 +128,7 @@ struct Noise {
   double loop = 0.05;            ///< m per coordinate of a loop
   double loop_heading = 0.01;    ///< rad per loop
   double steer = 0.005;          ///< rad m^(1/2): of the mean steering angle over a metre
+  double yaw = 0.02;             ///< rad per yaw of a landmark, and of a surveyed one
   std::vector<NoiseProcess> processes = {};  ///< besides
 
   friend bool operator==(const Noise& a, const Noise& b) = default;

@@ -115,6 +115,11 @@ struct Sighting {
   std::string landmark;
   double range = kAbsent;    ///< m; NaN beside a bearing: a camera's
   double bearing = kAbsent;  ///< rad, from the robot's forward axis; NaN beside a range: a beacon's
+  /// rad, the landmark's own axis less the robot's heading, of a tag or a floor code; else NaN.
+  double yaw = kAbsent;
+  /// m, where the robot is in the landmark's axes, beside `yaw` while it stands on it; NaN: 0.
+  double dx = kAbsent;
+  double dy = kAbsent;
 
   /// Neither: the robot stands on the landmark.
   [[nodiscard]] bool standing() const { return range != range && bearing != bearing; }
@@ -147,9 +152,10 @@ struct Loop {
 
 struct SurveyPoint {
   std::string landmark;
-  double x = 0.0;       ///< m
-  double y = 0.0;       ///< m
-  double sd = kAbsent;  ///< m per coordinate; NaN: the model's `survey`
+  double x = 0.0;            ///< m
+  double y = 0.0;            ///< m
+  double sd = kAbsent;       ///< m per coordinate; NaN: the model's `survey`
+  double heading = kAbsent;  ///< rad, of the landmark's own axis; NaN: not surveyed
 };
 
 struct TruthRow {

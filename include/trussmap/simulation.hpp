@@ -191,10 +191,11 @@ struct SensorNoise {
   double gyro_walk = 0.0;      ///< rad/s per s^(1/2): how the bias walks
   double loop = 0.05;          ///< m per coordinate
   double loop_heading = 0.01;  ///< rad
+  double yaw = 0.02;           ///< rad, of a landmark's yaw and of its surveyed heading
 };
 
 /// Exact sensors.
-inline constexpr SensorNoise kNoiseFree{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+inline constexpr SensorNoise kNoiseFree{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
 /// combine.
@@ -232,6 +233,9 @@ struct WheeledRobot {
   double fix_rate = 0.0;     ///< Hz: fixes of its antenna; 0: none
   /// At each stop it also measures its pose from the last stop at the same landmark.
   bool loops = false;
+  /// Landmarks have an axis, as tags and floor codes do: each sighting reads its yaw, and the
+  /// survey its heading.
+  bool markers = false;
   SensorNoise noise;
   RoughNoise rough;
 
@@ -301,7 +305,8 @@ enum class Stream : std::uint32_t {
   floor,
   fixes,
   gyro,
-  loops
+  loops,
+  headings
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

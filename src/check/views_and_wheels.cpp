@@ -10,6 +10,7 @@
 // Units and mistakes are tried where they disagree. A mirrored robot sees a mirrored world:
 // exchanged wheels and clockwise bearings cannot be told apart here.
 #include "check/findings.hpp"
+#include "recording/floor_code.hpp"
 #include "statistics/median.hpp"
 #include "statistics/thinned.hpp"
 #include "text/number_text.hpp"
@@ -89,7 +90,9 @@ bool tells_place(const Sighting& sighting) {
 }
 
 Vector2 place_seen(const Sighting& sighting, const Pose& from, double bearing_unit) {
-  if (sighting.standing()) return from.position();
+  if (sighting.standing()) {
+    return from.position() + rotation(from.heading) * code_from_robot(sighting);
+  }
   return from.position() +
          sighting.range * rotation(from.heading + bearing_unit * sighting.bearing).col(0);
 }

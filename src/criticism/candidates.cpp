@@ -48,6 +48,7 @@ class Gatherer {
       has_views_ |=
           one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
       has_bearings_ |= one.kind == MeasurementKind::direction;
+      has_yaws_ |= one.kind == MeasurementKind::sighting_yaw;
       has_truth_ |= one.kind == MeasurementKind::truth;
       has_fixes_ |= one.kind == MeasurementKind::fix;
       has_points_ |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
@@ -77,7 +78,7 @@ class Gatherer {
     for (const Channel channel :
          {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale,
           Channel::bearing, Channel::delay, Channel::truth_heading, Channel::antenna,
-          Channel::antenna_left, Channel::fix_delay}) {
+          Channel::antenna_left, Channel::fix_delay, Channel::sighting_yaw}) {
       if (!is_possible(channel)) continue;
       take_view_channel(channel);
     }
@@ -108,6 +109,7 @@ class Gatherer {
     if (channel == Channel::gyro || channel == Channel::gyro_scale) return has_gyro_;
     if (channel == Channel::truth_heading) return has_truth_;
     if (acts_on_fixes(channel)) return has_fixes_;
+    if (channel == Channel::sighting_yaw) return has_yaws_;
     if (acts_on(channel) == ActsOn::views && !has_points_) return false;
     if (channel == Channel::bearing) return has_views_ || has_bearings_;
     if (channel == Channel::range || channel == Channel::range_scale) return has_views_;
@@ -336,6 +338,7 @@ class Gatherer {
   bool has_gyro_ = false;
   bool has_views_ = false;
   bool has_bearings_ = false;  ///< alone
+  bool has_yaws_ = false;
   bool has_truth_ = false;
   bool has_fixes_ = false;
   bool has_points_ = false;  ///< sightings or truth

@@ -115,6 +115,7 @@ double stated_of(const std::string& law, const Noise& noise) {
   if (law == "sighting") return noise.sighting;
   if (law == "range") return noise.range;
   if (law == "fix") return noise.fix;
+  if (law == "yaw") return noise.yaw;
   return law == "bearing" ? noise.bearing : 0.0;
 }
 
@@ -156,6 +157,9 @@ std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& contex
   add("bearing", "rad", [](const Measurement& one, int row) {
     const bool alone = one.kind == MeasurementKind::direction;
     return alone || (one.kind == MeasurementKind::view && row == 1) ? 1.0 : 0.0;
+  });
+  add("yaw", "rad", [](const Measurement& one, int) {
+    return one.kind == MeasurementKind::sighting_yaw ? 1.0 : 0.0;
   });
   std::erase_if(laws, [](const NoiseLaw& law) {
     for (const Matrix4& added : law.added) {

@@ -46,7 +46,10 @@ const char* noise_source(MeasurementKind kind, Eigen::Index row) {
       return "bearing";
     case MeasurementKind::cartesian_view:
       return "range";
+    case MeasurementKind::sighting_yaw:
+      return "yaw";
     case MeasurementKind::survey:
+    case MeasurementKind::survey_heading:
       return "survey";
     case MeasurementKind::truth:
       return row == 2 ? "truth_heading" : "truth";

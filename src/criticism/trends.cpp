@@ -144,6 +144,9 @@ std::vector<Kind> kinds_of(const FitState& fit) {
   if (has([](const Measurement& one) { return one.kind == MeasurementKind::direction; })) {
     kinds.push_back({"bearing", Channel::bearing});
   }
+  if (has([](const Measurement& one) { return one.kind == MeasurementKind::sighting_yaw; })) {
+    kinds.push_back({"sighting yaw", Channel::sighting_yaw});
+  }
   kinds.push_back({"sighting ahead", Channel::lever});
   kinds.push_back({"sighting to the left", Channel::lever_left});
   return kinds;

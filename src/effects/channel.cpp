@@ -43,7 +43,8 @@ const std::vector<ChannelFacts>& channels() {
       {wheel5, "wheel5", "", 0.1, "travel of the fifth wheel"},
       {wheel6, "wheel6", "", 0.1, "travel of the sixth wheel"},
       {steer, "steer", "rad", 0.1, "steering angle"},
-      {steer_gain, "steer_gain", "", 0.1, "steering angle, in proportion"}};
+      {steer_gain, "steer_gain", "", 0.1, "steering angle, in proportion"},
+      {sighting_yaw, "sighting_yaw", "rad", 0.5, "yaw reading of a landmark"}};
   return all;
 }
 

@@ -24,6 +24,7 @@ ActsOn acts_on(Channel channel) {
     case Channel::fix_delay:
     case Channel::fix_x:
     case Channel::fix_y:
+    case Channel::sighting_yaw:
       return ActsOn::views;
     case Channel::travel:
     case Channel::left:
@@ -127,6 +128,7 @@ DrivePattern wheel_pattern(Channel channel, double g, const RowTravel& row, doub
     case Channel::antenna_left:
     case Channel::fix_delay:
     case Channel::fix_x:
+    case Channel::sighting_yaw:
     case Channel::fix_y:
       break;
   }
@@ -234,6 +236,9 @@ ViewPattern view_pattern(Channel channel, double g, double speed, double turn_ra
     case Channel::fix_y:
       view.y = g;
       break;
+    case Channel::sighting_yaw:
+      view.yaw = g;
+      break;
     default:
       break;
   }
@@ -246,11 +251,13 @@ bool is_recordable(Channel channel) {
 }
 
 bool acts_on_sightings(Channel channel) {
-  return acts_on_truth(channel) && channel != Channel::truth_heading;
+  return acts_on(channel) == ActsOn::views && !acts_on_fixes(channel) &&
+         channel != Channel::truth_heading;
 }
 
 bool acts_on_truth(Channel channel) {
-  return acts_on(channel) == ActsOn::views && !acts_on_fixes(channel);
+  return acts_on(channel) == ActsOn::views && !acts_on_fixes(channel) &&
+         channel != Channel::sighting_yaw;
 }
 
 bool acts_on_fixes(Channel channel) {
@@ -281,6 +288,7 @@ Sighting without(Channel channel, double g, const Sighting& sighting) {
   Sighting result = sighting;
   result.range = (sighting.range - more.range) / (1.0 + more.range_scale);
   if (more.bearing != 0.0) result.bearing = wrap_angle(sighting.bearing - more.bearing);
+  if (more.yaw != 0.0) result.yaw = wrap_angle(sighting.yaw - more.yaw);
   return result;
 }
 

@@ -84,8 +84,8 @@ struct DrivePattern {
   double excess = 0.0;   ///< rad that the gyro's turn is more beyond the wheels'
 };
 
-using ViewVector = Eigen::Matrix<double, 8, 1>;  ///< a ViewPattern's numbers, in its order
-using ByView = Eigen::Matrix<double, 4, 8>;      ///< a measurement's rows by them
+using ViewVector = Eigen::Matrix<double, 9, 1>;  ///< a ViewPattern's numbers, in its order
+using ByView = Eigen::Matrix<double, 4, 9>;      ///< a measurement's rows by them
 
 /// What is added to a view of a landmark, to a truth row or to a fix.
 struct ViewPattern {
@@ -97,9 +97,11 @@ struct ViewPattern {
   double bearing = 0.0;      ///< rad
   double x = 0.0;            ///< m, map frame; of a fix
   double y = 0.0;            ///< m
+  double yaw = 0.0;          ///< rad; of a landmark's yaw
 
   [[nodiscard]] ViewVector vector() const {
-    return (ViewVector() << ahead, left, heading, range, range_scale, bearing, x, y).finished();
+    return (ViewVector() << ahead, left, heading, range, range_scale, bearing, x, y, yaw)
+        .finished();
   }
 };
 
@@ -111,7 +113,7 @@ struct ViewPattern {
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
 /// Of what acts on views: on sightings (all but truth_heading and what acts on fixes), on truth
-/// rows (all but what acts on fixes), on fixes.
+/// rows (all but sighting_yaw and what acts on fixes), on fixes.
 [[nodiscard]] bool acts_on_sightings(Channel channel);
 [[nodiscard]] bool acts_on_truth(Channel channel);
 [[nodiscard]] bool acts_on_fixes(Channel channel);
@@ -128,7 +130,7 @@ struct ViewPattern {
 [[nodiscard]] RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase);
 /// A yaw rate [rad/s] freed from g of the channel gyro or gyro_scale.
 [[nodiscard]] double yaw_rate_without(Channel channel, double g, double yaw_rate);
-/// A range and bearing freed from g of the channel range, range_scale or bearing.
+/// A sighting freed from g of the channel range, range_scale, bearing or sighting_yaw.
 [[nodiscard]] Sighting without(Channel channel, double g, const Sighting& sighting);
 
 }  // namespace trussmap

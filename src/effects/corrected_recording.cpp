@@ -34,7 +34,7 @@ std::vector<double> gains(const Effect& effect, const RowVariables& variables, i
 
 void free_sightings(Channel channel, const std::vector<double>& g, Recording& recording) {
   for (Sighting& sighting : recording.sightings) {
-    if (sighting.standing()) continue;
+    if (sighting.standing() && channel != Channel::sighting_yaw) continue;
     sighting = without(channel, g[row_at(recording.drive, sighting.t)], sighting);
     if (!std::isnan(sighting.range) && !(sighting.range > 0.0)) {
       throw std::invalid_argument("leaves a range of " + short_text(sighting.range) +

@@ -101,11 +101,23 @@ MeasurementRows cartesian_view_rows(const Pose& pose, const Vector2& landmark, c
 
 /// In robot axes too: the map turned as a whole then changes no error, not even to first order
 /// where the errors are large, and a free direction stays recognisable.
-MeasurementRows standing_rows(const Pose& pose, const Vector2& landmark, const ViewPattern& view) {
+MeasurementRows standing_rows(const Pose& pose, const Vector2& landmark, const Vector4& value,
+                              const ViewPattern& view) {
   ViewPattern place = view;
   place.heading = 0.0;
-  MeasurementRows rows = cartesian_view_rows(pose, landmark, Vector4::Zero(), place);
+  MeasurementRows rows = cartesian_view_rows(pose, landmark, value, place);
   rows.by_view.col(2).setZero();
+  return rows;
+}
+
+MeasurementRows yaw_rows(const Pose& pose, double orientation, const Vector4& value,
+                         const ViewPattern& view) {
+  MeasurementRows rows;
+  rows.error[0] = wrap_angle(orientation - pose.heading - view.heading + view.yaw - value[0]);
+  rows.by_from(0, 2) = -1.0;
+  rows.by_to(0, 0) = 1.0;
+  rows.by_view(0, 2) = -1.0;
+  rows.by_view(0, 8) = 1.0;
   return rows;
 }
 
@@ -172,6 +184,7 @@ ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offse
     sum.bearing += a * unit.bearing;
     sum.x += a * unit.x;
     sum.y += a * unit.y;
+    sum.yaw += a * unit.yaw;
   }
   return sum;
 }
@@ -183,6 +196,9 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
     return state.poses[idx(node - problem.landmark_count())];
   };
   const auto landmark = [&](int node) -> const Vector2& { return state.landmarks[idx(node)]; };
+  const auto orientation = [&](int node) {
+    return state.orientations[idx(node - problem.pose_end())];
+  };
   switch (measurement.kind) {
     case MeasurementKind::segment:
       return segment_rows(measurement, pose(measurement.from), pose(measurement.to), value);
@@ -192,7 +208,7 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
       return rows;
     }
     case MeasurementKind::standing:
-      return standing_rows(pose(measurement.from), landmark(measurement.to), view);
+      return standing_rows(pose(measurement.from), landmark(measurement.to), value, view);
     case MeasurementKind::view:
       return view_rows(measurement, pose(measurement.from), landmark(measurement.to), value, view);
     case MeasurementKind::direction:
@@ -200,6 +216,14 @@ MeasurementRows measurement_rows(const RecordingProblem& problem, const Measurem
                             view);
     case MeasurementKind::cartesian_view:
       return cartesian_view_rows(pose(measurement.from), landmark(measurement.to), value, view);
+    case MeasurementKind::sighting_yaw:
+      return yaw_rows(pose(measurement.from), orientation(measurement.to), value, view);
+    case MeasurementKind::survey_heading: {
+      MeasurementRows rows;
+      rows.error[0] = wrap_angle(orientation(measurement.from) - value[0]);
+      rows.by_from(0, 0) = 1.0;
+      return rows;
+    }
     case MeasurementKind::truth:
       return truth_rows(pose(measurement.from), value, view);
     case MeasurementKind::fix:

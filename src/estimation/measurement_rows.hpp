@@ -9,11 +9,13 @@
 //
 //   segment      R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a,  theta_i - m
 //   gyro       -value: nothing is predicted of an excess
-//   standing   R(theta)' delta
+//   standing   R(theta)' delta - offset
 //   view       |delta| - range,  direction(delta) - theta - bearing
 //   direction  direction(delta) - theta - bearing
 //   cartesian_view  R(theta)' delta - offset
+//   sighting_yaw    phi - theta - yaw, phi the landmark's orientation
 //   survey     l - s
+//   survey_heading  phi - h
 //   truth      q - t,  theta - h
 //   fix        p + R(theta + heading) (ahead, left) + (x, y) - f      (x, y and heading of the
 //   view) loop       R(theta_i)'(p_j - p_i) - d,  theta_j - theta_i - a

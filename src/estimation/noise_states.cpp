@@ -195,7 +195,8 @@ class ProcessLayout {
   /// A white reading needs no state: its variance is the reading's own.
   [[nodiscard]] bool is_reading() const {
     return channel_ == Channel::range || channel_ == Channel::range_scale ||
-           channel_ == Channel::bearing || channel_ == Channel::fix_x || channel_ == Channel::fix_y;
+           channel_ == Channel::bearing || channel_ == Channel::fix_x ||
+           channel_ == Channel::fix_y || channel_ == Channel::sighting_yaw;
   }
   [[nodiscard]] Matrix4 white_reading(const Measurement& one) const {
     Matrix4 variance = Matrix4::Zero();
@@ -205,6 +206,8 @@ class ProcessLayout {
     } else if (one.kind == MeasurementKind::cartesian_view) {
       const double size = channel_ == Channel::range ? 1.0 : one.value.head<2>().norm();
       variance(0, 0) = variance(1, 1) = size * size;
+    } else if (one.kind == MeasurementKind::sighting_yaw) {
+      variance(0, 0) = 1.0;
     } else if (channel_ == Channel::bearing) {
       const int row = one.kind == MeasurementKind::direction ? 0 : 1;
       variance(row, row) = 1.0;
@@ -220,6 +223,10 @@ class ProcessLayout {
     if (one.kind == MeasurementKind::loop) return false;
     if (one.kind == MeasurementKind::fix || acts_on_fixes(channel_)) {
       return one.kind == MeasurementKind::fix && acts_on_fixes(channel_);
+    }
+    const bool yaw = one.kind == MeasurementKind::sighting_yaw;
+    if (yaw || channel_ == Channel::sighting_yaw) {
+      return yaw && (channel_ == Channel::sighting_yaw || channel_ == Channel::delay);
     }
     switch (channel_) {
       case Channel::range:
@@ -490,6 +497,7 @@ ViewPattern lasting_in_view(const RecordingProblem& problem, std::size_t measure
     sum.bearing += z * term.by[5];
     sum.x += z * term.by[6];
     sum.y += z * term.by[7];
+    sum.yaw += z * term.by[8];
   }
   return sum;
 }

@@ -32,6 +32,7 @@ Vector2 offset_of(const Measurement& one) {
     case MeasurementKind::view:
       return one.rows == 1 ? Vector2(one.value[0], 0.0)
                            : Vector2(one.value[0] * rotation(one.value[1]).col(0));
+    case MeasurementKind::standing:
     case MeasurementKind::cartesian_view:
       return one.value.head<2>();
     default:

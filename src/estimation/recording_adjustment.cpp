@@ -18,6 +18,10 @@ namespace {
 
 std::string name_of(const RecordingProblem& problem, int node) {
   if (problem.is_landmark(node)) return "landmark " + problem.landmarks[idx(node)];
+  if (problem.is_orientation(node)) {
+    const int landmark = problem.oriented[idx(node - problem.pose_end())];
+    return "the orientation of landmark " + problem.landmarks[idx(landmark)];
+  }
   const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
   const std::string session =
       problem.sessions.size() > 1 ? " of " + problem.sessions[idx(pose.session)] : std::string();
@@ -131,6 +135,7 @@ std::string kinds_left_out(const RecordingProblem& problem, const std::vector<in
     if (there) text += (text.empty() ? "" : " or ") + std::string(what);
   };
   add(any(is_sighting), "sightings");
+  add(any([](MeasurementKind kind) { return kind == MeasurementKind::sighting_yaw; }), "yaws");
   add(any([](MeasurementKind kind) { return kind == MeasurementKind::fix; }), "fixes");
   add(any([](MeasurementKind kind) { return kind == MeasurementKind::loop; }), "loops");
   return text;

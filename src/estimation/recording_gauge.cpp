@@ -35,6 +35,10 @@ std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     if (!weights.empty() && weights[k] == 0.0) continue;
+    // Of a place they say nothing.
+    if (one.kind == MeasurementKind::sighting_yaw || one.kind == MeasurementKind::survey_heading) {
+      continue;
+    }
     absolute = absolute || in_map(one);
     if (one.to < 0 && !in_map(one)) continue;
     ties.push_back({one.from, in_map(one) ? map_frame : one.to});
@@ -60,6 +64,9 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
       case MeasurementKind::survey:
         position = true;
         surveyed.insert(one.from);
+        break;
+      case MeasurementKind::survey_heading:
+        direction = true;
         break;
       case MeasurementKind::truth:
         position = direction = true;

@@ -6,6 +6,7 @@
 #include "estimation/motion_changes.hpp"
 #include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
+#include "recording/floor_code.hpp"
 #include "recording/legs.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
@@ -88,6 +89,7 @@ class Collector {
       if (copy) continue;
       surveyed_.push_back(one);
       problem_.measurements.push_back(one);
+      add_survey_heading(point, k, node->second);
     }
   }
 
@@ -254,6 +256,7 @@ class Collector {
     one.source = source;
     if (sighting.standing()) {
       one.kind = MeasurementKind::standing;
+      one.value.head<2>() = code_from_robot(sighting);
       one.whitener = whitener_of_sds({noise.sighting, noise.sighting});
     } else {
       const double sd_range = std::hypot(noise.range, noise.range_relative * sighting.range);
@@ -277,6 +280,34 @@ class Collector {
         one.whitener = whitener_of_sds({sd_range, sd_range});
       }
     }
+    problem_.measurements.push_back(one);
+    if (std::isnan(sighting.yaw)) return;
+    one.kind = MeasurementKind::sighting_yaw;
+    one.to = orientation_of(node->second);
+    one.rows = 1;
+    one.value = Vector4(sighting.yaw, 0.0, 0.0, 0.0);
+    one.whitener = whitener_of_sds({noise.yaw});
+    problem_.measurements.push_back(one);
+  }
+
+  /// Counted among the orientations, until every pose has its node.
+  int orientation_of(int landmark) {
+    const int next = static_cast<int>(problem_.oriented.size());
+    const auto [at, fresh] = orientation_.try_emplace(landmark, next);
+    if (fresh) problem_.oriented.push_back(landmark);
+    return at->second;
+  }
+
+  void add_survey_heading(const SurveyPoint& point, std::size_t source, int landmark) {
+    const auto orientation = orientation_.find(landmark);
+    if (std::isnan(point.heading) || orientation == orientation_.end()) return;
+    Measurement one;
+    one.kind = MeasurementKind::survey_heading;
+    one.from = orientation->second;
+    one.rows = 1;
+    one.value[0] = point.heading;
+    one.whitener = whitener_of_sds({model_.noise.yaw});
+    one.source = source;
     problem_.measurements.push_back(one);
   }
 
@@ -327,7 +358,8 @@ class Collector {
   int session_ = 0;
   std::vector<TimeSpan> spans_;  ///< left out of this session
   std::map<std::string, int> landmark_node_;
-  std::map<double, int> pose_at_;  ///< of this session, by time
+  std::map<int, int> orientation_;  ///< of a landmark
+  std::map<double, int> pose_at_;   ///< of this session, by time
   std::vector<Measurement> surveyed_;
   RecordingProblem problem_;
 };
@@ -356,7 +388,12 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
   RecordingProblem problem = collector.take();
   for (Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey) continue;
+    if (one.kind == MeasurementKind::survey_heading) {
+      one.from += problem.pose_end();
+      continue;
+    }
     one.from = problem.pose_node(one.from);
+    if (one.kind == MeasurementKind::sighting_yaw) one.to += problem.pose_end();
     const bool between_poses =
         one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
     if (between_poses) one.to = problem.pose_node(one.to);
@@ -372,6 +409,9 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
   const std::string session = problem.sessions.size() > 1 && measurement.session >= 0
                                   ? " of " + problem.sessions[idx(measurement.session)]
                                   : std::string();
+  const auto oriented = [&](int node) {
+    return problem.landmarks[idx(problem.oriented[idx(node - problem.pose_end())])];
+  };
   switch (measurement.kind) {
     case MeasurementKind::segment:
       return "drive from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
@@ -386,6 +426,11 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
     case MeasurementKind::direction:
       return "sight of landmark " + problem.landmarks[idx(measurement.to)] +
              " at t = " + time(measurement.from) + " s" + session;
+    case MeasurementKind::sighting_yaw:
+      return "yaw of landmark " + oriented(measurement.to) + " at t = " + time(measurement.from) +
+             " s" + session;
+    case MeasurementKind::survey_heading:
+      return "surveyed heading of landmark " + oriented(measurement.from);
     case MeasurementKind::survey:
       return "survey of landmark " + problem.landmarks[idx(measurement.from)];
     case MeasurementKind::truth:

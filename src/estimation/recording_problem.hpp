@@ -5,21 +5,24 @@
 //
 //   unknown                                        node
 //     landmark positions, shared by all sessions   0 ... landmarks - 1                2 each
-//     robot poses at sightings, truth rows and     landmarks ... nodes - 1            3 each
+//     robot poses at sightings, truth rows and     landmarks ... landmarks + poses - 1 3 each
 //     fixes used, at both ends of loops, and at
 //     changes between spinning and driving
+//     orientations of landmarks with a yaw         after the poses                    1 each
 //     coefficients of effects                      none: a dense border               1 each
 //
 //   measurement          between                rows
 //     segment              pose, next pose        motion (3), mean compass innovation (0 or 1)
 //     gyro               segment's first pose   gyro against wheels (1 to 4, gyro_excess.hpp); of
 //                                               no pose, but of effects
-//     standing           pose, landmark         landmark in robot axes (2): 0 is exact      m
+//     standing           pose, landmark         landmark in robot axes (2)                  m
 //     view               pose, landmark         range, bearing (2), range alone (1)         m, rad
 //     cartesian_view          pose, landmark         the same in robot axes (2): a range within
 //     three
 //                                               of its sds says nothing of a direction      m
 //     direction          pose, landmark         bearing alone (1)                           rad
+//     sighting_yaw       pose, orientation      the landmark's axis less the heading (1)    rad
+//     survey_heading     orientation            in the map (1)                              rad
 //     survey             landmark               x, y (2)                                    m
 //     truth              pose                   x, y, heading (3)                           m, rad
 //     fix                pose                   x, y of the antenna (2)                     m
@@ -48,7 +51,9 @@ enum class MeasurementKind {
   view,
   cartesian_view,
   direction,
+  sighting_yaw,
   survey,
+  survey_heading,
   truth,
   fix,
   loop
@@ -68,7 +73,8 @@ enum class MeasurementKind {
 /// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
 /// place taken for another.
 [[nodiscard]] constexpr bool may_be_wrong(MeasurementKind kind) {
-  return is_sighting(kind) || kind == MeasurementKind::fix || kind == MeasurementKind::loop;
+  return is_sighting(kind) || kind == MeasurementKind::sighting_yaw ||
+         kind == MeasurementKind::fix || kind == MeasurementKind::loop;
 }
 
 struct Measurement;
@@ -115,6 +121,7 @@ struct PoseNode {
 struct RecordingProblem {
   std::vector<std::string> landmarks;             ///< names, in order of first sighting
   std::vector<PoseNode> poses;                    ///< session after session, in order of time
+  std::vector<int> oriented;                      ///< landmarks with an orientation
   std::vector<std::vector<SegmentRow>> segments;  ///< rows of each segment
   /// Per segment and row what an excess of the gyro counts (gyro_excess.hpp); empty: no gyro.
   std::vector<std::vector<Vector4>> gyro_weights;
@@ -126,8 +133,14 @@ struct RecordingProblem {
   std::vector<Matrix4> within;  ///< covariance that lasting noise adds, given the states; likewise
 
   [[nodiscard]] int landmark_count() const { return static_cast<int>(landmarks.size()); }
-  [[nodiscard]] int nodes() const { return landmark_count() + static_cast<int>(poses.size()); }
+  [[nodiscard]] int pose_end() const { return landmark_count() + static_cast<int>(poses.size()); }
+  [[nodiscard]] int nodes() const { return pose_end() + static_cast<int>(oriented.size()); }
   [[nodiscard]] bool is_landmark(int node) const { return node < landmark_count(); }
+  [[nodiscard]] bool is_orientation(int node) const { return node >= pose_end(); }
+  /// Of a landmark 2, of a pose 3, of an orientation 1.
+  [[nodiscard]] int size_of(int node) const {
+    return is_landmark(node) ? 2 : is_orientation(node) ? 1 : 3;
+  }
   [[nodiscard]] int pose_node(int pose) const { return landmark_count() + pose; }
 };
 
@@ -167,9 +180,10 @@ struct ProblemOptions {
 
 /// Values of all unknowns but the coefficients.
 struct RecordingState {
-  std::vector<Vector2> landmarks;  ///< m, map frame
-  std::vector<Pose> poses;         ///< map frame; headings not wrapped
-  Eigen::VectorXd noise = {};      ///< noise states; empty: all 0
+  std::vector<Vector2> landmarks;         ///< m, map frame
+  std::vector<Pose> poses;                ///< map frame; headings not wrapped
+  Eigen::VectorXd noise = {};             ///< noise states; empty: all 0
+  std::vector<double> orientations = {};  ///< rad, map frame, not wrapped; as `oriented`
 };
 
 /// Sighting, "landmark 12 at t = 3.5 s", and so on: a measurement in the user's words.

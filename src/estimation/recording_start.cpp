@@ -23,6 +23,10 @@ bool in_map_frame(const Measurement& one) {
          one.kind == MeasurementKind::fix;
 }
 
+bool is_of_orientation(const Measurement& one) {
+  return one.kind == MeasurementKind::sighting_yaw || one.kind == MeasurementKind::survey_heading;
+}
+
 bool between_poses(const Measurement& one) {
   return one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
 }
@@ -39,7 +43,10 @@ ByPose by_pose(const RecordingProblem& problem) {
   result.others.resize(problem.poses.size());
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::gyro) continue;
+    const bool of_pose = one.kind != MeasurementKind::survey &&
+                         one.kind != MeasurementKind::survey_heading &&
+                         one.kind != MeasurementKind::gyro;
+    if (!of_pose) continue;
     const std::size_t pose = idx(one.from - problem.landmark_count());
     if (one.kind == MeasurementKind::segment) {
       result.segment_from[pose] = static_cast<int>(k);
@@ -538,6 +545,24 @@ PlacedLandmarks surveyed(const RecordingProblem& problem) {
 
 }  // namespace
 
+std::vector<double> orientations_seen_from(const RecordingProblem& problem,
+                                           const std::vector<Pose>& poses) {
+  std::vector<Vector2> sums(problem.oriented.size(), Vector2::Zero());
+  for (const Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::sighting_yaw) continue;
+    const Pose& pose = poses[idx(one.from - problem.landmark_count())];
+    sums[idx(one.to - problem.pose_end())] += rotation(pose.heading + one.value[0]).col(0);
+  }
+  std::vector<double> result;
+  result.reserve(sums.size());
+  for (const Vector2& sum : sums) result.push_back(direction(sum));
+  for (const Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::survey_heading) continue;
+    result[idx(one.from - problem.pose_end())] = one.value[0];
+  }
+  return result;
+}
+
 ProblemPart part_of(const RecordingProblem& problem, int first, int count,
                     const PlacedLandmarks* placed) {
   ProblemPart part;
@@ -547,7 +572,7 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   const auto inside = [&](int node) { return node >= offset && node < offset + count; };
   std::vector<const Measurement*> kept;
   for (const Measurement& one : problem.measurements) {
-    if (in_map_frame(one)) continue;
+    if (in_map_frame(one) || is_of_orientation(one)) continue;
     if (!inside(one.from) || (between_poses(one) && !inside(one.to))) continue;
     // What a segment's gyro says goes with it.
     if (one.kind == MeasurementKind::gyro && !inside(one.from + 1)) continue;
@@ -615,6 +640,7 @@ RecordingStart start_of(const RecordingProblem& problem, const EffectParameters&
       pose.y -= origin.y();
     }
   }
+  state.orientations = orientations_seen_from(problem, state.poses);
   return {std::move(state), std::move(coefficients.values)};
 }
 
@@ -645,6 +671,7 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
     state.landmarks.emplace_back(sums[k] / std::max(counts[k], 1.0));
   }
+  state.orientations = orientations_seen_from(problem, state.poses);
   return state;
 }
 

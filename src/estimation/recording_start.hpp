@@ -63,6 +63,11 @@ struct RecordingStart {
 /// at the mean of where its sightings put it. What the adjustment is compared with.
 [[nodiscard]] RecordingState dead_reckoned(const RecordingProblem& problem);
 
+/// Of landmarks with an orientation: surveyed, or the mean direction in which these poses have seen
+/// it, rad.
+[[nodiscard]] std::vector<double> orientations_seen_from(const RecordingProblem& problem,
+                                                         const std::vector<Pose>& poses);
+
 /// The part of a problem that one session's poses first ... first + count - 1 see, without survey,
 /// truth and fixes; landmarks that they do not see are left out.
 struct ProblemPart {

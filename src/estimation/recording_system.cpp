@@ -16,8 +16,8 @@ namespace trussmap {
 namespace {
 
 std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge& gauge) {
-  std::vector<int> sizes(idx(problem.nodes()), 3);
-  for (int node = 0; node < problem.landmark_count(); ++node) sizes[idx(node)] = 2;
+  std::vector<int> sizes(idx(problem.nodes()));
+  for (int node = 0; node < problem.nodes(); ++node) sizes[idx(node)] = problem.size_of(node);
   if (gauge.hold_landmark) sizes[0] = 0;
   sizes.resize(sizes.size() + problem.noise_states.size(), 1);
   return sizes;
@@ -112,7 +112,7 @@ int RecordingSystem::unknowns() const {
 double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
                                   bool hold_headings) {
   const auto heading_held = [&](int node) {
-    return node >= problem_.landmark_count() &&
+    return node >= problem_.landmark_count() && !problem_.is_orientation(node) &&
            (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
   };
   const auto place_held = [&](int node) {
@@ -161,12 +161,13 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     evaluate_effect_parameters(k, rows);
   }
   linearise_states(noise);
-  for (int node = problem_.landmark_count(); node < problem_.nodes(); ++node) {
+  for (int node = problem_.landmark_count(); node < problem_.pose_end(); ++node) {
     const double place = place_held(node) ? 1.0 : 0.0;
     const double heading = heading_held(node) ? 1.0 : 0.0;
     if (place + heading == 0.0) continue;
     normal_.add_diagonal<3>(node, Eigen::Vector3d(place, place, heading).asDiagonal());
   }
+  hold_unseen_orientations();
   double chi2 = residuals_.squaredNorm();
   B_ = transposed_times(M_);
   D_ = M_.transpose() * M_;
@@ -181,6 +182,16 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   return chi2;
 }
 
+/// One of which every yaw has been left out stays where it is.
+void RecordingSystem::hold_unseen_orientations() {
+  if (problem_.oriented.empty()) return;
+  const Eigen::VectorXd diagonal = normal_.diagonal();
+  for (int node = problem_.pose_end(); node < problem_.nodes(); ++node) {
+    if (diagonal[normal_.offset(node)] > 0.0) continue;
+    normal_.add_diagonal<1>(node, Eigen::Matrix<double, 1, 1>(1.0));
+  }
+}
+
 void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error) {
   const Measurement& one = problem_.measurements[k];
   const auto add = [&](int node, const RowsByNode& J) {
@@ -188,7 +199,9 @@ void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const V
     if (size == 0) return;
     const Matrix3 block = J.transpose() * J;
     const Eigen::Vector3d force = J.transpose() * error;
-    if (size == 2) {
+    if (size == 1) {
+      normal_.add_diagonal<1>(node, block.topLeftCorner<1, 1>());
+    } else if (size == 2) {
       normal_.add_diagonal<2>(node, block.topLeftCorner<2, 2>());
     } else {
       normal_.add_diagonal<3>(node, block);
@@ -201,6 +214,8 @@ void RecordingSystem::add_to_normal(std::size_t k, const Whitened& rows, const V
   const Matrix3 coupling = rows.from.transpose() * rows.to;
   if (problem_.is_landmark(one.to)) {
     normal_.add_coupling<3, 2>(pair_[k], coupling.leftCols<2>());
+  } else if (problem_.is_orientation(one.to)) {
+    normal_.add_coupling<3, 1>(pair_[k], coupling.leftCols<1>());
   } else {
     normal_.add_coupling<3, 3>(pair_[k], coupling);
   }
@@ -215,6 +230,8 @@ void RecordingSystem::add_states_to_normal(std::size_t k, const Whitened& rows,
     const Eigen::Vector3d coupling = J.transpose() * column;
     if (problem_.is_landmark(node)) {
       normal_.add_coupling<2, 1>(pair, Eigen::Vector2d(coupling.head<2>()));
+    } else if (problem_.is_orientation(node)) {
+      normal_.add_coupling<1, 1>(pair, Eigen::Matrix<double, 1, 1>(coupling[0]));
     } else {
       normal_.add_coupling<3, 1>(pair, coupling);
     }
@@ -432,6 +449,8 @@ RecordingState RecordingSystem::moved(const RecordingState& state, const Step& s
     const int at = normal_.offset(node);
     if (problem_.is_landmark(node)) {
       result.landmarks[idx(node)] += step.nodes.segment<2>(at);
+    } else if (problem_.is_orientation(node)) {
+      result.orientations[idx(node - problem_.pose_end())] += step.nodes[at];
     } else {
       Pose& pose = result.poses[idx(node - problem_.landmark_count())];
       pose.x += step.nodes[at];
@@ -463,11 +482,11 @@ Eigen::MatrixXd RecordingSystem::solve(const Eigen::MatrixXd& b) const {
 Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes) const {
   const Eigen::Index n = normal_.unknowns();
   Eigen::Index size = B_.cols();
-  for (const int node : nodes) size += problem_.is_landmark(node) ? 2 : 3;
+  for (const int node : nodes) size += problem_.size_of(node);
   Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(n + B_.cols(), size);
   Eigen::Index at = 0;
   for (const int node : nodes) {
-    const int width = problem_.is_landmark(node) ? 2 : 3;
+    const int width = problem_.size_of(node);
     for (int k = 0; k < width && k < normal_.size(node); ++k) {
       const bool held =
           node == problem_.pose_node(0) && (k == 2 ? gauge_.hold_heading : gauge_.hold_position);

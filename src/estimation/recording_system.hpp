@@ -152,6 +152,7 @@ class RecordingSystem {
   void linearise_states(const Eigen::VectorXd& states);
   void add_states_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
+  void hold_unseen_orientations();
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
   void build_schur(double damping);

@@ -69,6 +69,7 @@ void clear_sightings(const Recording& recorded, const EffectParameters& border,
     const Sighting& seen = recorded.sightings[k];
     Sighting& clear = result.recording.sightings[k];
     result.sensor[k] = {view.ahead, view.left};
+    clear.yaw = wrap_angle(seen.yaw - view.yaw + view.heading);
     if (seen.standing()) continue;
     // Noise may have left a range shorter than its offset.
     clear.range = std::max((seen.range - view.range) / (1.0 + view.range_scale), 0.0);

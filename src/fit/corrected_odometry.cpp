@@ -115,8 +115,10 @@ class CorrectedOdometry::State {
       sum.range += more.range;
       sum.range_scale += more.range_scale;
       sum.bearing += more.bearing;
+      sum.yaw += more.yaw;
     }
     result.sensor_robot = {sum.ahead, sum.left};
+    result.sighting.yaw = wrap_angle(sighting.yaw - sum.yaw);
     if (sighting.standing()) return result;
     result.sighting.range = std::max((sighting.range - sum.range) / (1.0 + sum.range_scale), 0.0);
     result.sighting.bearing = wrap_angle(sighting.bearing - sum.bearing);

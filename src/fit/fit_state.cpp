@@ -146,6 +146,7 @@ class Fitter {
       const std::size_t session = idx(node.session);
       state_.poses.push_back(pose_at(fit_.recordings[session].drive, fit_.paths[session], node.t));
     }
+    state_.orientations = orientations_seen_from(fit_.problem, state_.poses);
   }
 
   /// More sightings contradict the rest than are ever wrong or, where none may go and no compass

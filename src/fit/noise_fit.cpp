@@ -320,6 +320,8 @@ class NoiseFitter {
         return "range";
       case Channel::bearing:
         return "bearing";
+      case Channel::sighting_yaw:
+        return "yaw";
       case Channel::truth_heading:
         return "truth";
       case Channel::gyro:

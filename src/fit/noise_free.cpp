@@ -15,8 +15,9 @@ RecordingState standing_exactly(const RecordingProblem& problem, const EffectPar
     if (one.kind != MeasurementKind::standing) continue;
     const ViewPattern view = view_of(border, offsets, one);
     const std::size_t pose = idx(one.from - problem.landmark_count());
-    sums[pose] += state.landmarks[idx(one.to)] -
-                  rotation(state.poses[pose].heading) * Vector2(view.ahead, view.left);
+    sums[pose] +=
+        state.landmarks[idx(one.to)] - rotation(state.poses[pose].heading) *
+                                           (Vector2(view.ahead, view.left) + one.value.head<2>());
     ++counts[pose];
   }
   RecordingState result = state;

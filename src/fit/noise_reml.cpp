@@ -100,6 +100,7 @@ std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& n
   add("fix", "m", &Noise::fix, has_unstated_fixes(fit));
   add("bearing", "rad", &Noise::bearing,
       any_of_kind(fit, MeasurementKind::view) || any_of_kind(fit, MeasurementKind::direction));
+  add("yaw", "rad", &Noise::yaw, any_of_kind(fit, MeasurementKind::sighting_yaw));
   add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
   add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
   add("travel_per_s", "m/s^1/2", &Noise::travel_per_s, true);
@@ -214,6 +215,8 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
       if (one.rows == 2) added(1, 1) = unit.bearing * unit.bearing;
     } else if (one.kind == MeasurementKind::direction) {
       added(0, 0) = unit.bearing * unit.bearing;
+    } else if (one.kind == MeasurementKind::sighting_yaw) {
+      added(0, 0) = unit.yaw * unit.yaw;
     } else if (one.kind == MeasurementKind::cartesian_view) {
       added.diagonal().head<2>().setConstant(unit.range * unit.range);
     } else if (is_unstated_fix(fit_, one)) {
@@ -265,6 +268,7 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
       if (one.rows == 4) fixed(3, 3) = kLeastSd * kLeastSd;
       break;
     case MeasurementKind::survey:
+    case MeasurementKind::survey_heading:
     case MeasurementKind::truth:
     case MeasurementKind::fix:
     case MeasurementKind::loop: {
@@ -276,6 +280,7 @@ Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
     case MeasurementKind::gyro:
     case MeasurementKind::standing:
     case MeasurementKind::direction:
+    case MeasurementKind::sighting_yaw:
       break;
     case MeasurementKind::view:
       fixed(0, 0) = std::pow(relative * one.value[0], 2);

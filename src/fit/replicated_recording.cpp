@@ -8,6 +8,7 @@
 #include "estimation/noise_states.hpp"
 #include "fit/noise_free.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "recording/floor_code.hpp"
 #include "recording/row_variables.hpp"
 
 #include <algorithm>
@@ -139,21 +140,38 @@ class Replicator {
     }
   }
 
+  /// rad; null of a landmark without one.
+  [[nodiscard]] const double* orientation_of(int landmark) const {
+    const std::vector<int>& oriented = fit_.problem.oriented;
+    const auto at = std::find(oriented.begin(), oriented.end(), landmark);
+    return at == oriented.end()
+               ? nullptr
+               : &state_.orientations[idx(static_cast<int>(at - oriented.begin()))];
+  }
+
   void measure_places() {
     const auto& landmarks = fit_.problem.landmarks;
     // One survey, copied to every session, stays one.
-    std::map<std::tuple<std::string, double, double>, Vector2> measured;
+    std::map<std::tuple<std::string, double, double>, Pose> measured;
     for (std::size_t s = 0; s < timed_.size(); ++s) {
       for (SurveyPoint& one : timed_[s].survey) {
         const auto at = std::find(landmarks.begin(), landmarks.end(), one.landmark);
         if (at == landmarks.end()) continue;
-        const Vector2& place = state_.landmarks[idx(static_cast<int>(at - landmarks.begin()))];
+        const auto landmark = static_cast<int>(at - landmarks.begin());
+        const Vector2& place = state_.landmarks[idx(landmark)];
         const double sd = std::isnan(one.sd) ? noise_.survey : one.sd;
-        const auto [known, fresh] =
-            measured.try_emplace({one.landmark, one.x, one.y}, Vector2::Zero());
-        if (fresh) known->second = place + Vector2(drawn(sd), drawn(sd));
-        one.x = known->second.x();
-        one.y = known->second.y();
+        const auto [known, fresh] = measured.try_emplace({one.landmark, one.x, one.y}, Pose{});
+        Pose& there = known->second;
+        if (fresh) {
+          const Vector2 off(drawn(sd), drawn(sd));
+          there = {place.x() + off.x(), place.y() + off.y(), one.heading};
+          if (const double* orientation = orientation_of(landmark)) {
+            if (!std::isnan(one.heading)) there.heading = *orientation + drawn(noise_.yaw);
+          }
+        }
+        one.x = there.x;
+        one.y = there.y;
+        one.heading = there.heading;
       }
       for (std::size_t row = 0; row < timed_[s].truth.size(); ++row) {
         TruthRow& one = timed_[s].truth[row];
@@ -203,6 +221,7 @@ class Replicator {
 
   void see_landmarks() {
     for (const Measurement& one : fit_.problem.measurements) {
+      if (one.kind == MeasurementKind::sighting_yaw) see_yaw(one);
       if (!is_sighting(one.kind) || one.kind == MeasurementKind::standing) continue;
       Sighting& sighting = timed_[idx(one.session)].sightings[one.source];
       const Vector4 seen = one.value + measurement_rows(fit_.problem, one, state_, one.value,
@@ -221,6 +240,17 @@ class Replicator {
         sighting.bearing = wrap_angle(bearing + drawn(noise_.bearing));
       }
     }
+  }
+
+  /// Where the robot stands beside a floor code stays as it was in its own axes.
+  void see_yaw(const Measurement& one) {
+    Sighting& sighting = timed_[idx(one.session)].sightings[one.source];
+    const Vector2 code = code_from_robot(sighting);
+    const double seen = one.value[0] + measurement_rows(fit_.problem, one, state_, one.value,
+                                                        view_of(border_, offsets_, one))
+                                           .error[0];
+    sighting.yaw = wrap_angle(seen + drawn(noise_.yaw));
+    if (!std::isnan(sighting.dx)) place_by_code(code, sighting);
   }
 
   /// Of a drive along which both lead, what wheels and gyro each show without noise.
@@ -378,7 +408,7 @@ class Replicator {
     };
     std::map<std::string, Pass> passes;
     for (Sighting& one : recording.sightings) {
-      if (one.standing()) continue;
+      if (one.standing() && process.channel != Channel::sighting_yaw) continue;
       double value = g[row_at(recording.drive, one.t)];
       if (process.process == ProcessKind::white) value = drawn(process.sd);
       if (process.process == ProcessKind::per_pass) {

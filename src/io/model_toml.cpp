@@ -46,6 +46,7 @@ constexpr NoiseKey kNoise[] = {
     {"loop", &Noise::loop, "m, where loops.csv has no sd"},
     {"loop_heading", &Noise::loop_heading, "rad, where loops.csv has no sd_heading"},
     {"steer", &Noise::steer, "rad m^1/2: of the mean steering angle over a metre"},
+    {"yaw", &Noise::yaw, "rad, per yaw of a landmark"},
 };
 
 /// What [robot] holds of a drive besides its name.

@@ -151,7 +151,10 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   const int landmark = csv.require("landmark");
   const int range = csv.find("range");
   const int bearing = csv.find("bearing");
-  refuse_other_columns(csv, {"t", "landmark", "range", "bearing"});
+  const int yaw = csv.find("yaw");
+  const int dx = csv.find("dx");
+  const int dy = csv.find("dy");
+  refuse_other_columns(csv, {"t", "landmark", "range", "bearing", "yaw", "dx", "dy"});
   std::vector<Sighting> sightings;
   while (csv.next()) {
     Sighting sighting;
@@ -161,6 +164,17 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
       sighting.range = csv.number_or_absent(range, kLargestRange);
     }
     if (bearing >= 0) sighting.bearing = csv.number_or_absent(bearing, kLargestAngle);
+    if (yaw >= 0) sighting.yaw = csv.number_or_absent(yaw, kLargestAngle);
+    if (dx >= 0) sighting.dx = csv.number_or_absent(dx, kLargestRange);
+    if (dy >= 0) sighting.dy = csv.number_or_absent(dy, kLargestRange);
+    if (std::isnan(sighting.dx) != std::isnan(sighting.dy)) {
+      csv.fail("dx or dy stands alone, expected both or neither");
+    }
+    if (!std::isnan(sighting.dx) && (!sighting.standing() || std::isnan(sighting.yaw))) {
+      csv.fail(
+          "dx and dy are of a robot that stands on its landmark and reads its yaw, expected "
+          "a yaw and neither range nor bearing beside them");
+    }
     if (sighting.range < 0.0) csv.fail("the range is negative, expected 0 or more");
     require_inside(csv, drive, sighting.t, "time ");
     if (!sightings.empty()) require_forward(csv, sightings.back().t, sighting.t, true);
@@ -182,7 +196,8 @@ std::vector<SurveyPoint> read_survey(const fs::path& file) {
   const int x = csv.require("x");
   const int y = csv.require("y");
   const int sd = csv.find("sd");
-  refuse_other_columns(csv, {"landmark", "x", "y", "sd"});
+  const int heading = csv.find("heading");
+  refuse_other_columns(csv, {"landmark", "x", "y", "sd", "heading"});
   std::vector<SurveyPoint> survey;
   std::set<std::string> names;
   while (csv.next()) {
@@ -191,6 +206,7 @@ std::vector<SurveyPoint> read_survey(const fs::path& file) {
     point.x = csv.number(x, kLargestPosition);
     point.y = csv.number(y, kLargestPosition);
     if (sd >= 0) point.sd = csv.number_or_absent(sd, kLargestPosition);
+    if (heading >= 0) point.heading = csv.number_or_absent(heading, kLargestAngle);
     if (point.sd <= 0.0) csv.fail("sd is " + csv_number(point.sd) + ", expected more than 0");
     if (!names.insert(point.landmark).second) {
       csv.fail("landmark " + point.landmark + " is surveyed twice, expected each once");

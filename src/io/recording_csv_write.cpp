@@ -45,10 +45,19 @@ std::string drive_text(const Drive& drive, const std::string& comment) {
 std::string sightings_text(const std::vector<Sighting>& sightings) {
   const bool ranges = std::any_of(sightings.begin(), sightings.end(),
                                   [](const Sighting& one) { return !one.standing(); });
-  std::string text = ranges ? "t,landmark,range,bearing\n" : "t,landmark\n";
+  const bool yaws = std::any_of(sightings.begin(), sightings.end(),
+                                [](const Sighting& one) { return !std::isnan(one.yaw); });
+  const bool codes = std::any_of(sightings.begin(), sightings.end(),
+                                 [](const Sighting& one) { return !std::isnan(one.dx); });
+  std::string text = "t,landmark";
+  text += ranges ? ",range,bearing" : "";
+  text += yaws ? ",yaw" : "";
+  text += codes ? ",dx,dy\n" : "\n";
   for (const Sighting& sighting : sightings) {
     text += csv_number(sighting.t) + ',' + csv_field(sighting.landmark);
     if (ranges) text += ',' + csv_number(sighting.range) + ',' + csv_number(sighting.bearing);
+    if (yaws) text += ',' + csv_number(sighting.yaw);
+    if (codes) text += ',' + csv_number(sighting.dx) + ',' + csv_number(sighting.dy);
     text += '\n';
   }
   return text;
@@ -57,10 +66,16 @@ std::string sightings_text(const std::vector<Sighting>& sightings) {
 std::string survey_text(const std::vector<SurveyPoint>& survey) {
   const bool sds = std::any_of(survey.begin(), survey.end(),
                                [](const SurveyPoint& point) { return !std::isnan(point.sd); });
-  std::string text = sds ? "landmark,x,y,sd\n" : "landmark,x,y\n";
+  const bool headings = std::any_of(survey.begin(), survey.end(), [](const SurveyPoint& point) {
+    return !std::isnan(point.heading);
+  });
+  std::string text = "landmark,x,y";
+  text += sds ? ",sd" : "";
+  text += headings ? ",heading\n" : "\n";
   for (const SurveyPoint& point : survey) {
     text += csv_field(point.landmark) + ',' + csv_number(point.x) + ',' + csv_number(point.y);
     if (sds) text += ',' + csv_number(point.sd);
+    if (headings) text += ',' + csv_number(point.heading);
     text += '\n';
   }
   return text;

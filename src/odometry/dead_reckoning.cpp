@@ -5,6 +5,7 @@
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "recording/floor_code.hpp"
 
 #include <cmath>
 #include <optional>
@@ -40,7 +41,7 @@ Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& 
 
 LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
   if (sighting.standing()) {
-    return {Vector2::Zero(), noise.sighting * noise.sighting * Matrix2::Identity()};
+    return {code_from_robot(sighting), noise.sighting * noise.sighting * Matrix2::Identity()};
   }
   const Matrix2 R = rotation(sighting.bearing);
   const double along =

@@ -88,6 +88,13 @@ void require_sightings(const Recording& recording) {
     if (std::isinf(one.range) || one.range < 0.0 || std::isinf(one.bearing)) {
       refuse_it("has a range or a bearing that is negative or infinite");
     }
+    if (std::isinf(one.yaw) || std::isinf(one.dx) || std::isinf(one.dy)) {
+      refuse_it("has a yaw, dx or dy that is infinite");
+    }
+    const bool beside = !std::isnan(one.dx) || !std::isnan(one.dy);
+    if (beside && (std::isnan(one.dx + one.dy + one.yaw) || !one.standing())) {
+      refuse_it("has a dx or dy without the other, without a yaw, or beside a range or bearing");
+    }
   }
 }
 
@@ -126,7 +133,9 @@ void require_places(const Recording& recording) {
                              " s is not finite, or its sd not more than 0"));
   }
   for (const SurveyPoint& point : recording.survey) {
-    if (std::isfinite(point.x) && std::isfinite(point.y)) continue;
+    const bool finite =
+        std::isfinite(point.x) && std::isfinite(point.y) && !std::isinf(point.heading);
+    if (finite) continue;
     refuse(recording, joined("the survey of ", point.landmark, " is not finite"));
   }
 }

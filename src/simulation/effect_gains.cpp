@@ -21,7 +21,8 @@ constexpr double kSettled = 1e-14;
 
 bool is_reading(Channel channel) {
   return channel == Channel::compass || channel == Channel::range ||
-         channel == Channel::range_scale || channel == Channel::bearing;
+         channel == Channel::range_scale || channel == Channel::bearing ||
+         channel == Channel::sighting_yaw;
 }
 
 double gain(const ChannelGains& gains, Channel channel, std::size_t row) {

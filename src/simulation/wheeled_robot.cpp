@@ -118,6 +118,11 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
   return drive;
 }
 
+/// rad: the golden angle takes them all round.
+double orientation_of(int landmark) {
+  return wrap_angle(2.399963229728653 * landmark);
+}
+
 /// Standing on the landmark first, then what the range sensor sees from there.
 std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const WheeledRobot& robot,
                             const ChannelGains& gains, Dice& dice) {
@@ -127,6 +132,12 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
   const double delay = g(Channel::delay);
   const double t = delay == 0.0 ? stop.t : std::round((stop.t + delay) * 1e9) / 1e9;
   std::vector<Sighting> sightings = {{t, landmark_name(mesh, stop.landmark)}};
+  const auto yaw_of = [&](int landmark) {
+    if (!robot.markers) return kAbsent;
+    return wrap_angle(orientation_of(landmark) - stop.pose.heading + g(Channel::sighting_yaw) +
+                      dice.deviation(robot.noise.yaw));
+  };
+  sightings.front().yaw = yaw_of(stop.landmark);
   if (!robot.range_sensor) return sightings;
   const Vector2 sensor =
       stop.pose.position() +
@@ -142,6 +153,7 @@ std::vector<Sighting> sight(const TrueStop& stop, const Mesh& mesh, const Wheele
     if (recognised && range > 0.0) {
       sightings.push_back({t, landmark_name(mesh, k), robot.sees_ranges() ? range : kAbsent,
                            robot.sees_bearings() ? bearing : kAbsent});
+      sightings.back().yaw = yaw_of(k);
     }
   }
   return sightings;
@@ -212,8 +224,9 @@ std::vector<Loop> loops_of(const TrueMotion& motion, const WheeledRobot& robot,
 
 void check(const WheeledRobot& robot) {
   const SensorNoise& noise = robot.noise;
-  for (const double sd : {noise.left, noise.right, noise.compass, noise.range, noise.bearing,
-                          noise.fix, noise.gyro, noise.gyro_walk, noise.loop, noise.loop_heading}) {
+  for (const double sd :
+       {noise.left, noise.right, noise.compass, noise.range, noise.bearing, noise.fix, noise.gyro,
+        noise.gyro_walk, noise.loop, noise.loop_heading, noise.yaw}) {
     if (!std::isfinite(sd) || sd < 0.0) {
       throw std::invalid_argument("a sensor's noise must be a number of 0 or more");
     }
@@ -272,6 +285,18 @@ std::vector<SurveyPoint> survey(const Mesh& mesh, double sd, std::uint64_t seed)
   return points;
 }
 
+namespace {
+
+/// `points` are those of all landmarks, in order.
+void survey_headings(double sd, std::uint64_t seed, std::vector<SurveyPoint>& points) {
+  Dice dice(seed, Stream::headings);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    points[k].heading = wrap_angle(orientation_of(static_cast<int>(k)) + dice.deviation(sd));
+  }
+}
+
+}  // namespace
+
 SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                               const DrivingStyle& style, const WheeledRobot& robot,
                               std::uint64_t seed, const SimulatedEffects& effects) {
@@ -291,6 +316,7 @@ SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
   SimulatedDrive drive;
   drive.recording = record(laid.motion, mesh, robot, seed, laid.gains);
   drive.recording.survey = survey(mesh, robot.noise.survey, seed);
+  if (robot.markers) survey_headings(robot.noise.yaw, seed, drive.recording.survey);
   drive.motion = std::move(laid.motion);
   return drive;
 }

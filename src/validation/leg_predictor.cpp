@@ -34,6 +34,9 @@ std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
   if (one.kind == MeasurementKind::cartesian_view) {
     return sensor + rotation(pose.heading + view.heading) * one.value.head<2>();
   }
+  if (one.kind == MeasurementKind::standing) {
+    return sensor + rotation(pose.heading) * one.value.head<2>();
+  }
   return sensor;
 }
 
@@ -109,6 +112,8 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
     const Measurement& one = problem_.measurements[k];
     // What lies ahead is not known yet, and a loop ties it to what lies behind.
     if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::loop) continue;
+    if (one.kind == MeasurementKind::sighting_yaw) continue;
+    if (one.kind == MeasurementKind::survey_heading) continue;
     if (one.kind == MeasurementKind::gyro) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
     if (one.kind == MeasurementKind::segment) {

@@ -3,6 +3,7 @@
 #include "validation/training.hpp"
 
 #include "estimation/recording_descent.hpp"
+#include "estimation/recording_start.hpp"
 
 #include <algorithm>
 #include <map>
@@ -41,6 +42,7 @@ std::set<int> loose_poses(const std::vector<Recording>& recordings, const FitSta
     const std::size_t session = idx(node.session);
     state.poses.push_back(pose_at(recordings[session].drive, fit.paths[session], node.t));
   }
+  state.orientations = orientations_seen_from(problem, state.poses);
   const EffectParameters no_effects;
   RecordingSystem system(problem, no_effects);
   system.linearise(state, Eigen::VectorXd());

@@ -33,6 +33,7 @@ Scale scale_of(Channel channel) {
     case Channel::rotate:
     case Channel::compass:
     case Channel::bearing:
+    case Channel::sighting_yaw:
     case Channel::truth_heading:
     case Channel::steer:
       return {kDegrees, " deg"};
@@ -82,6 +83,8 @@ Phrase phrase_of(Channel channel) {
       return {"ranges read", "too much", "too little"};
     case Channel::bearing:
       return {"bearings read", "too much", "too little"};
+    case Channel::sighting_yaw:
+      return {"yaws of landmarks read", "too much", "too little"};
     case Channel::delay:
       return {"sightings and truth are stamped", "late", "early"};
     case Channel::truth_heading:
@@ -159,6 +162,8 @@ const char* noun_of(Channel channel) {
       return "error of the range's scale";
     case Channel::bearing:
       return "bearing error";
+    case Channel::sighting_yaw:
+      return "error of the landmarks' yaw";
     case Channel::delay:
       return "delay of sightings";
     case Channel::truth_heading:
@@ -224,6 +229,8 @@ std::string channel_in_words(Channel channel) {
       return "ranges too long by";
     case Channel::bearing:
       return "bearings too large by";
+    case Channel::sighting_yaw:
+      return "yaws of landmarks too large by";
     case Channel::lever:
       return "sensor ahead by";
     case Channel::lever_left:

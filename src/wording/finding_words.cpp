@@ -40,6 +40,7 @@ constexpr std::array kLaws{
     LawWords{"range", "a range is good to {:.2g} mm, not {:.2g}", 1e3, true},
     LawWords{"fix", "a fix is good to {:.2g} cm, not {:.2g}", 100.0, true},
     LawWords{"bearing", "a bearing is good to {:.2g} deg, not {:.2g}", kDegrees, true},
+    LawWords{"yaw", "the yaw of a landmark is good to {:.2g} deg, not {:.2g}", kDegrees, true},
     LawWords{"heavy tails", "a few errors are far larger than the rest"},
     LawWords{"autocorrelation", "each drive errs much as the one before it did"},
 };

@@ -132,7 +132,7 @@ TEST(ChannelPhysics, FixesHaveAnAntennaAndAClockOfTheirOwn) {
                          view_pattern(Channel::fix_x, 3.0, 0.6, -0.3).vector() +
                          view_pattern(Channel::fix_y, 4.0, 0.6, -0.3).vector();
   const ViewVector expected =
-      (ViewVector() << 0.2 - 0.3, -0.1, 0.15, 0.0, 0.0, 0.0, 3.0, 4.0).finished();
+      (ViewVector() << 0.2 - 0.3, -0.1, 0.15, 0.0, 0.0, 0.0, 3.0, 4.0, 0.0).finished();
   EXPECT_LT((all - expected).norm(), 1e-15);
   for (const ChannelFacts& one : channels()) {
     if (!acts_on_fixes(one.channel)) continue;
@@ -146,10 +146,23 @@ TEST(ChannelPhysics, ATruthsHeadingIsNothingThatSightingsKnow) {
   EXPECT_FALSE(acts_on_sightings(Channel::truth_heading));
   EXPECT_EQ(acts_on(Channel::truth_heading), ActsOn::views);
   const ViewPattern found = view_pattern(Channel::truth_heading, 0.2, 0.6, -0.3);
-  EXPECT_EQ(found.vector(), (ViewVector() << 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
+  EXPECT_EQ(found.vector(),
+            (ViewVector() << 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
+}
+
+TEST(ChannelPhysics, AYawIsNothingThatRangesAndTruthKnow) {
+  EXPECT_TRUE(acts_on_sightings(Channel::sighting_yaw));
+  EXPECT_FALSE(acts_on_truth(Channel::sighting_yaw));
+  const ViewPattern found = view_pattern(Channel::sighting_yaw, 0.2, 0.6, -0.3);
+  EXPECT_EQ(found.vector(),
+            (ViewVector() << 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2).finished());
+  Sighting tag{1.0, "A"};
+  tag.yaw = wrap_angle(3.2);
+  EXPECT_NEAR(without(Channel::sighting_yaw, 0.2, tag).yaw, 3.0, 1e-15);
 }
 
 TEST_P(EveryChannel, AddsToAViewWhatTheTableSays) {
+  if (GetParam() == Channel::sighting_yaw) return;                                // above
   if (GetParam() == Channel::truth_heading || acts_on_fixes(GetParam())) return;  // above
   const double speed = 0.6;
   const double turn_rate = -0.3;
@@ -207,7 +220,7 @@ TEST(Channels, ProportionsHaveOnePrior) {
 }
 
 TEST(Channels, HaveOneNameEach) {
-  EXPECT_EQ(channels().size(), 34U);
+  EXPECT_EQ(channels().size(), 35U);
   for (const ChannelFacts& one : channels()) {
     EXPECT_EQ(parse_channel(one.name), one.channel);
     EXPECT_EQ(channel_named(one.name), one.channel);

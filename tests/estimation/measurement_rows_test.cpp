@@ -11,11 +11,12 @@
 namespace trussmap {
 namespace {
 
-/// Two landmarks (nodes 0, 1) and two poses (nodes 2, 3).
+/// Two landmarks (nodes 0, 1), two poses (nodes 2, 3) and the second landmark's orientation (4).
 RecordingProblem small_problem() {
   RecordingProblem problem;
   problem.landmarks = {"A", "B"};
   problem.poses = {{0, 1.0}, {0, 2.0}};
+  problem.oriented = {1};
   problem.sessions = {"s"};
   return problem;
 }
@@ -42,21 +43,24 @@ Everything random_values(std::uint64_t seed) {
   Everything all;
   all.state.landmarks = {{draw(), draw()}, {draw(), draw()}};
   all.state.poses = {{draw(), draw(), 2.0 * draw()}, {draw(), draw(), 2.0 * draw()}};
-  all.view = {0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(),
+  all.state.orientations = {draw()};
+  all.view = {0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw(),
               0.1 * draw(), 0.1 * draw(), 0.1 * draw(), 0.1 * draw()};
   return all;
 }
 
 double* coordinate(Everything& all, int node, int k) {
   if (node < 2) return &all.state.landmarks[idx(node)][k];
+  if (node == 4) return all.state.orientations.data();
   Pose& pose = all.state.poses[idx(node - 2)];
   return k == 0 ? &pose.x : k == 1 ? &pose.y : &pose.heading;
 }
 
 double* view_entry(Everything& all, int k) {
   ViewPattern& view = all.view;
-  double* const entries[] = {&view.ahead,       &view.left,    &view.heading, &view.range,
-                             &view.range_scale, &view.bearing, &view.x,       &view.y};
+  double* const entries[] = {&view.ahead, &view.left,        &view.heading,
+                             &view.range, &view.range_scale, &view.bearing,
+                             &view.x,     &view.y,           &view.yaw};
   return entries[k];
 }
 
@@ -75,11 +79,12 @@ Vector4 difference(const Measurement& one, Everything all,
 TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
   using Kind = MeasurementKind;
   const std::vector<Measurement> kinds = {
-      measurement(Kind::segment, 2, 3, 4),  measurement(Kind::segment, 3, 2, 3),
-      measurement(Kind::standing, 2, 1, 2), measurement(Kind::view, 3, 0, 2),
-      measurement(Kind::view, 3, 1, 1),     measurement(Kind::cartesian_view, 2, 0, 2),
-      measurement(Kind::survey, 1, -1, 2),  measurement(Kind::truth, 3, -1, 3),
-      measurement(Kind::fix, 2, -1, 2),     measurement(Kind::loop, 3, 2, 3)};
+      measurement(Kind::segment, 2, 3, 4),      measurement(Kind::segment, 3, 2, 3),
+      measurement(Kind::standing, 2, 1, 2),     measurement(Kind::view, 3, 0, 2),
+      measurement(Kind::view, 3, 1, 1),         measurement(Kind::cartesian_view, 2, 0, 2),
+      measurement(Kind::survey, 1, -1, 2),      measurement(Kind::truth, 3, -1, 3),
+      measurement(Kind::fix, 2, -1, 2),         measurement(Kind::loop, 3, 2, 3),
+      measurement(Kind::sighting_yaw, 3, 4, 1), measurement(Kind::survey_heading, 4, -1, 1)};
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Everything all = random_values(seed);
     for (const Measurement& one : kinds) {
@@ -87,7 +92,7 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
           measurement_rows(small_problem(), one, all.state, one.value, all.view);
       for (int k = 0; k < 3; ++k) {
         const auto check = [&](int node, const RowsByNode& found) {
-          if (node < 0 || (node < 2 && k == 2)) return;
+          if (node < 0 || (node < 2 && k == 2) || (node == 4 && k > 0)) return;
           const Vector4 expected =
               difference(one, all, [&](Everything& at) { return coordinate(at, node, k); });
           EXPECT_LT((found.col(k) - expected).norm(), 1e-7)
@@ -96,7 +101,7 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
         check(one.from, rows.by_from);
         check(one.to, rows.by_to);
       }
-      for (int k = 0; k < 8; ++k) {
+      for (int k = 0; k < 9; ++k) {
         const Vector4 expected =
             difference(one, all, [&](Everything& at) { return view_entry(at, k); });
         EXPECT_LT((rows.by_view.col(k) - expected).norm(), 1e-7)

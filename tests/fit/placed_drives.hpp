@@ -28,6 +28,8 @@ struct PlacedOptions {
   double fix_sd = 0.05;   ///< m
   bool landmarks = false;
   bool loops = false;
+  bool markers = false;  ///< surveyed, each sighting with a yaw
+  double yaw_sd = 0.02;  ///< rad
   /// Of surveyed landmarks that it does not stand on; nothing: it sees none.
   std::optional<SensorParts> sees = std::nullopt;
   std::vector<Effect> effects = {};
@@ -49,6 +51,8 @@ inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed
   robot.fix_rate = options.fix_rate;
   robot.noise.fix = options.fix_sd;
   robot.loops = options.loops;
+  robot.markers = options.markers;
+  robot.noise.yaw = options.yaw_sd;
   robot.range_sensor = options.sees.has_value();
   robot.sensor_parts = options.sees.value_or(SensorParts::both);
   DrivingStyle style;
@@ -61,11 +65,12 @@ inline PlacedDrive placed_drive(const PlacedOptions& options, std::uint64_t seed
   PlacedDrive result;
   result.recording = std::move(drive.recording);
   result.motion = std::move(drive.motion);
-  if (!options.sees) result.recording.survey.clear();
+  if (!options.sees && !options.markers) result.recording.survey.clear();
   if (!options.landmarks) {
     std::erase_if(result.recording.sightings, [](const Sighting& one) { return one.standing(); });
   }
   result.model.noise.fix = options.fix_sd;
+  result.model.noise.yaw = options.yaw_sd;
   return result;
 }
 

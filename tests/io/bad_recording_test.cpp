@@ -166,7 +166,8 @@ const Spoilt kSpoilt[] = {
     {"NoSighting", "sightings.csv", "t,landmark\n",
      "sightings.csv:1: no sighting, expected one row at least"},
     {"UnknownColumn", "sightings.csv", "t,landmark,rnage,bearing\n0,A,,\n",
-     "sightings.csv:1: column \"rnage\" is unknown, expected t,landmark,range,bearing"},
+     "sightings.csv:1: column \"rnage\" is unknown, expected t,landmark,range,bearing,"
+     "yaw,dx,dy"},
     {"BearingInWords", "sightings.csv", "t,landmark,bearing\n0,A,ahead\n",
      "sightings.csv:2: column bearing is \"ahead\", expected a number"},
     {"NegativeRangeAlone", "sightings.csv", "t,landmark,range\n0,A,-1\n",
