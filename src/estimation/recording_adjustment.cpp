@@ -19,8 +19,7 @@ namespace {
 std::string name_of(const RecordingProblem& problem, int node) {
   if (problem.is_landmark(node)) return "landmark " + problem.landmarks[idx(node)];
   if (problem.is_orientation(node)) {
-    const int landmark = problem.oriented[idx(node - problem.pose_end())];
-    return "the orientation of landmark " + problem.landmarks[idx(landmark)];
+    return "the orientation of landmark " + problem.landmark_of(node);
   }
   const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
   const std::string session =

@@ -35,10 +35,7 @@ std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     if (!weights.empty() && weights[k] == 0.0) continue;
-    // Of a place they say nothing.
-    if (one.kind == MeasurementKind::sighting_yaw || one.kind == MeasurementKind::survey_heading) {
-      continue;
-    }
+    if (is_of_orientation(one.kind)) continue;
     absolute = absolute || in_map(one);
     if (one.to < 0 && !in_map(one)) continue;
     ties.push_back({one.from, in_map(one) ? map_frame : one.to});

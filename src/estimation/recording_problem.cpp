@@ -409,9 +409,6 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
   const std::string session = problem.sessions.size() > 1 && measurement.session >= 0
                                   ? " of " + problem.sessions[idx(measurement.session)]
                                   : std::string();
-  const auto oriented = [&](int node) {
-    return problem.landmarks[idx(problem.oriented[idx(node - problem.pose_end())])];
-  };
   switch (measurement.kind) {
     case MeasurementKind::segment:
       return "drive from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
@@ -427,10 +424,10 @@ std::string describe(const RecordingProblem& problem, const Measurement& measure
       return "sight of landmark " + problem.landmarks[idx(measurement.to)] +
              " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::sighting_yaw:
-      return "yaw of landmark " + oriented(measurement.to) + " at t = " + time(measurement.from) +
-             " s" + session;
+      return "yaw of landmark " + problem.landmark_of(measurement.to) +
+             " at t = " + time(measurement.from) + " s" + session;
     case MeasurementKind::survey_heading:
-      return "surveyed heading of landmark " + oriented(measurement.from);
+      return "surveyed heading of landmark " + problem.landmark_of(measurement.from);
     case MeasurementKind::survey:
       return "survey of landmark " + problem.landmarks[idx(measurement.from)];
     case MeasurementKind::truth:

@@ -70,6 +70,11 @@ enum class MeasurementKind {
          kind == MeasurementKind::cartesian_view || kind == MeasurementKind::direction;
 }
 
+/// Of a landmark's orientation: it says nothing of a place.
+[[nodiscard]] constexpr bool is_of_orientation(MeasurementKind kind) {
+  return kind == MeasurementKind::sighting_yaw || kind == MeasurementKind::survey_heading;
+}
+
 /// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
 /// place taken for another.
 [[nodiscard]] constexpr bool may_be_wrong(MeasurementKind kind) {
@@ -137,6 +142,10 @@ struct RecordingProblem {
   [[nodiscard]] int nodes() const { return pose_end() + static_cast<int>(oriented.size()); }
   [[nodiscard]] bool is_landmark(int node) const { return node < landmark_count(); }
   [[nodiscard]] bool is_orientation(int node) const { return node >= pose_end(); }
+  /// The name of the landmark that has this orientation.
+  [[nodiscard]] const std::string& landmark_of(int orientation_node) const {
+    return landmarks[idx(oriented[idx(orientation_node - pose_end())])];
+  }
   /// Of a landmark 2, of a pose 3, of an orientation 1.
   [[nodiscard]] int size_of(int node) const {
     return is_landmark(node) ? 2 : is_orientation(node) ? 1 : 3;

@@ -52,6 +52,7 @@ void keep_tied(const RecordingProblem& problem, const std::vector<double>& squar
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const Measurement& one = problem.measurements[k];
       if (weights[k] > 0.0 || !may_be_wrong(one.kind)) continue;
+      if (is_of_orientation(one.kind)) continue;  // it ties no pose
       const auto is_loose = [&](int node) {
         return loose.contains(node - problem.landmark_count());
       };

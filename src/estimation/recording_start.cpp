@@ -23,10 +23,6 @@ bool in_map_frame(const Measurement& one) {
          one.kind == MeasurementKind::fix;
 }
 
-bool is_of_orientation(const Measurement& one) {
-  return one.kind == MeasurementKind::sighting_yaw || one.kind == MeasurementKind::survey_heading;
-}
-
 bool between_poses(const Measurement& one) {
   return one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
 }
@@ -572,7 +568,7 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   const auto inside = [&](int node) { return node >= offset && node < offset + count; };
   std::vector<const Measurement*> kept;
   for (const Measurement& one : problem.measurements) {
-    if (in_map_frame(one) || is_of_orientation(one)) continue;
+    if (in_map_frame(one) || is_of_orientation(one.kind)) continue;
     if (!inside(one.from) || (between_poses(one) && !inside(one.to))) continue;
     // What a segment's gyro says goes with it.
     if (one.kind == MeasurementKind::gyro && !inside(one.from + 1)) continue;

@@ -112,8 +112,7 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
     const Measurement& one = problem_.measurements[k];
     // What lies ahead is not known yet, and a loop ties it to what lies behind.
     if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::loop) continue;
-    if (one.kind == MeasurementKind::sighting_yaw) continue;
-    if (one.kind == MeasurementKind::survey_heading) continue;
+    if (is_of_orientation(one.kind)) continue;
     if (one.kind == MeasurementKind::gyro) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
     if (one.kind == MeasurementKind::segment) {
