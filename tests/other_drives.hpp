@@ -164,11 +164,9 @@ inline Wheels with_effect(const OtherDrive& drive, Channel channel, double g) {
     if (channel == Channel::wheels) {
       for (std::size_t n = 0; n < (steers ? 1 : shown.size()); ++n) shown[n] /= 1.0 + g;
     }
-    if (channel == Channel::steer) {
-      // Of a tricycle, to first order: d (cos b - g sin b, sin b + g cos b) is what the body does.
-      shown[0] /= std::sqrt(1.0 + g * g);
-      shown[1] -= std::atan(g);
-    }
+    // A wheel that stands further left than it says.
+    if (channel == Channel::steer) shown[1] -= g;
+    if (channel == Channel::steer_gain) shown[1] /= 1.0 + g;
     return shown;
   };
 }

@@ -32,6 +32,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double kFarTooLarge = 2.0;  // chi^2/dof: more than any choice of noise explains
+
 struct CalibrateOptions {
   std::vector<std::string> recordings;
   std::string model;
@@ -228,8 +230,15 @@ std::string text(const WheelCalibration& found, const CalibrationValidation& hel
     table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
   }
   out += "\n" + table_text(table);
-  out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n",
-                     found.dof > 0 ? found.chi2 / found.dof : 0.0, found.dof);
+  const double dispersion = found.dof > 0 ? found.chi2 / found.dof : 0.0;
+  out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n", dispersion, found.dof);
+  if (dispersion > kFarTooLarge) {
+    out += fmt::format(
+        "  errors are {0:.1f} times what the model's noise allows: take the \u00b1 {0:.1f} times "
+        "as "
+        "large\n",
+        std::sqrt(dispersion));
+  }
   if (!found.truth.clocks.empty()) out += text(found.truth);
   if (test) out += text(*test);
   for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";

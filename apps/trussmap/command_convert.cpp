@@ -135,6 +135,17 @@ void convert_steered_truck(const fs::path& in, const fs::path& out) {
   count(foreign.repeated_fixes, "fixes whose time repeats or runs backwards dropped");
 }
 
+void convert_encoder_log(const fs::path& in, const fs::path& out) {
+  const EncoderLogRecording foreign = read_encoder_log(in);
+  write_recording(out, foreign.recording,
+                  fmt::format("t = 0 is {:.3f} s, Unix time", foreign.epoch),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: a tricycle's encoders {} to the recording {}\n\n", in.string(),
+             out.string());
+  count(foreign.samples, "samples, of which five make one of the");
+  count(static_cast<int>(foreign.recording.drive.rows()), "drive rows, each with the truth");
+}
+
 /// A recording is a folder; a map's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
@@ -172,6 +183,11 @@ void run_convert(const ConvertOptions& options) {
   }
   if (truck) {
     convert_steered_truck(in, out);
+    return;
+  }
+  if (is_encoder_log(in)) {
+    check_folder(out);
+    convert_encoder_log(in, out);
     return;
   }
   const bool graph = in.extension() == ".g2o" || in.string().ends_with(".g2o.xz");

@@ -10,8 +10,9 @@
 //   k     wheel noise: variance of a wheel's travel = k^2 |travel|                      m^(1/2)
 //
 // Of drives with other wheels than a left and a right one, each drive's own constants instead: g of
-// every wheel (channel wheel1 ...) and of `turn`, or of `steer`, `turn` and `wheels` where a wheel
-// is steered. Their wheels' noise stays as the model states it.
+// every wheel (channel wheel1 ...) and of `turn`, or of `steer`, `turn`, `wheels` and `steer_gain`
+// where a wheel is steered (from several gains on, where the stated one is off by far). Their
+// wheels' noise stays as the model states it.
 //
 // E_d, E_b and E_s are parameters of the adjustment, beside poses and landmarks; rows are corrected
 // and fitted again until the parameters no longer change. k_L and k_R maximise the restricted
@@ -21,7 +22,7 @@
 //   -2 log L = sum log det C + log det (J' C^-1 J) + chi^2       C, J: covariance and Jacobian
 //
 // All other noise is as the model states it. A parameter whose standard error would exceed 0.1 is
-// reported as undetermined.
+// reported as undetermined (of a steering's gain, 0.03 of it).
 //
 // How the truth is mounted and clocked is estimated with the wheels (TruthAlignment): a truth whose
 // rows are late, or whose clock drifts, looks like wheel errors otherwise.

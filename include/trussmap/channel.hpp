@@ -13,8 +13,7 @@
 //   gyro              yaw rate read = rate + g     gyro_scale             gyro's turn (1 + g)
 //   antenna, antenna_left   the point of the robot that a fix has
 //   sideways          travel to the left (1 + g)   wheel1 ... wheel6     that wheel's (1 + g)
-//   steer             steering angle + g, to       steer_gain            steering angle (1 + g), to
-//                     first order                                        first order
+//   steer             steering angle + g           steer_gain            steering angle (1 + g)
 //   fix_delay         fixes are stamped g late                fix_x, fix_y    fix = position + g
 //
 // In code a channel is this enumeration; its name stands in files, options and reports alone.

@@ -74,6 +74,9 @@ struct Drive {
   /// Empty of two wheels. Else the robot's own, and `left` and `right` are the travels that two
   /// wheels at `wheelbase` would show.
   std::vector<WheelColumn> wheels = {};
+  /// Left empty by who makes a drive. Where steering effects were taken in (effects/steering.hpp):
+  /// m ahead and rad that they add to the row. Shapes see the drive without.
+  std::vector<std::array<double, 2>> steered = {};
 
   [[nodiscard]] std::size_t rows() const { return t.size(); }
   [[nodiscard]] bool has_compass() const { return !heading.empty(); }

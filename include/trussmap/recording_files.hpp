@@ -171,6 +171,35 @@ struct TruckRecording {
 [[nodiscard]] TruckRecording read_steered_truck(const std::filesystem::path& prefix);
 
 // ----------------------------------------
+// Encoders of a tricycle's steered and driven front wheel under a tracker (G. Grisetti, Sapienza
+// University of Rome: data of the course Probabilistic Robotics) as a recording.
+//
+//   #kinematic_model: traction_drive_wheel
+//   #parameter_values: Ksteer Ktraction axis_length steer_offset     m, rad
+//   #joints_max_enc_values: counts per turn of the steering, of the wheel
+//   # translation: [x, y, z], # rotation: [quaternion]               of the tracked sensor
+//   time: T ticks: S D model_pose: X Y TH tracker_pose: X Y TH       s, ticks, m, rad
+//
+// The steering stands at Ksteer 2 pi S/counts + steer_offset (S beyond half a turn counts back),
+// the wheel travels Ktraction D/counts. D is an unsigned counter of 32 bits that begins again at 0,
+// and comes late by a sample or two: five samples make a row. The truth is the robot's, by where
+// the sensor is stated to be. The parameters are first guesses, off by factors: calibrate finds
+// them.
+
+struct EncoderLogRecording {
+  Recording recording;
+  Model model;         ///< the guesses, and noise that suits these counters and their tracker
+  double epoch = 0.0;  ///< s, Unix time of t = 0
+  int samples = 0;     ///< of which five make a row
+};
+
+/// True if the file begins as such a log does (.txt, plain or .xz).
+[[nodiscard]] bool is_encoder_log(const std::filesystem::path& file);
+
+/// Throws InputError with file and line.
+[[nodiscard]] EncoderLogRecording read_encoder_log(const std::filesystem::path& file);
+
+// ----------------------------------------
 // A pose graph (g2o) as a recording: what SLAM benchmarks are kept in.
 //
 //   poses, in order of their ids   a second apart, the first at t = 0

@@ -9,7 +9,7 @@ namespace trussmap {
 namespace {
 
 // Far beyond what a marker put on by hand or two logs cut by hand are off by.
-constexpr double kLeverSd = 0.1;    // m
+constexpr double kLeverSd = 0.3;    // m
 constexpr double kHeadingSd = 0.1;  // rad
 constexpr double kLateSd = 0.3;     // s
 constexpr double kClockSd = 0.001;  // s/s

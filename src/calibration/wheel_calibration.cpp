@@ -13,8 +13,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,6 +26,10 @@ namespace trussmap {
 namespace {
 
 constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
+
+/// The same of a steering's gain. Small angles tell it from the wheelbase so badly that both get
+/// worse.
+constexpr double kUselessGain = 0.03;
 
 /// What is sought: g of a channel, with the shape 1.
 struct Constant {
@@ -41,7 +48,10 @@ std::vector<Constant> constants_of(const Robot& robot) {
               scale};
     case DriveKind::tricycle:
     case DriveKind::ackermann:
-      return {{"steering offset", Channel::steer, "the steering's offset"}, turn, scale};
+      return {{"steering offset", Channel::steer, "the steering's offset"},
+              turn,
+              scale,
+              {"steering gain", Channel::steer_gain, "the steering's gain"}};
     default:
       break;
   }
@@ -183,6 +193,9 @@ std::string why_not(Channel channel, const std::vector<Recording>& recordings,
     case Channel::steer:
       return "the drive is too short to show where straight ahead is; drive straight lines of "
              "several metres";
+    case Channel::steer_gain:
+      return "the steering angles are too small, or too much alike, to tell it from the wheelbase; "
+             "steer far, and little, both ways";
     case Channel::turn:
       return "the robot hardly turns; drive turns, both ways";
     case Channel::wheels:
@@ -204,6 +217,15 @@ std::string undetermined_text(const Constant& one, const std::vector<Recording>&
   return one.symbol + ": " + why_not(one.channel, recordings, options);
 }
 
+/// The standard error from which on a constant is none.
+double useless(const Constant& one, const Model& model) {
+  if (one.channel != Channel::steer_gain) return kUseless;
+  for (const Effect& effect : model.effects) {
+    if (effect.name == one.name) return kUselessGain * std::abs(1.0 + effect.coefficients[0]);
+  }
+  return kUselessGain;
+}
+
 /// Which of them the motion determines: each alone, then jointly.
 Wanted determined(const std::vector<Recording>& recordings, const Model& model,
                   const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
@@ -215,9 +237,12 @@ Wanted determined(const std::vector<Recording>& recordings, const Model& model,
   const auto can = [&](const Wanted& these) {
     try {
       const Fitted one = fit(recordings, model, these, options, {});
-      const Eigen::Index count = std::count(these.begin(), these.end(), true);
       const Eigen::VectorXd variances = one.adjustment.coefficient_covariance.diagonal();
-      return variances.head(count).maxCoeff() < kUseless * kUseless;
+      Eigen::Index at = 0;
+      for (std::size_t k = 0; k < these.size(); ++k) {
+        if (these[k] && !(std::sqrt(variances[at++]) < useless(constants[k], model))) return false;
+      }
+      return true;
     } catch (const SolveError&) {
       return false;
     }
@@ -323,12 +348,14 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   return calibrate_wheels(recordings, model, calibration_options(options));
 }
 
-WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
-                                  const WheelCalibrationOptions& options) {
-  constexpr int kRounds = 4;
+namespace {
+
+/// From these values of the constants on.
+WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Recording>& recordings,
+                                 const Model& model, const WheelCalibrationOptions& options) {
+  constexpr int kRounds = 8;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
-  std::vector<double> g = in_force(model);
   result.model = with(model, g);
   const Wanted wanted = determined(recordings, result.model, options, result.undetermined);
   const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
@@ -353,6 +380,59 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
   return result;
+}
+
+/// Place of the steering's gain among a drive's constants.
+std::optional<std::size_t> place_of_gain(const Robot& robot) {
+  const std::vector<Constant> constants = constants_of(robot);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::steer_gain) return k;
+  }
+  return std::nullopt;
+}
+
+/// Whether a start from this gain may be believed: it led somewhere, and not far away.
+bool led_nearby(const WheelCalibration& found, double start) {
+  constexpr double kFar = 1.7;  // starts within it of the gain that is found lead there
+  if (!found.settled) return false;
+  for (const DriveConstant& one : found.constants) {
+    if (one.channel != Channel::steer_gain) continue;
+    const double ratio = (1.0 + one.g.value) / (1.0 + start);
+    return ratio < kFar && ratio > 1.0 / kFar;
+  }
+  return true;
+}
+
+}  // namespace
+
+WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
+                                  const WheelCalibrationOptions& options) {
+  const std::vector<double> g = in_force(model);
+  const std::optional<std::size_t> gain = place_of_gain(model.robot);
+  if (!gain) return calibrated_from(g, recordings, model, options);
+  // A steering whose encoder is geared may turn many times as far as is believed: least squares
+  // find that only from near by.
+  std::optional<WheelCalibration> best;
+  std::exception_ptr why;
+  for (const double factor : {1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125}) {
+    std::vector<double> start = g;
+    start[*gain] = factor * (1.0 + g[*gain]) - 1.0;
+    try {
+      WheelCalibration found = calibrated_from(start, recordings, model, options);
+      const bool nearby = led_nearby(found, start[*gain]);
+      if (factor == 1.0 && nearby) return found;
+      if (nearby && (!best || found.chi2 * best->dof < best->chi2 * found.dof)) {
+        best = std::move(found);
+      }
+    } catch (const SolveError&) {
+      if (!why) why = std::current_exception();
+    } catch (const std::invalid_argument&) {  // steered to where the wheel has no way ahead
+      if (!why) why = std::current_exception();
+    }
+  }
+  if (best) return std::move(*best);
+  if (why) std::rethrow_exception(why);
+  return calibrated_from(g, recordings, model, options);
 }
 
 }  // namespace trussmap

@@ -3,34 +3,17 @@
 #include "effects/corrected_recording.hpp"
 
 #include "effects/channel_physics.hpp"
+#include "effects/steering.hpp"
 #include "geometry/index.hpp"
 #include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace trussmap {
 namespace {
-
-/// g of one effect, row by row.
-std::vector<double> gains(const Effect& effect, const RowVariables& variables, int session,
-                          std::size_t rows) {
-  std::vector<double> g(rows, 0.0);
-  if (effect.coefficients.empty()) return g;
-  const std::size_t shapes = effect.shape.size();
-  const std::size_t first = effect.per_session ? idx(session) * shapes : 0;
-  if (first + shapes > effect.coefficients.size()) {
-    throw std::invalid_argument("has " + std::to_string(effect.coefficients.size()) +
-                                " coefficients, expected " + std::to_string(shapes) +
-                                " for each of the sessions");
-  }
-  for (std::size_t k = 0; k < shapes; ++k) {
-    const std::vector<double> f = effect.shape[k].values(variables);
-    for (std::size_t row = 0; row < rows; ++row) g[row] += effect.coefficients[first + k] * f[row];
-  }
-  return g;
-}
 
 void free_sightings(Channel channel, const std::vector<double>& g, Recording& recording) {
   for (Sighting& sighting : recording.sightings) {
@@ -65,6 +48,24 @@ void apply(Channel channel, const std::vector<double>& g, double wheelbase, Reco
 
 }  // namespace
 
+std::vector<double> gains_of(const Effect& effect, const RowVariables& variables, int session,
+                             std::size_t rows) {
+  std::vector<double> g(rows, 0.0);
+  if (effect.coefficients.empty()) return g;
+  const std::size_t shapes = effect.shape.size();
+  const std::size_t first = effect.per_session ? idx(session) * shapes : 0;
+  if (first + shapes > effect.coefficients.size()) {
+    throw std::invalid_argument("has " + std::to_string(effect.coefficients.size()) +
+                                " coefficients, expected " + std::to_string(shapes) +
+                                " for each of the sessions");
+  }
+  for (std::size_t k = 0; k < shapes; ++k) {
+    const std::vector<double> f = effect.shape[k].values(variables);
+    for (std::size_t row = 0; row < rows; ++row) g[row] += effect.coefficients[first + k] * f[row];
+  }
+  return g;
+}
+
 void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const RowTravel nominal = without(channel, g[row], shown_travel(drive, row), wheelbase);
@@ -86,10 +87,13 @@ void require_shapes(const Effect& effect) {
 Recording corrected_recording(const Recording& recording, const Model& model,
                               const RowVariables& variables, int session) {
   Recording corrected = recording;
+  for (const Effect& effect : model.effects) require_shapes(effect);
+  corrected.drive =
+      steered(std::move(corrected.drive), model.robot, model.effects, variables, session);
   for (const Effect& effect : model.effects) {
-    require_shapes(effect);
+    if (is_steering(effect.channel)) continue;
     try {
-      const std::vector<double> g = gains(effect, variables, session, recording.drive.rows());
+      const std::vector<double> g = gains_of(effect, variables, session, recording.drive.rows());
       apply(effect.channel, g, model.robot.wheelbase, corrected);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());

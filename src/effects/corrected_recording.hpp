@@ -4,10 +4,10 @@
 // A recording as it would be without the model's effects: what the wheels would have shown if the
 // nominal model held.
 //
-// Wheel channels change the rows' travels, `gyro` and `gyro_scale` the yaw rates, `compass` the
-// readings, `range`, `range_scale` and
-// `bearing` the sightings. Other channels (creep, lever, lever_left, delay) have no place in a
-// recording; the adjustment knows them.
+// Wheel channels change the rows' travels, after steering has (steering.hpp), `gyro` and
+// `gyro_scale` the yaw rates, `compass` the readings, `range`, `range_scale` and `bearing` the
+// sightings. Other channels (creep, lever, lever_left, delay) have no place in a recording; the
+// adjustment knows them.
 #pragma once
 
 #include "trussmap/channel.hpp"
@@ -20,6 +20,11 @@ namespace trussmap {
 
 /// Throws std::invalid_argument where an effect has no shape.
 void require_shapes(const Effect& effect);
+
+/// g of one effect, row by row; 0 without coefficients. Throws std::invalid_argument where there
+/// are too few for this session.
+[[nodiscard]] std::vector<double> gains_of(const Effect& effect, const RowVariables& variables,
+                                           int session, std::size_t rows);
 
 /// Takes g, per row, of a recordable channel that acts on drives out of what wheels and gyro show.
 void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
+#include "effects/steering.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model.hpp"
@@ -62,32 +63,6 @@ Eigen::MatrixXd matrix_of(const Robot& robot) {
   }
 }
 
-struct BodyMotion {
-  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< forward, sideways [m], turn [rad]
-  std::array<Eigen::Vector3d, 2> by_reading;         ///< by travel and by steering angle
-};
-
-BodyMotion steered_motion(const Robot& robot, double travel, double angle) {
-  BodyMotion body;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  if (robot.drive == DriveKind::tricycle) {
-    body.by_reading = {Eigen::Vector3d(c, 0.0, s / robot.length),
-                       Eigen::Vector3d(-travel * s, 0.0, travel * c / robot.length)};
-    body.motion = travel * body.by_reading[0];
-    return body;
-  }
-  const double k = s / (c * robot.length);
-  const double k_by_angle = 1.0 / (c * c * robot.length);
-  const double share = 1.0 / (1.0 - robot.wheel_left * k);  // of the centre's way in the wheel's
-  const double share_by_angle = share * share * robot.wheel_left * k_by_angle;
-  body.by_reading = {Eigen::Vector3d(share, 0.0, share * k),
-                     Eigen::Vector3d(travel * share_by_angle, 0.0,
-                                     travel * (share_by_angle * k + share * k_by_angle))};
-  body.motion = travel * body.by_reading[0];
-  return body;
-}
-
 const std::vector<double>& column_named(const Recording& recording, const std::string& name) {
   const Drive& drive = recording.drive;
   if (name == "left" && !drive.left.empty()) return drive.left;
@@ -111,10 +86,8 @@ void take_steered(const Recording& recording, const Robot& robot, Drive& drive) 
   const std::vector<double>& travel = drive.wheels[0].reading;
   const std::vector<double>& angle = drive.wheels[1].reading;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const BodyMotion body = steered_motion(robot, travel[row], angle[row]);
-    const bool possible = robot.drive == DriveKind::tricycle ||
-                          (std::cos(angle[row]) > 0.0 && body.by_reading[0][0] > 0.0);
-    if (!possible) {
+    const SteeredMotion body = steered_motion(robot, travel[row], angle[row]);
+    if (!body.possible) {
       refuse(recording,
              joined("a steering angle of ", short_text(angle[row]),
                     " rad at t = ", short_text(drive.t[row]),

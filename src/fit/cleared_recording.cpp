@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/cleared_recording.hpp"
 
+#include "effects/steering.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/effect_columns.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -97,26 +98,40 @@ SessionPath reckoned_path(const ClearedRecording& one, const Model& model) {
   return path;
 }
 
+namespace {
+
+std::vector<SessionPath> reckoned_paths(const std::vector<ClearedRecording>& recordings,
+                                        const Model& model) {
+  std::vector<SessionPath> paths;
+  paths.reserve(recordings.size());
+  for (const ClearedRecording& one : recordings) paths.push_back(reckoned_path(one, model));
+  return paths;
+}
+
+}  // namespace
+
 std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, const Model& model) {
-  const bool gyro = has_gyro(recorded);
-  const std::vector<Recording> together =
-      gyro ? with_gyro(recorded, model.robot, model.noise) : std::vector<Recording>();
-  const std::vector<Recording>& recordings = gyro ? together : recorded;
   std::vector<ClearedRecording> result;
   if (model.effects.empty()) {
-    for (const Recording& recording : recordings) result.push_back(as_recorded(recording));
+    for (const Recording& one : with_gyro(recorded, model.robot, model.noise)) {
+      result.push_back(as_recorded(one));
+    }
     return result;
   }
   std::vector<Effect> effects = model.effects;
-  for (Effect& effect : effects) {
-    effect.coefficients = coefficients_of(effect, recordings.size());
-  }
-  const std::vector<Recording> timed = retimed(recordings, effects, model.robot);
-  for (const Recording& recording : timed) result.push_back(as_recorded(recording));
+  for (Effect& effect : effects) effect.coefficients = coefficients_of(effect, recorded.size());
+  std::vector<Recording> timed;
+  std::vector<SessionPath> paths;
   for (int pass = 0; pass < kPasses; ++pass) {
-    std::vector<SessionPath> paths;
-    paths.reserve(result.size());
-    for (const ClearedRecording& one : result) paths.push_back(reckoned_path(one, model));
+    if (pass > 0) paths = reckoned_paths(result, model);
+    if (pass == 0 || steers(effects)) {  // along the path
+      timed = retimed(
+          with_gyro(steered(recorded, effects, model.robot, paths), model.robot, model.noise),
+          effects, model.robot);
+      result.clear();
+      for (const Recording& recording : timed) result.push_back(as_recorded(recording));
+    }
+    if (pass == 0) paths = reckoned_paths(result, model);
     const ShapeContext context(timed, model.robot, paths);
     const EffectColumns columns = effect_columns(effects, context);
     Eigen::VectorXd offsets(static_cast<Eigen::Index>(columns.border.size()));
@@ -128,7 +143,7 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, co
     clear(timed, columns.border, offsets, model.robot.wheelbase, result);
   }
   for (std::size_t s = 0; s < timed.size(); ++s) {
-    result[s].recording.truth = recordings[s].truth;
+    result[s].recording.truth = recorded[s].truth;
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #include "fit/effect_columns.hpp"
 
 #include "effects/corrected_recording.hpp"
+#include "effects/steering.hpp"
 #include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
@@ -245,6 +246,10 @@ std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) 
   return effect.coefficients;
 }
 
+bool is_laid_out(Channel channel) {
+  return is_delay(channel) || is_steering(channel);
+}
+
 EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeContext& context) {
   EffectColumns result;
   for (std::size_t e = 0; e < effects.size(); ++e) {
@@ -258,7 +263,7 @@ EffectColumns effect_columns(const std::vector<Effect>& effects, const ShapeCont
         return make_column(effect.channel, effect.shape[shape], session, context);
       });
       column.pattern.name = effect.name;
-      if (is_delay(effect.channel)) column.pattern.reference = coefficients[place];
+      if (is_laid_out(effect.channel)) column.pattern.reference = coefficients[place];
       result.border.push_back(std::move(column.pattern));
       result.coefficients.push_back({e, shape, place, column.largest});
     }
@@ -282,6 +287,24 @@ std::vector<double> retimed(const std::vector<double>& instants, const Recording
       const std::size_t place = (effect.per_session ? session * effect.shape.size() : 0) + k;
       for (std::size_t n = 0; n < result.size(); ++n) result[n] -= coefficients[place] * f[n];
     }
+  }
+  return result;
+}
+
+std::vector<Recording> steered(const std::vector<Recording>& recordings,
+                               const std::vector<Effect>& effects, const Robot& robot,
+                               const std::vector<SessionPath>& paths) {
+  std::vector<Recording> result = recordings;
+  if (!steers(effects)) return result;
+  for (std::size_t s = 0; s < result.size(); ++s) {
+    Drive& drive = result[s].drive;
+    const bool led = s < paths.size() && paths[s].ends.size() == drive.rows();
+    const int session = static_cast<int>(s);
+    const RowVariables variables =
+        led ? row_variables(drive, robot.wheelbase, paths[s].start, paths[s].ends, session)
+            : row_variables(drive, robot.wheelbase, Pose(), std::vector<Pose>(drive.rows()),
+                            session);
+    drive = steered(std::move(drive), robot, effects, variables, session);
   }
   return result;
 }

@@ -10,9 +10,9 @@
 // a column that holds the same noise as the residual it is to explain would explain it. So would a
 // smaller map, by shrinking every error, where no survey fixes the scale.
 //
-// All act on the motion as recorded, so the order of effects does not matter. A delay is exact only
-// near its reference: the times of sightings and truth, or of fixes, are to be moved back by that
-// (retimed).
+// All act on the motion as recorded, so the order of effects does not matter. Delays and steering
+// are exact only near their references, by which recordings are to be laid out: the times of
+// sightings and truth, or of fixes, moved back (retimed), and the wheels steered (steered).
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -85,6 +85,9 @@ class ShapeContext {
 [[nodiscard]] EffectColumns effect_columns(const std::vector<Effect>& effects,
                                            const ShapeContext& context);
 
+/// Whether the channel's columns are about a reference by which recordings are laid out.
+[[nodiscard]] bool is_laid_out(Channel channel);
+
 /// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
 /// std::invalid_argument where their number is wrong for so many sessions, or there is no shape.
 [[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);
@@ -100,6 +103,13 @@ class ShapeContext {
                                           const Recording& recording, std::size_t session,
                                           std::size_t sessions, const std::vector<Effect>& effects,
                                           const Robot& robot, Channel delay = Channel::delay);
+
+/// Drives with the steering effects taken in; gyros are not yet. Shapes see the paths where there is
+/// one for every row, else a robot at (0, 0, 0).
+[[nodiscard]] std::vector<Recording> steered(const std::vector<Recording>& recordings,
+                                             const std::vector<Effect>& effects,
+                                             const Robot& robot,
+                                             const std::vector<SessionPath>& paths);
 
 /// The channel that delays what a recording's legs end at: its fixes', where it has nothing else.
 [[nodiscard]] Channel delay_of_legs(const Recording& recording);

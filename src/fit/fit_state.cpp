@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_state.hpp"
 
+#include "effects/steering.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
@@ -36,7 +37,8 @@ std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
 class Fitter {
  public:
   Fitter(const std::vector<Recording>& recordings, const Model& model, const FitterOptions& options)
-      : together_(has_gyro(recordings) ? with_gyro(recordings, model.robot, model.noise)
+      : raw_(recordings),
+        together_(has_gyro(recordings) ? with_gyro(recordings, model.robot, model.noise)
                                        : std::vector<Recording>()),
         recorded_(together_.empty() ? recordings : together_),
         options_(options) {
@@ -58,7 +60,7 @@ class Fitter {
     lay_out();
     start(StartKind::common_errors);
     for (int round = 0; round < options_.max_rounds; ++round) {
-      const bool again = round > 0 && delays_moved();
+      const bool again = round > 0 && layout_moved();
       if (again) lay_out_again();
       build_columns();
       // What is laid out anew is linearised along its record, and not at the noise believed so far.
@@ -88,14 +90,15 @@ class Fitter {
     return effect + fit_.common_errors >= fit_.model.effects.size();
   }
 
-  /// Since the instants were laid out, by more than their columns can stand for.
-  [[nodiscard]] bool delays_moved() const {
+  /// Since delays and steering were laid out, by more than their columns can stand for.
+  [[nodiscard]] bool layout_moved() const {
     constexpr double kMoved = 0.02;  // standard deviations
+    if (steering_sees_path()) return true;
     const std::vector<int> unknown = unknown_coefficients(fit_.columns.border);
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[idx(unknown[k])];
       const Effect& effect = fit_.model.effects[one.effect];
-      if (!is_delay(effect.channel)) continue;
+      if (!is_laid_out(effect.channel)) continue;
       const auto at = static_cast<Eigen::Index>(k);
       const double sd = std::sqrt(fit_.adjustment.coefficient_covariance(at, at));
       const double moved =
@@ -105,9 +108,30 @@ class Fitter {
     return false;
   }
 
+  /// Then what was laid out by another path is not what its columns say.
+  [[nodiscard]] bool steering_sees_path() const {
+    return std::any_of(
+        fit_.model.effects.begin(), fit_.model.effects.end(), [](const Effect& effect) {
+          return is_steering(effect.channel) &&
+                 std::any_of(effect.shape.begin(), effect.shape.end(), [](const Shape& shape) {
+                   const std::vector<std::string>& names = shape.variables();
+                   return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+                     return name == "heading" || name == "x" || name == "y";
+                   });
+                 });
+        });
+  }
+
+  /// What was recorded, driven as the steering effects say.
+  [[nodiscard]] std::vector<Recording> as_steered() const {
+    if (!steers(fit_.model.effects)) return recorded_;
+    std::vector<Recording> result = steered(raw_, fit_.model.effects, fit_.model.robot, fit_.paths);
+    return has_gyro(result) ? with_gyro(result, fit_.model.robot, fit_.model.noise) : result;
+  }
+
   void lay_out() {
     laid_out_ = fit_.model.effects;
-    fit_.recordings = retimed(recorded_, fit_.model.effects, fit_.model.robot);
+    fit_.recordings = retimed(as_steered(), fit_.model.effects, fit_.model.robot);
     fit_.problem = make_problem(fit_.recordings, fit_.model, problem_options());
   }
 
@@ -256,7 +280,7 @@ class Fitter {
     Model own = fit_.model;
     own.effects.resize(fit_.model.effects.size() - fit_.common_errors);
     std::vector<Recording> result;
-    for (ClearedRecording& one : cleared(recorded_, own)) {
+    for (ClearedRecording& one : cleared(raw_, own)) {
       result.push_back(std::move(one.recording));
     }
     return result;
@@ -317,7 +341,7 @@ class Fitter {
     fit_.columns = effect_columns(fit_.model.effects, context);
     for (std::size_t k = 0; k < fit_.columns.border.size(); ++k) {
       const Coefficient& one = fit_.columns.coefficients[k];
-      if (is_delay(fit_.model.effects[one.effect].channel)) {
+      if (is_laid_out(fit_.model.effects[one.effect].channel)) {
         fit_.columns.border[k].reference = laid_out_[one.effect].coefficients[one.place];
       }
       if (is_common(one.effect)) {
@@ -533,6 +557,7 @@ class Fitter {
     }
   }
 
+  const std::vector<Recording>& raw_;
   std::vector<Recording> together_;  ///< with the gyro taken in, where there is one
   const std::vector<Recording>& recorded_;
   FitterOptions options_;
@@ -540,7 +565,7 @@ class Fitter {
   RecordingState state_;
   std::size_t adjusted_ = 0;      ///< measurements of the last adjustment
   std::vector<Effect> given_;     ///< with the coefficients at first
-  std::vector<Effect> laid_out_;  ///< with those by which the instants are laid out
+  std::vector<Effect> laid_out_;  ///< with those by which delays and steering are laid out
   /// Per effect and place; nothing where fitted.
   std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted_;
   double change_ = 0.0;         ///< of the coefficients, in what is negligible

@@ -10,6 +10,7 @@
 #include "odometry/wheels_and_gyro.hpp"
 #include "recording/floor_code.hpp"
 #include "recording/row_variables.hpp"
+#include "recording/unsteered.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -332,10 +333,17 @@ class Replicator {
       take_events(s, own.truth, timed_[s].truth);
       take_events(s, own.fixes, timed_[s].fixes, Channel::fix_delay);
       own.loops = timed_[s].loops;
-      own.drive = std::move(timed_[s].drive);
+      take_drive(own.drive, std::move(timed_[s].drive));
       own.survey = std::move(timed_[s].survey);
     }
     return std::move(recordings_);
+  }
+
+  /// Steering as it was read: a fit takes its effects in before all else.
+  void take_drive(Drive& own, Drive&& timed) const {
+    std::vector<WheelColumn> wheels = std::move(own.wheels);
+    own = unsteered(std::move(timed), fit_.model.robot.wheelbase);
+    own.wheels = std::move(wheels);
   }
 
   template <typename Event>

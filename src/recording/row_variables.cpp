@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "recording/row_variables.hpp"
 
+#include "recording/unsteered.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -199,6 +201,9 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
 
 RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
                            const std::vector<Pose>& path, int session) {
+  if (!drive.steered.empty()) {
+    return row_variables(unsteered(drive, wheelbase), wheelbase, start, path, session);
+  }
   const std::size_t rows = drive.rows();
   if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
   RowVariables variables = drive_variables(drive, wheelbase, session);
@@ -218,6 +223,9 @@ RowVariables instant_variables(const Drive& drive, double wheelbase,
                                const std::vector<double>& instants, const std::vector<Pose>& poses,
                                int session) {
   if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");
+  if (!drive.steered.empty()) {
+    return instant_variables(unsteered(drive, wheelbase), wheelbase, instants, poses, session);
+  }
   const RowVariables by_row = drive_variables(drive, wheelbase, session);
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   std::vector<std::size_t> rows;

@@ -14,6 +14,7 @@
 //   reverses_left, reverses_right    1 in the row in which that wheel goes over to the other sense
 //   any covariate column             under its own name
 //
+// All but the pose are those of the drive as it was read, whatever steering effects were taken in.
 // Rates are smoothed over about a second, never across a change between driving, turning on the
 // spot and standing: single rows carry the same encoder noise as the residuals that they are to
 // explain.

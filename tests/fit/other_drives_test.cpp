@@ -6,6 +6,8 @@
 
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_motion.hpp"
+#include "fit/effect_columns.hpp"
+#include "recording/row_variables.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/dead_reckoning.hpp"
 #include "trussmap/fit_model.hpp"
@@ -57,6 +59,54 @@ INSTANTIATE_TEST_SUITE_P(Drives, OtherDrives, ::testing::ValuesIn(kDrives), [](c
   std::erase(name, '-');
   return name;
 });
+
+/// Whose steered wheel stands at (1 + gain) times what it says, and `offset` further left.
+testing::Wheels misread(const testing::Wheels& wheels, double offset, double gain) {
+  return [wheels, offset, gain](const Twist& row) {
+    std::vector<double> shown = wheels(row);
+    shown[1] = (shown[1] - offset) / (1.0 + gain);
+    return shown;
+  };
+}
+
+TEST(Steering, IsTakenInExactlyHoweverFarOff) {
+  for (const DriveKind kind : {DriveKind::tricycle, DriveKind::ackermann}) {
+    const OtherDrive drive = other_drive(kind);
+    Model model = drive.model;
+    model.effects = {{"offset", Channel::steer, {"1"}, {}, false},
+                     {"gain", Channel::steer_gain, {"1"}, {}, false}};
+    const Recording recording = driven_by(drive, misread(drive.wheels, 0.2, 0.3));
+    const ModelFit fit = fit_model({recording}, model);
+    EXPECT_LT(fit.chi2, 1e-6) << name_of(kind);
+    EXPECT_NEAR(fit.model.effects[0].coefficients[0], 0.2, 1e-6) << name_of(kind);
+    EXPECT_NEAR(fit.model.effects[1].coefficients[0], 0.3, 1e-6) << name_of(kind);
+    // Dead reckoning by the fitted model ends where the robot was.
+    Pose end;
+    for (const Twist& row : drive.rows) end = after(end, row);
+    const PoseEstimate reckoned = dead_reckoned_poses(recording, fit.model).back().estimate;
+    EXPECT_LT((reckoned.pose.position() - end.position()).norm(), 1e-5) << name_of(kind);
+  }
+}
+
+/// Shapes see what was read, so that what they multiply does not depend on a coefficient.
+TEST(Steering, LeavesShapesAsTheyWereRead) {
+  const OtherDrive drive = other_drive(DriveKind::tricycle);
+  Model model = drive.model;
+  model.effects = {{"offset", Channel::steer, {"1"}, {0.2}, false}};
+  const Recording recording = driven_by(drive, drive.wheels);
+  const std::vector<Recording> steered_ones = steered({recording}, model.effects, model.robot, {});
+  const Drive& turned = steered_ones.front().drive;
+  ASSERT_NE(turned.left, recording.drive.left);
+  const std::vector<Pose> path(turned.rows());
+  const double wheelbase = model.robot.wheelbase;
+  const RowVariables before = row_variables(recording.drive, wheelbase, Pose(), path, 0);
+  const RowVariables now = row_variables(turned, wheelbase, Pose(), path, 0);
+  for (const auto& [name, values] : before) {
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      ASSERT_NEAR(now.at(name)[row], values[row], 1e-12) << name;
+    }
+  }
+}
 
 /// Per segment, what a channel's column says against what slightly other readings of the columns
 /// lead to.
@@ -160,12 +210,30 @@ TEST(OtherDrivesCalibration, FindsEachDrivesConstants) {
         driven_by(drive, noisy(drive, with_effect(drive, channel, 0.02), random));
     const WheelCalibration found = calibrate_wheels({recording}, model);
     EXPECT_FALSE(found.diameter_ratio || found.wheelbase_ratio || found.scale);
-    ASSERT_EQ(found.constants.size(), drive.steers ? 3U : 4U);
+    ASSERT_EQ(found.constants.size(), 4U);
     for (const DriveConstant& one : found.constants) {
       const double expected = one.channel == channel ? 0.02 : 0.0;
       EXPECT_NEAR(one.g.value, expected, 4.0 * one.g.sd) << name_of(one.channel);
       EXPECT_LT(one.g.sd, 0.01);
     }
+  }
+}
+
+/// A stated gain that is a sixth of the true one is no start for least squares.
+TEST(OtherDrivesCalibration, FindsASteeringThatIsGeared) {
+  const OtherDrive drive = other_drive(DriveKind::tricycle);
+  std::mt19937_64 random(31);
+  const Recording recording =
+      driven_by(drive, misread(noisy(drive, drive.wheels, random), -0.06, 4.7));
+  const WheelCalibration found = calibrate_wheels({recording}, drive.model);
+  EXPECT_TRUE(found.settled);
+  EXPECT_TRUE(found.undetermined.empty());
+  for (const DriveConstant& one : found.constants) {
+    const double expected = one.channel == Channel::steer_gain ? 4.7
+                            : one.channel == Channel::steer    ? -0.06
+                                                               : 0.0;
+    EXPECT_NEAR(one.g.value, expected, 4.0 * one.g.sd) << name_of(one.channel);
+    EXPECT_LT(one.g.sd, one.channel == Channel::steer_gain ? 0.1 : 0.02);
   }
 }
 

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Steering effects, taken in exactly. With b the angle that is read in a row,
+//
+//   the wheel stands at   b' = b + sum of g over `steer` + b sum of g over `steer_gain`    rad
+//
+// and the row is driven with b'. A fit takes in what it believes so far and is linear about that
+// (EffectPattern::reference); `drive_pattern` is the derivative there. All other effects act on the
+// row as it was steered.
+#pragma once
+
+#include "recording/row_variables.hpp"
+#include "trussmap/channel.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace trussmap {
+
+/// steer or steer_gain.
+[[nodiscard]] bool is_steering(Channel channel);
+/// Whether any effect is of one.
+[[nodiscard]] bool steers(const std::vector<Effect>& effects);
+
+/// The drive with what its robot's steering effects say of it: `left`, `right`, `steered` and the
+/// columns' `by_reading`. `variables` are this drive's; per session, coefficients of `session` are
+/// taken. Unchanged where no wheel is steered. Throws std::invalid_argument, naming the effects,
+/// where the measured wheel would have no way ahead; std::logic_error where the gyro or steering
+/// was taken in before.
+[[nodiscard]] Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effects,
+                            const RowVariables& variables, int session);
+
+/// How a robot moves in a row by the travel of the wheel that is measured [m] and the angle at
+/// which its steered wheel stands [rad].
+struct SteeredMotion {
+  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< forward, sideways [m], turn [rad]
+  std::array<Eigen::Vector3d, 2> by_reading;         ///< by travel and by angle
+  bool possible = true;                              ///< the measured wheel has a way ahead
+};
+/// Of a tricycle or an ackermann drive (DriveKind).
+[[nodiscard]] SteeredMotion steered_motion(const Robot& robot, double travel, double angle);
+
+}  // namespace trussmap
