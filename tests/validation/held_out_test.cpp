@@ -3,7 +3,9 @@
 #include "trussmap/held_out.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "criticism/score_test.hpp"
 #include "estimation/recording_problem.hpp"
+#include "fit/placed_drives.hpp"
 #include "trussmap/catalogue.hpp"
 #include "validation/held_out_legs.hpp"
 #include "validation/leg_spans.hpp"
@@ -209,6 +211,62 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
     EXPECT_GT(fit_recordings({bad}, model).adjustment.chi2,
               1.2 * fit_recordings({clean}, model).adjustment.chi2)
         << name;
+  }
+}
+
+/// A robot without compass that stands on its tags knows its heading at each by a good yaw: seeds
+/// 60 to 64.
+TEST(HeldOut, YawsTellTheHeadingAtALegsStart) {
+  double with = 0.0;
+  double without = 0.0;
+  for (std::uint64_t seed = 60; seed < 65; ++seed) {
+    testing::PlacedOptions options;
+    options.markers = options.landmarks = true;
+    options.yaw_sd = 0.002;
+    options.tours = 3;
+    testing::PlacedDrive drive = testing::placed_drive(options, seed);
+    with += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+    for (Sighting& one : drive.recording.sightings) one.yaw = kAbsent;
+    without += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+  }
+  EXPECT_LT(with, 0.8 * without);
+}
+
+/// What an offset of the yaws would move the predictions by, to first order, is what it moves them
+/// by: also through the orientations that follow it where no survey holds them.
+TEST(HeldOut, SlopesOfAYawOffsetAreTheDifference) {
+  for (const bool surveyed : {true, false}) {
+    testing::PlacedOptions options;
+    options.markers = options.landmarks = true;
+    options.tours = 3;
+    testing::PlacedDrive drive = testing::placed_drive(options, 66);
+    if (!surveyed) drive.recording.survey.clear();
+    const FitState fit = fit_recordings({drive.recording}, drive.model);
+    const HeldOutLegs legs({drive.recording}, fit, FitterOptions());
+    ASSERT_GT(legs.metrics().legs.size(), 5U);
+    const Effect turned{"turned", Channel::sighting_yaw, {"t"}, {}, false};
+    const ScoreTest test(fit);
+    const Score score = test.test({turned}).front();
+    ASSERT_GT(score.dof, 0);
+    const double g = 1e-6;
+    const Eigen::VectorXd change = g * legs.slopes(score.columns, score.landmarks).col(0);
+    Model with = drive.model;
+    with.effects = {{"turned", Channel::sighting_yaw, {"t"}, {g}, false}};
+    FitterOptions held;
+    held.fit_effects = false;
+    const FitState moved = fit_recordings({drive.recording}, with, held);
+    const HeldOut expected = HeldOutLegs({drive.recording}, moved, held).metrics();
+    const HeldOut found = legs.moved(change);
+    const HeldOut plain = legs.metrics();
+    ASSERT_EQ(expected.legs.size(), found.legs.size());
+    double size = 0.0;
+    double off = 0.0;
+    for (std::size_t k = 0; k < found.legs.size(); ++k) {
+      size += (expected.legs[k].arrival_error - plain.legs[k].arrival_error).squaredNorm();
+      off += (expected.legs[k].arrival_error - found.legs[k].arrival_error).squaredNorm();
+    }
+    EXPECT_GT(size, 0.0);
+    EXPECT_LT(off, 0.05 * size) << surveyed;
   }
 }
 
