@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
@@ -50,6 +51,8 @@ json quality_json(const MapQuality& quality) {
   return {{"median_sd_m", quality.median_sd},
           {"worst_sd_m", quality.worst_sd},
           {"worst_landmark", quality.worst_landmark},
+          {"oriented", quality.oriented},
+          {"median_sd_heading_rad", number_or_null(quality.median_sd_heading)},
           {"dispersion", quality.dispersion},
           {"loops", quality.loops},
           {"misclosure_share", number_or_null(quality.misclosure_share)},
@@ -102,6 +105,11 @@ void print_quality(const BuiltMap& built) {
   fmt::print("  {:<28} {:>8.3f} m  (median; worst {:.3f} m, landmark {})\n",
              "standard error of landmarks", quality.median_sd, quality.worst_sd,
              shortened_words(quality.worst_landmark));
+  if (quality.oriented > 0) {
+    fmt::print("  {:<28} {:>8}  of {}, their axes good to {:.2f} deg (median)\n",
+               "landmarks with orientation", quality.oriented, built.map.landmarks(),
+               quality.median_sd_heading * 180.0 / std::numbers::pi);
+  }
   if (built.method != Method::adjustment) {
     fmt::print("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",
                "off the adjusted map by", quality.from_adjusted);
@@ -127,6 +135,8 @@ nlohmann::ordered_json positions_json(const LandmarkGraph& map) {
       at["c_xy"] = (*one.covariance)(0, 1);
       at["c_yy"] = (*one.covariance)(1, 1);
     }
+    if (one.heading) at["heading"] = *one.heading;
+    if (one.sd_heading) at["sd_heading"] = *one.sd_heading;
     positions[one.name] = std::move(at);
   }
   return positions;

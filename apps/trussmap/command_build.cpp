@@ -176,8 +176,10 @@ void setup_build(const Command& app) {
   command.add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
       .type_name("FILE");
   command
-      .add_option("--csv", options->csv,
-                  "Write where the landmarks are: landmark,x,y and, where known, c_xx,c_xy,c_yy")
+      .add_option(
+          "--csv", options->csv,
+          "Write where the landmarks are: landmark,x,y and, where known, c_xx,c_xy,c_yy and "
+          "heading,sd_heading")
       .type_name("FILE");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);

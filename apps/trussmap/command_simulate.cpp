@@ -35,6 +35,11 @@ struct Simulated {
 Simulated simulate(const SimulateOptions& options) {
   Simulated result;
   result.effects = effects_of(options.effects);
+  for (const Effect& effect : result.effects) {
+    if (effect.channel != Channel::sighting_yaw || options.markers) continue;
+    throw UsageError(
+        fmt::format("effect \"{}\" acts on yaws of landmarks, expected --markers", effect.name));
+  }
   try {
     result.mesh = make_mesh(options);
     std::mt19937_64 random = random_stream(options.seed, Stream::walk);

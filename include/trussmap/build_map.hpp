@@ -73,8 +73,10 @@ struct MapQuality {
   double median_sd = 0.0;
   double worst_sd = 0.0;
   std::string worst_landmark;
-  double dispersion = 1.0;  ///< chi^2/dof: 1 where the model's noise explains all errors
-  int loops = 0;            ///< from a landmark back to it
+  int oriented = 0;                    ///< landmarks of which yaws tell an orientation
+  double median_sd_heading = kAbsent;  ///< rad, of these in the map's frame; likewise
+  double dispersion = 1.0;             ///< chi^2/dof: 1 where the model's noise explains all errors
+  int loops = 0;                       ///< from a landmark back to it
   /// By how much dead reckoning misses a loop's start, as a share of the way: median, NaN without
   /// loops.
   double misclosure_share = kAbsent;

@@ -61,6 +61,10 @@ struct Landmark {
   std::string name;
   Vector2 position = Vector2::Zero();  ///< m
   std::optional<Matrix2> covariance;   ///< of the position, m^2, where known
+  /// rad, direction of the landmark's own axis (a tag's, a floor code's) in map axes, where it has
+  /// one, and its standard error, where known.
+  std::optional<double> heading = {};
+  std::optional<double> sd_heading = {};
 };
 
 /// A call that throws leaves the graph as it was. Threads may read it at once while none changes
@@ -86,6 +90,7 @@ class LandmarkGraph {
 
   void set_position(int landmark, const Vector2& position);
   void set_covariance(int landmark, const Matrix2& covariance);
+  void set_heading(int landmark, double heading, std::optional<double> sd = std::nullopt);
 
   [[nodiscard]] int landmarks() const { return static_cast<int>(landmarks_.size()); }
   [[nodiscard]] int routes() const { return static_cast<int>(routes_.size()); }

@@ -9,8 +9,9 @@
 //   .dot       a map for Graphviz, out only
 //
 // GraphML: undirected; node id = landmark name; node data x, y [m] and, where known, c_xx c_xy c_yy
-// [m^2]; edge data traversals, stretch [m], orientation [rad] (source to target), dx, dy [m],
-// c_xx c_xy c_yy [m^2] (mean covariance of a traversal, map frame).
+// [m^2], heading (of the landmark's own axis) and its standard error sd_heading [rad]; edge data
+// traversals, stretch [m], orientation [rad] (source to target), dx, dy [m], c_xx c_xy c_yy [m^2]
+// (mean covariance of a traversal, map frame).
 //
 // A map as a pose graph: landmarks are points, the first of them fixed; routes are displacements
 // with information t C^-1 (t traversals of mean covariance C), the Gauss-Markov stiffness. The way
@@ -81,7 +82,8 @@ namespace trussmap {
 /// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
 [[nodiscard]] std::string format_dot(const LandmarkGraph& map);
 
-/// A table of the landmarks: landmark, x, y [m] and, where all are known, c_xx, c_xy, c_yy [m^2].
+/// A table of the landmarks: landmark, x, y [m] and, where all are known, c_xx, c_xy, c_yy [m^2];
+/// where any has an orientation heading, sd_heading [rad].
 [[nodiscard]] std::string format_positions(const LandmarkGraph& map);
 
 // Pose graphs.

@@ -107,6 +107,7 @@ BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& cl
   }
   built.method = options.method;
   if (options.method == Method::adjustment) place_as(landmarks, built.map);
+  orient_as(landmarks, 0.0, built.map);
   return built;
 }
 
@@ -210,6 +211,7 @@ BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model
   }
   BuiltMap built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
   built.extended = extended;
+  orient_as(landmarks, turn.angle, built.map);
   if (!turn.elsewhere.empty()) {
     built.warnings.push_back(
         "the recording and the map have these landmarks at different places: " +

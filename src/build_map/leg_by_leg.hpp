@@ -23,7 +23,7 @@ namespace trussmap {
 
 struct LegByLegOptions {
   BuildMapOptions build;       ///< with a method that a map builder has
-  const LandmarkGraph& guide;  ///< landmarks and their covariances as the best fit has them
+  const LandmarkGraph& guide;  ///< landmarks with their uncertainties as the best fit has them
   std::set<std::string> stood_on = {};   ///< landmarks that the robot stands on somewhere
   Matrix2 to_map = Matrix2::Identity();  ///< turns the guide's axes into the map's
 };

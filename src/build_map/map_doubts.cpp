@@ -318,6 +318,12 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const Reck
     result.worst_landmark = best.fit.problem.landmarks[k];
   }
   result.median_sd = median(std::move(sds));
+  std::vector<double> headings;
+  for (const double sd : fit.orientation_sds) {
+    if (!std::isnan(sd)) headings.push_back(scale * sd);
+  }
+  result.oriented = static_cast<int>(headings.size());
+  if (!headings.empty()) result.median_sd_heading = median(std::move(headings));
   result.loops = static_cast<int>(reckoned.misclosures.size());
   result.misclosure_share = median(reckoned.misclosures);
   result.sightings = sightings_of(best.fit.problem);

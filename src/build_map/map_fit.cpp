@@ -114,6 +114,7 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
   for (std::size_t s = 0; s < guides.size(); ++s) {
     guides[s].headings.resize(fit.recordings[s].sightings.size());
     guides[s].left_out.resize(fit.recordings[s].sightings.size());
+    guides[s].yaw_left_out.resize(fit.recordings[s].sightings.size());
   }
   for (const Measurement& one : fit.problem.measurements) {
     if (!is_sighting(one.kind)) continue;
@@ -122,8 +123,9 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
   }
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = fit.problem.measurements[idx(k)];
-    if (!is_sighting(one.kind)) continue;
-    guides[idx(one.session)].left_out[one.source] = true;
+    SessionGuide* guide = one.session < 0 ? nullptr : &guides[idx(one.session)];
+    if (is_sighting(one.kind)) guide->left_out[one.source] = true;
+    if (one.kind == MeasurementKind::sighting_yaw) guide->yaw_left_out[one.source] = true;
   }
   return guides;
 }
@@ -135,7 +137,22 @@ LandmarkGraph adjusted_landmarks(const FitState& fit) {
         result.add_landmark(fit.problem.landmarks[k], fit.adjustment.state.landmarks[k]);
     result.set_covariance(landmark, fit.adjustment.landmark_covariances[k]);
   }
+  for (std::size_t k = 0; k < fit.problem.oriented.size(); ++k) {
+    const double sd = fit.adjustment.orientation_sds[k];
+    if (std::isnan(sd)) continue;
+    result.set_heading(fit.problem.oriented[k], wrap_angle(fit.adjustment.state.orientations[k]),
+                       sd);
+  }
   return result;
+}
+
+void orient_as(const LandmarkGraph& adjusted, double turn, LandmarkGraph& map) {
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const std::optional<int> best = adjusted.find(map.landmark(k).name);
+    if (!best || !adjusted.landmark(*best).heading) continue;
+    const Landmark& one = adjusted.landmark(*best);
+    map.set_heading(k, wrap_angle(*one.heading + turn), one.sd_heading);
+  }
 }
 
 void place_as(const LandmarkGraph& adjusted, LandmarkGraph& map) {

@@ -39,6 +39,9 @@ struct MapFitState {
 /// Its landmarks with their covariances, without routes.
 [[nodiscard]] LandmarkGraph adjusted_landmarks(const FitState& fit);
 
+/// Gives the map's landmarks their orientations, in axes that are turned by `turn` (rad).
+void orient_as(const LandmarkGraph& adjusted, double turn, LandmarkGraph& map);
+
 /// Moves the map's landmarks there, and adds those that no leg has.
 void place_as(const LandmarkGraph& adjusted, LandmarkGraph& map);
 

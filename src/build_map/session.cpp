@@ -6,6 +6,7 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trussmap {
 namespace {
@@ -56,8 +57,21 @@ void Session::begin(const Stop& stop) {
 
 /// By the compass; without one as the best fit has it.
 HeadingEstimate Session::first_heading(const Sighting& at, const InitialHeading& first) const {
-  if (recording_.drive.has_compass()) return first.heading;
+  if (recording_.drive.has_compass()) return with_yaw(at, first.heading);
   return {drive_.guided_heading(at), kGuidedHeading * kGuidedHeading};
+}
+
+/// Taken together with what the sighting's yaw and the landmark's orientation in the best fit say.
+HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& heading) const {
+  const Landmark& landmark = options_.guide.landmark(*options_.guide.find(at.landmark));
+  const double yaw = drive_.yaw_of(at);
+  if (std::isnan(yaw) || !landmark.heading) return heading;
+  const double own = std::hypot(drive_.yaw_sd(), landmark.sd_heading.value_or(0.0));
+  const double total = heading.variance + own * own;
+  if (!(total > 0.0)) return heading;
+  const double gain = heading.variance / total;
+  const double off = wrap_angle(*landmark.heading - yaw - heading.heading);
+  return {heading.heading + gain * off, heading.variance * own * own / total};
 }
 
 /// Nearest first: the landmark stood on, else the nearest seen, is the stop's reference.
@@ -105,7 +119,7 @@ Traversal Session::in_map(const PositionEstimate& place) const {
 /// from the landmarks at both ends of the leg.
 HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimate& place) const {
   const HeadingEstimate reckoned{pose_.pose.heading, pose_.covariance(2, 2)};
-  if (recording_.drive.has_compass()) return reckoned;
+  if (recording_.drive.has_compass()) return with_yaw(*at.sighting, reckoned);
   const Landmark& from = options_.guide.landmark(*options_.guide.find(reference_->landmark));
   const Landmark& to = options_.guide.landmark(*options_.guide.find(at.sighting->landmark));
   const double heading = drive_.guided_heading(*at.sighting);

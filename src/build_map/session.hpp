@@ -41,6 +41,7 @@ class Session {
                                               const InitialHeading& first) const;
   [[nodiscard]] HeadingEstimate heading_after(const Accepted& at,
                                               const PositionEstimate& place) const;
+  [[nodiscard]] HeadingEstimate with_yaw(const Sighting& at, const HeadingEstimate& heading) const;
 
   const SightedDrive& drive_;
   const Recording& recording_;

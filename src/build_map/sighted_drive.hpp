@@ -16,6 +16,7 @@ namespace trussmap {
 struct SessionGuide {
   std::vector<double> headings;  ///< rad, map frame: of the robot at that instant
   std::vector<bool> left_out;
+  std::vector<bool> yaw_left_out;
 };
 
 class SightedDrive {
@@ -49,6 +50,11 @@ class SightedDrive {
   [[nodiscard]] double guided_heading(const Sighting& sighting) const {
     return guide_.headings[place_of(sighting)];
   }
+  /// The sighting's yaw, rad; NaN where it has none or was left out.
+  [[nodiscard]] double yaw_of(const Sighting& sighting) const {
+    return guide_.yaw_left_out[place_of(sighting)] ? kAbsent : sighting.yaw;
+  }
+  [[nodiscard]] double yaw_sd() const { return model_.noise.yaw; }
 
  private:
   [[nodiscard]] std::size_t place_of(const Sighting& sighting) const {

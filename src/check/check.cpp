@@ -39,6 +39,7 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "compass clockwise",
                                          "compass turned",
                                          "bearings clockwise",
+                                         "yaws clockwise",
                                          "survey mirrored",
                                          "truth mirrored",
                                          "truth turned",
@@ -60,6 +61,7 @@ enum Quantity {
   wheels,
   compass,
   bearings,
+  yaws,
   survey,
   whole_truth,  ///< both of the next
   truth_heading,
@@ -140,6 +142,10 @@ Blame blame_of(Quantity quantity, double forward) {
     case bearings:
       return {"sightings.csv", "bearing", "bearings clockwise", "bearings that count clockwise",
               "change the sign of bearing"};
+    case yaws:
+      return {"sightings.csv", "yaw", "yaws clockwise",
+              "yaws that count clockwise, or from the landmark's axis to the robot's",
+              "change the sign of yaw: the landmark's axis less the robot's heading"};
     case survey:
       return {"survey.csv", "x,y", "survey mirrored", "a survey with x and y exchanged",
               "exchange x and y, or change the sign of one of them"};
@@ -327,7 +333,7 @@ void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
 
 /// What each pair of quantities says of the other's turns, and which of them has to be wrong.
 void check_turns(Checked& checked, const TurnAgreement& turns, const TurnAgreement& views,
-                 const SurveyAgreement& surveyed, const TruthAgreement& truth) {
+                 int by_yaws, const SurveyAgreement& surveyed, const TruthAgreement& truth) {
   Signs signs;
   std::string seen;
   const auto add = [&](Quantity a, Quantity b, int sign, const char* words) {
@@ -336,6 +342,7 @@ void check_turns(Checked& checked, const TurnAgreement& turns, const TurnAgreeme
   };
   add(wheels, compass, turns.sign, "the compass turns against the wheels");
   add(wheels, bearings, views.sign, "landmarks shift against the wheels' turns");
+  add(wheels, yaws, by_yaws, "the landmarks' yaws turn with the robot, not against it");
   add(wheels, survey, surveyed.by_way, "the survey's corners turn against the wheels");
   add(bearings, survey, surveyed.by_views, "the survey's corners turn against what is seen");
   add(wheels, truth_heading, truth.by_heading, "the truth's heading turns against the wheels");
@@ -349,6 +356,7 @@ TurnAgreement check_recording(Checked& checked) {
   check_names(checked);
   check_drive_values(checked);
   check_bearing_unit(checked);
+  check_yaw_units(checked);
   if (!recording.drive.wheels.empty()) return {};  // what follows knows of a left and a right wheel
   const TurnAgreement turns = check_compass(checked);
   if (!checked.wheelbase_known && turns.sign != 0) {
@@ -368,6 +376,7 @@ TurnAgreement check_recording(Checked& checked) {
   }
   const TurnAgreement views = check_views(checked, track);
   if (wheels_wrong()) return turns;
+  const int by_yaws = yaws_sign(checked, track);
   const TruthAgreement truth = truth_agreement(checked, track);
   if (surveyed.contradicts || truth.contradicts) {
     check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
@@ -387,7 +396,7 @@ TurnAgreement check_recording(Checked& checked) {
   check_survey(checked, track, surveyed, turns.sign > 0);
   check_truth(checked, track, truth);
   const std::size_t before = checked.findings.size();
-  check_turns(checked, turns, views, surveyed, truth);
+  check_turns(checked, turns, views, by_yaws, surveyed, truth);
   if (checked.findings.size() > before) return turns;
   if (!checked.broken && !checked.wrong.contains("x") && !checked.wrong.contains("range")) {
     check_survey_points(checked, surveyed);

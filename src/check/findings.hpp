@@ -27,6 +27,7 @@ struct Checked {
   bool wheelbase_known = false;      ///< the model's, or found from the compass
   bool broken = false;               ///< a gap or spike: no track leads through it
   double angle_unit = 1.0;           ///< rad per unit of bearings
+  double yaw_unit = 1.0;             ///< rad per unit of yaws
 
   void add(const char* file, const std::string& column, const char* kind,
            const std::string& evidence, const std::string& remedy);
@@ -84,6 +85,12 @@ struct TurnAgreement {
 /// Of views with the wheels: of the landmark's shift as seen with the robot's motion. Reported
 /// where another unit or mistake of the wheels fits better.
 [[nodiscard]] TurnAgreement check_views(Checked& checked, const Track& track);
+
+/// Units of yaws and of surveyed headings by themselves.
+void check_yaw_units(Checked& checked);
+/// Of yaws with the wheels' turns: 1 as they should go, -1 as yaws of the other sign would, 0:
+/// cannot be told.
+[[nodiscard]] int yaws_sign(const Checked& checked, const Track& track);
 
 /// Whether a sighting says where its landmark is, as place_seen has it from a pose of a track.
 [[nodiscard]] bool tells_place(const Sighting& sighting);

@@ -155,10 +155,15 @@ Score ScoreTest::score_of(const Effect& effect, const std::vector<double>& large
 Eigen::MatrixXd ScoreTest::landmark_rows(const Eigen::MatrixXd& nodes) const {
   const BlockSystem& normal = clean_system_->normal_equations();
   const Eigen::Index count = fit_.problem.landmark_count();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count, nodes.cols());
+  const auto oriented = static_cast<Eigen::Index>(fit_.problem.oriented.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * count + oriented, nodes.cols());
   for (int k = 0; k < count; ++k) {
     if (normal.size(k) != 2) continue;
     rows.middleRows(Eigen::Index{2} * k, 2) = nodes.middleRows(normal.offset(k), 2);
+  }
+  for (Eigen::Index k = 0; k < oriented; ++k) {
+    const int node = fit_.problem.pose_end() + static_cast<int>(k);
+    rows.row(2 * count + k) = nodes.row(normal.offset(node));
   }
   return rows;
 }

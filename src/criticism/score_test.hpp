@@ -47,7 +47,8 @@ struct Score {
   std::vector<double> information;         ///< |M_|^2 of each shape
   Eigen::MatrixXd columns;                 ///< M, rows x shapes
   Eigen::MatrixXd projected;               ///< M_, rows x shapes; zero columns where unseen
-  Eigen::MatrixXd landmarks;  ///< what one unit of each moves the landmarks by, two rows each, m
+  /// What one unit of each moves the landmarks by, two rows each, m; then orientations, rad.
+  Eigen::MatrixXd landmarks;
 };
 
 /// Every row by itself; or a second of driving at a time, a tenth of the work, enough to find the
@@ -99,7 +100,7 @@ class ScoreTest {
   [[nodiscard]] Score score_of(const Effect& effect, const std::vector<double>& largest,
                                Eigen::MatrixXd columns, Eigen::MatrixXd projected) const;
 
-  /// Rows of the landmarks, zero where held, among those of all nodes.
+  /// Rows of the landmarks, zero where held, then of orientations, among those of all nodes.
   [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
 
   const FitState& fit_;

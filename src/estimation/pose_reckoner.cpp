@@ -107,12 +107,18 @@ void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correc
     for (const Measurement* one : seen) {
       if (one->kind == MeasurementKind::fix) meet_fix(*one);
       if (is_sighting(one->kind) && landmarks_[idx(one->to)]) meet_landmark(*one);
+      if (one->kind == MeasurementKind::sighting_yaw) meet_orientation(*one);
     }
   }
   for (const Measurement* one : seen) {
     if (!locates(*one)) continue;
     std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
     if (!landmark) landmark = sighted(*one);
+  }
+  for (const Measurement* one : seen) {
+    if (one->kind != MeasurementKind::sighting_yaw) continue;
+    std::optional<double>& orientation = orientations_[idx(one->to - problem_.pose_end())];
+    if (!orientation) orientation = wrap_angle(pose_.heading + one->value[0]);
   }
 }
 
@@ -150,6 +156,20 @@ void PoseReckoner::meet_landmark(const Measurement& one) {
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(one.rows, covariance_.cols());
   H.leftCols<3>() = rows.by_from.topRows(one.rows);
   update(H, -rows.error.head(one.rows), R);
+}
+
+/// An orientation is as certain as the heading that it was read from.
+void PoseReckoner::meet_orientation(const Measurement& one) {
+  constexpr double kOrientationSd = 0.05;  // rad
+  const std::optional<double>& orientation = orientations_[idx(one.to - problem_.pose_end())];
+  if (!orientation) return;
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(1, covariance_.cols());
+  H(0, 2) = 1.0;
+  Eigen::VectorXd innovation(1);
+  innovation << wrap_angle(*orientation - one.value[0] - pose_.heading);
+  Eigen::MatrixXd R = covariance_of(one);
+  R.array() += kOrientationSd * kOrientationSd;
+  update(H, innovation, R);
 }
 
 void PoseReckoner::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,

@@ -7,9 +7,8 @@
 //   drive           the segment's motion with the effects; what is not known of them adds to the
 //                   pose's covariance, and ties pose and coefficients together
 //   read_compass    the heading, and with it what the compass's effects must be
-//   look            truth, fixes, and landmarks that have a place, correct pose and coefficients;
-//   the
-//                   others are placed
+//   look            truth, fixes, landmarks that have a place and orientations that are known
+//                   correct pose and coefficients; the others are placed
 //
 // Landmarks stand still: they are as certain as `map_sd` says.
 #pragma once
@@ -24,6 +23,9 @@ namespace trussmap {
 
 /// Places so far, m; none for a landmark not yet sighted.
 using PlacedLandmarks = std::vector<std::optional<Vector2>>;
+
+/// Orientations so far, rad; none for one of which no yaw has been read.
+using KnownOrientations = std::vector<std::optional<double>>;
 
 /// Unknown coefficients, and how well they are known.
 struct KnownCoefficients {
@@ -49,8 +51,13 @@ class PoseReckoner {
  public:
   /// Keeps references to all but the options.
   PoseReckoner(const RecordingProblem& problem, const EffectParameters& border,
-               const ReckonerOptions& options, PlacedLandmarks& landmarks)
-      : problem_(problem), border_(border), options_(options), landmarks_(landmarks) {}
+               const ReckonerOptions& options, PlacedLandmarks& landmarks,
+               KnownOrientations& orientations)
+      : problem_(problem),
+        border_(border),
+        options_(options),
+        landmarks_(landmarks),
+        orientations_(orientations) {}
 
   void place(const Pose& pose, const Matrix3& covariance, const KnownCoefficients& coefficients);
   [[nodiscard]] const Pose& pose() const { return pose_; }
@@ -72,6 +79,7 @@ class PoseReckoner {
   void meet_truth(const Measurement& one);
   void meet_fix(const Measurement& one);
   void meet_landmark(const Measurement& one);
+  void meet_orientation(const Measurement& one);
   void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
               const Eigen::MatrixXd& R);
   void doubt();
@@ -80,6 +88,7 @@ class PoseReckoner {
   const EffectParameters& border_;
   ReckonerOptions options_;
   PlacedLandmarks& landmarks_;
+  KnownOrientations& orientations_;
   Pose pose_;
   Eigen::VectorXd coefficients_;
   Eigen::MatrixXd covariance_ = Eigen::MatrixXd::Zero(3, 3);

@@ -105,10 +105,28 @@ std::vector<double> shape_sds(const std::vector<Vector2>& points, const Recordin
   return sds;
 }
 
+std::vector<double> orientation_sds(const RecordingSystem& system, const RecordingProblem& problem,
+                                    const std::vector<int>& left_out) {
+  std::vector<double> sds(problem.oriented.size(), kAbsent);
+  if (sds.empty()) return sds;
+  const std::vector<double> variances = system.orientation_variances();
+  const std::vector<double> weights = weights_without(left_out, problem.measurements.size());
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (!is_of_orientation(one.kind) || weights[k] == 0.0) continue;
+    const int node = one.kind == MeasurementKind::sighting_yaw ? one.to : one.from;
+    const std::size_t orientation = idx(node - problem.pose_end());
+    sds[orientation] = std::sqrt(std::max(0.0, variances[orientation]));
+  }
+  return sds;
+}
+
 /// The system is factorised at the adjustment.
-void take_uncertainties(const RecordingSystem& system, RecordingAdjustment& result) {
+void take_uncertainties(const RecordingSystem& system, const RecordingProblem& problem,
+                        RecordingAdjustment& result) {
   result.landmark_covariances = system.landmark_covariances();
   result.landmark_sds = shape_sds(result.state.landmarks, system, result.landmark_covariances);
+  result.orientation_sds = orientation_sds(system, problem, result.left_out);
 }
 
 RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
@@ -211,7 +229,7 @@ RecordingAdjustment adjust_from(const RecordingState& start, const RecordingProb
   result.iterations = fit.iterations;
   result.converged = fit.converged;
   result.gradient_norm = system.gradient_norm();
-  if (options.landmark_uncertainties) take_uncertainties(system, result);
+  if (options.landmark_uncertainties) take_uncertainties(system, problem, result);
   if (coefficients > 0) result.coefficient_covariance = system.coefficient_covariance();
   add_warnings(problem, result);
   return result;
@@ -273,7 +291,7 @@ void add_landmark_uncertainties(const RecordingProblem& problem, const EffectPar
                                 RecordingAdjustment& adjustment) {
   RecordingSystem system(problem, border);
   prepare(system, problem, border, adjustment);
-  take_uncertainties(system, adjustment);
+  take_uncertainties(system, problem, adjustment);
 }
 
 std::vector<Matrix3> pose_covariances(const RecordingProblem& problem,

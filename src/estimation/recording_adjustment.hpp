@@ -39,8 +39,9 @@ struct RecordingAdjustmentOptions {
   /// With a gate: an adjustment of the same measurements that the state comes from. Its gate holds
   /// on, and what it left out is looked at again instead of being found anew.
   const RecordingAdjustment* near = nullptr;
-  Eigen::VectorXd coefficients;        ///< to start from, the unknown ones; empty: 0
-  bool landmark_uncertainties = true;  ///< else landmark_covariances and landmark_sds stay empty
+  Eigen::VectorXd coefficients;  ///< to start from, the unknown ones; empty: 0
+  /// Else landmark_covariances, landmark_sds and orientation_sds stay empty.
+  bool landmark_uncertainties = true;
 };
 
 struct RecordingAdjustment {
@@ -49,6 +50,8 @@ struct RecordingAdjustment {
   /// How far each landmark is from the truth after the best rotation and translation of them all,
   /// root mean square, m: what does not depend on what is held.
   std::vector<double> landmark_sds;
+  /// rad, of each orientation in the map frame; NaN where every yaw of it was left out.
+  std::vector<double> orientation_sds;
   Eigen::VectorXd coefficients;  ///< the unknown ones
   Eigen::MatrixXd coefficient_covariance;
   double chi2 = 0.0;     ///< of the measurements kept, and the coefficients' priors
@@ -96,7 +99,7 @@ class UndeterminedError : public SolveError {
 [[nodiscard]] std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
                                                        const RecordingAdjustment& adjustment);
 
-/// Fills in landmark_covariances and landmark_sds of an adjustment without them.
+/// Fills in the uncertainties of landmarks and orientations of an adjustment without them.
 void add_landmark_uncertainties(const RecordingProblem& problem, const EffectParameters& border,
                                 RecordingAdjustment& adjustment);
 

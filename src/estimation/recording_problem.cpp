@@ -82,14 +82,16 @@ class Collector {
       one.whitener = whitener_of_sds({sd, sd});
       one.source = k;
       // Sessions come with copies of one survey: the same numbers count once.
-      const bool copy =
-          std::any_of(surveyed_.begin(), surveyed_.end(), [&](const Measurement& other) {
-            return other.from == one.from && other.value == one.value;
-          });
-      if (copy) continue;
-      surveyed_.push_back(one);
-      problem_.measurements.push_back(one);
-      add_survey_heading(point, k, node->second);
+      const auto same_place = [&](const Surveyed& other) {
+        return other.landmark == one.from && other.place == one.value.head<2>();
+      };
+      const auto copy = std::find_if(surveyed_.begin(), surveyed_.end(), same_place);
+      if (copy == surveyed_.end()) problem_.measurements.push_back(one);
+      const bool same_heading = std::any_of(copy, surveyed_.end(), [&](const Surveyed& other) {
+        return same_place(other) && other.heading == point.heading;
+      });
+      surveyed_.push_back({one.from, one.value.head<2>(), point.heading});
+      if (!same_heading) add_survey_heading(point, k, node->second);
     }
   }
 
@@ -353,6 +355,13 @@ class Collector {
     problem_.measurements.push_back(one);
   }
 
+  /// A point of a survey that has been taken.
+  struct Surveyed {
+    int landmark = 0;
+    Vector2 place = Vector2::Zero();  ///< m
+    double heading = kAbsent;         ///< rad; NaN: none
+  };
+
   const Model& model_;
   const ProblemOptions& options_;
   int session_ = 0;
@@ -360,7 +369,7 @@ class Collector {
   std::map<std::string, int> landmark_node_;
   std::map<int, int> orientation_;  ///< of a landmark
   std::map<double, int> pose_at_;   ///< of this session, by time
-  std::vector<Measurement> surveyed_;
+  std::vector<Surveyed> surveyed_;
   RecordingProblem problem_;
 };
 

@@ -63,12 +63,14 @@ class Layer {
         options_(options),
         links_(by_pose(problem)),
         landmarks_(problem.landmarks.size()),
+        orientations_(problem.oriented.size()),
         poses_(problem.poses.size()),
         coefficients_(prior_of(border)) {}
 
   /// Poses first ... last, from a pose that is known that well.
   void lay(int first, int last, const Pose& start, const Matrix3& covariance, bool correct) {
-    PoseReckoner robot(problem_, border_, {options_.map_sd, options_.gate}, landmarks_);
+    PoseReckoner robot(problem_, border_, {options_.map_sd, options_.gate}, landmarks_,
+                       orientations_);
     robot.place(start, covariance, coefficients_);
     for (int k = first; k <= last; ++k) {
       const int segment = links_.segment_from[idx(k)];
@@ -163,18 +165,21 @@ class Layer {
 
   struct Laid {
     PlacedLandmarks landmarks;
+    KnownOrientations orientations;
     std::vector<Pose> poses;
     KnownCoefficients coefficients;
   };
-  [[nodiscard]] Laid laid() const { return {landmarks_, poses_, coefficients_}; }
+  [[nodiscard]] Laid laid() const { return {landmarks_, orientations_, poses_, coefficients_}; }
   void take_back(const Laid& before) {
     landmarks_ = before.landmarks;
+    orientations_ = before.orientations;
     poses_ = before.poses;
     coefficients_ = before.coefficients;
   }
 
   [[nodiscard]] int pose_count() const { return static_cast<int>(poses_.size()); }
   PlacedLandmarks& landmarks() { return landmarks_; }
+  KnownOrientations& orientations() { return orientations_; }
   std::vector<Pose>& poses() { return poses_; }
   KnownCoefficients& coefficients() { return coefficients_; }
   [[nodiscard]] const EffectParameters& border() const { return border_; }
@@ -185,6 +190,7 @@ class Layer {
   StartOptions options_;
   ByPose links_;
   PlacedLandmarks landmarks_;
+  KnownOrientations orientations_;
   std::vector<Pose> poses_;
   KnownCoefficients coefficients_;
 };
@@ -258,6 +264,11 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
     fit.state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
   }
   fit.state.poses.assign(layer.poses().begin(), layer.poses().begin() + count);
+  fit.state.orientations = orientations_seen_from(part.problem, fit.state.poses);
+  for (std::size_t k = 0; k < part.orientations.size(); ++k) {
+    const std::optional<double>& known = layer.orientations()[idx(part.orientations[k])];
+    if (known) fit.state.orientations[k] = *known;
+  }
   fit.coefficients = layer.coefficients().values;
   RecordingSystem system(part.problem, layer.border());
   system.set_slack(RecordingSystem::kRoughSlack);
@@ -285,6 +296,9 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   }
   for (std::size_t k = 0; k < part.landmarks.size(); ++k) {
     layer.landmarks()[idx(part.landmarks[k])] = fit.state.landmarks[k];
+  }
+  for (std::size_t k = 0; k < part.orientations.size(); ++k) {
+    layer.orientations()[idx(part.orientations[k])] = fit.state.orientations[k];
   }
   std::copy(fit.state.poses.begin(), fit.state.poses.end(), layer.poses().begin());
   const double lost = share_beyond(part.problem, system.squared_errors(), options.gate);
@@ -380,17 +394,23 @@ void lay_along_fixes(const SessionFixes& fixes, bool compass, Layer& layer) {
   layer.place_from_afar(poses, true);
 }
 
+void move_all(const Alignment& over, Layer& layer) {
+  for (std::optional<Vector2>& landmark : layer.landmarks()) {
+    if (landmark) landmark = over.apply(*landmark);
+  }
+  for (std::optional<double>& orientation : layer.orientations()) {
+    if (orientation) orientation = wrap_angle(*orientation + over.angle);
+  }
+  for (Pose& pose : layer.poses()) pose = moved_by(over, pose);
+}
+
 /// All of a session that lies in a frame of its own.
 void lay_onto_fixes(const SessionFixes& fixes, Layer& layer) {
   double span = 0.0;
   for (const Pose& pose : layer.poses()) {
     span = std::max(span, (pose.position() - layer.poses().front().position()).norm());
   }
-  const Alignment over = onto_fixes(fixes, layer.poses(), layer.pose_count(), span);
-  for (std::optional<Vector2>& landmark : layer.landmarks()) {
-    if (landmark) landmark = over.apply(*landmark);
-  }
-  for (Pose& pose : layer.poses()) pose = moved_by(over, pose);
+  move_all(onto_fixes(fixes, layer.poses(), layer.pose_count(), span), layer);
 }
 
 /// One session in a frame of its own (with truth rows: theirs).
@@ -480,8 +500,21 @@ void leave_out_strays(std::vector<Vector2>& here, std::vector<Vector2>& there) {
   there.resize(kept);
 }
 
-/// Lays a session over landmarks that have their place.
-void lay_over(const PlacedLandmarks& known, bool turn, Layer& layer) {
+/// rad, what turns a session's orientations into those known; nothing where it has none of them.
+std::optional<double> turn_onto(const KnownOrientations& known, Layer& layer) {
+  Vector2 sum = Vector2::Zero();
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    if (!known[k] || !layer.orientations()[k]) continue;
+    sum += rotation(*known[k] - *layer.orientations()[k]).col(0);
+  }
+  if (sum.norm() <= 0.0) return std::nullopt;
+  return direction(sum);
+}
+
+/// Lays a session over landmarks that have their place, and over orientations that are known.
+void lay_over(const PlacedLandmarks& known, const KnownOrientations& orientations, bool turn,
+              Layer& layer) {
+  constexpr std::size_t kTellsTurn = 3;  // landmarks
   std::vector<Vector2> here;
   std::vector<Vector2> there;
   for (std::size_t k = 0; k < known.size(); ++k) {
@@ -492,20 +525,18 @@ void lay_over(const PlacedLandmarks& known, bool turn, Layer& layer) {
   if (here.empty()) return;
   leave_out_strays(here, there);
   Alignment over;
-  if (turn && here.size() >= 2) {
+  std::optional<double> angle;
+  if (turn && here.size() < kTellsTurn) angle = turn_onto(orientations, layer);
+  if (turn && !angle && here.size() >= 2) {
     over = align_rigidly(here, there);
   } else {
+    over.angle = angle.value_or(0.0);
+    const Matrix2 R = rotation(over.angle);
     for (std::size_t k = 0; k < here.size(); ++k) {
-      over.translation += (there[k] - here[k]) / static_cast<double>(here.size());
+      over.translation += (there[k] - R * here[k]) / static_cast<double>(here.size());
     }
   }
-  for (std::optional<Vector2>& landmark : layer.landmarks()) {
-    if (landmark) landmark = over.apply(*landmark);
-  }
-  for (Pose& pose : layer.poses()) {
-    const Vector2 position = over.apply(pose.position());
-    pose = {position.x(), position.y(), pose.heading + over.angle};
-  }
+  move_all(over, layer);
 }
 
 /// First and count of each session's poses.
@@ -528,7 +559,23 @@ ProblemPart session_of(const RecordingProblem& problem, int first, int count) {
     part.problem.measurements.push_back(one);
     part.problem.measurements.back().from = part.problem.pose_node(pose);
   }
+  // The compass tells headings, and may be off by more than yaws are.
+  if (has_compass(part.problem)) {
+    std::erase_if(part.problem.measurements,
+                  [](const Measurement& one) { return is_of_orientation(one.kind); });
+    part.problem.oriented.clear();
+    part.orientations.clear();
+  }
   return part;
+}
+
+KnownOrientations surveyed_orientations(const RecordingProblem& problem) {
+  KnownOrientations known(problem.oriented.size());
+  for (const Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::survey_heading) continue;
+    known[idx(one.from - problem.pose_end())] = one.value[0];
+  }
+  return known;
 }
 
 PlacedLandmarks surveyed(const RecordingProblem& problem) {
@@ -537,6 +584,19 @@ PlacedLandmarks surveyed(const RecordingProblem& problem) {
     if (one.kind == MeasurementKind::survey) known[idx(one.from)] = one.value.head<2>();
   }
   return known;
+}
+
+/// Orientations not yet known, as a session's poses first read them: with a compass, too.
+void take_orientations(const RecordingProblem& problem, const std::vector<Pose>& poses, int first,
+                       int count, KnownOrientations& known) {
+  if (known.empty()) return;
+  for (const Measurement& one : problem.measurements) {
+    if (one.kind != MeasurementKind::sighting_yaw) continue;
+    const int pose = one.from - problem.landmark_count();
+    if (pose < first || pose >= first + count) continue;
+    std::optional<double>& orientation = known[idx(one.to - problem.pose_end())];
+    if (!orientation) orientation = wrap_angle(poses[idx(pose)].heading + one.value[0]);
+  }
 }
 
 }  // namespace
@@ -566,13 +626,28 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
   std::vector<int> place(problem.landmarks.size(), -1);
   const int offset = problem.landmark_count() + first;
   const auto inside = [&](int node) { return node >= offset && node < offset + count; };
+  std::vector<int> orientation(problem.oriented.size(), -1);
   std::vector<const Measurement*> kept;
+  const auto keep_yaw = [&](const Measurement& one) {
+    const int whole = one.to - problem.pose_end();
+    const int landmark = place[idx(problem.oriented[idx(whole)])];
+    if (landmark < 0) return;  // its sighting, just before, is not kept
+    kept.push_back(&one);
+    if (orientation[idx(whole)] >= 0) return;
+    orientation[idx(whole)] = static_cast<int>(part.orientations.size());
+    part.orientations.push_back(whole);
+    part.problem.oriented.push_back(landmark);
+  };
   for (const Measurement& one : problem.measurements) {
-    if (in_map_frame(one) || is_of_orientation(one.kind)) continue;
+    if (in_map_frame(one) || one.kind == MeasurementKind::survey_heading) continue;
     if (!inside(one.from) || (between_poses(one) && !inside(one.to))) continue;
     // What a segment's gyro says goes with it.
     if (one.kind == MeasurementKind::gyro && !inside(one.from + 1)) continue;
     if (placed != nullptr && is_sighting(one.kind) && !(*placed)[idx(one.to)]) continue;
+    if (one.kind == MeasurementKind::sighting_yaw) {
+      keep_yaw(one);
+      continue;
+    }
     kept.push_back(&one);
     if (!is_sighting(one.kind) || place[idx(one.to)] >= 0) continue;
     place[idx(one.to)] = static_cast<int>(part.landmarks.size());
@@ -593,6 +668,8 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
       part.problem.gyro_weights.push_back(problem.gyro_weights[one->source]);
     } else if (one->kind == MeasurementKind::gyro) {
       moved.source = part.problem.segments.size() - 1;  // right after its segment
+    } else if (one->kind == MeasurementKind::sighting_yaw) {
+      moved.to = part.problem.pose_end() + orientation[idx(one->to - problem.pose_end())];
     } else {
       moved.to = place[idx(one->to)];
     }
@@ -604,6 +681,7 @@ ProblemPart part_of(const RecordingProblem& problem, int first, int count,
 RecordingStart start_of(const RecordingProblem& problem, const EffectParameters& border,
                         const StartOptions& options) {
   PlacedLandmarks known = surveyed(problem);
+  KnownOrientations orientations = surveyed_orientations(problem);
   const bool frame_given =
       std::any_of(problem.measurements.begin(), problem.measurements.end(), in_map_frame);
   RecordingState state;
@@ -618,12 +696,15 @@ RecordingStart start_of(const RecordingProblem& problem, const EffectParameters&
     coefficients = layer.coefficients();
     PlacedLandmarks in_part;
     for (const int landmark : part.landmarks) in_part.push_back(known[idx(landmark)]);
-    if (!in_map) lay_over(in_part, !has_compass(part.problem), layer);
+    KnownOrientations known_in_part;
+    for (const int k : part.orientations) known_in_part.push_back(orientations[idx(k)]);
+    if (!in_map) lay_over(in_part, known_in_part, !has_compass(part.problem), layer);
     for (std::size_t k = 0; k < part.landmarks.size(); ++k) {
       std::optional<Vector2>& place = known[idx(part.landmarks[k])];
       if (!place) place = layer.landmarks()[k];
     }
     std::copy(layer.poses().begin(), layer.poses().end(), state.poses.begin() + first);
+    take_orientations(problem, state.poses, first, count, orientations);
   }
   for (const std::optional<Vector2>& landmark : known) {
     state.landmarks.push_back(landmark.value_or(Vector2::Zero()));

@@ -27,8 +27,10 @@
 // sightings; from the pose in which its first stretch suits most of them. Else it is laid over them
 // when it is done.
 //
+// Without a compass yaws correct the reckoning too, by the orientations that landmarks have so far.
+//
 // At last the session is laid over the landmarks that are known by then (survey, other sessions):
-// shifted, and without a compass turned.
+// shifted, and without a compass turned, where they are fewer than three by their orientations.
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -72,7 +74,8 @@ struct RecordingStart {
 /// truth and fixes; landmarks that they do not see are left out.
 struct ProblemPart {
   RecordingProblem problem;
-  std::vector<int> landmarks;  ///< of the whole problem, in the part's order
+  std::vector<int> landmarks;     ///< of the whole problem, in the part's order
+  std::vector<int> orientations;  ///< likewise, as numbered among the oriented
   int first_pose = 0;
 };
 /// With `placed`, sightings of landmarks that have no place there are left out, too.

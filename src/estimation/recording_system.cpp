@@ -522,6 +522,14 @@ std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
   return covariances<2>(0, problem_.landmark_count());
 }
 
+std::vector<double> RecordingSystem::orientation_variances() const {
+  std::vector<double> result;
+  const auto count = static_cast<int>(problem_.oriented.size());
+  result.reserve(problem_.oriented.size());
+  for (const auto& one : covariances<1>(problem_.pose_end(), count)) result.push_back(one(0, 0));
+  return result;
+}
+
 std::vector<Matrix3> RecordingSystem::pose_covariances() const {
   std::vector<Matrix3> result =
       covariances<3>(problem_.landmark_count(), static_cast<int>(problem_.poses.size()));

@@ -82,6 +82,8 @@ class RecordingSystem {
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
   /// Of each landmark alone, of each pose alone; zero where held. Cost: about two factorisations.
   [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
+  /// rad^2, of each orientation alone.
+  [[nodiscard]] std::vector<double> orientation_variances() const;
   [[nodiscard]] std::vector<Matrix3> pose_covariances() const;
   /// The landmarks' joint covariance times the columns of b, two rows per landmark.
   [[nodiscard]] Eigen::MatrixXd landmark_covariance_times(const Eigen::MatrixXd& b) const;

@@ -153,7 +153,8 @@ class Replicator {
   void measure_places() {
     const auto& landmarks = fit_.problem.landmarks;
     // One survey, copied to every session, stays one.
-    std::map<std::tuple<std::string, double, double>, Pose> measured;
+    std::map<std::tuple<std::string, double, double>, Vector2> measured;
+    std::map<std::tuple<std::string, double, double, double>, double> headings;
     for (std::size_t s = 0; s < timed_.size(); ++s) {
       for (SurveyPoint& one : timed_[s].survey) {
         const auto at = std::find(landmarks.begin(), landmarks.end(), one.landmark);
@@ -161,18 +162,18 @@ class Replicator {
         const auto landmark = static_cast<int>(at - landmarks.begin());
         const Vector2& place = state_.landmarks[idx(landmark)];
         const double sd = std::isnan(one.sd) ? noise_.survey : one.sd;
-        const auto [known, fresh] = measured.try_emplace({one.landmark, one.x, one.y}, Pose{});
-        Pose& there = known->second;
-        if (fresh) {
-          const Vector2 off(drawn(sd), drawn(sd));
-          there = {place.x() + off.x(), place.y() + off.y(), one.heading};
-          if (const double* orientation = orientation_of(landmark)) {
-            if (!std::isnan(one.heading)) there.heading = *orientation + drawn(noise_.yaw);
-          }
+        const auto [known, fresh] =
+            measured.try_emplace({one.landmark, one.x, one.y}, Vector2::Zero());
+        if (fresh) known->second = place + Vector2(drawn(sd), drawn(sd));
+        const double* orientation = orientation_of(landmark);
+        if (orientation != nullptr && !std::isnan(one.heading)) {
+          const auto [heading, new_heading] =
+              headings.try_emplace({one.landmark, one.x, one.y, one.heading}, 0.0);
+          if (new_heading) heading->second = *orientation + drawn(noise_.yaw);
+          one.heading = heading->second;
         }
-        one.x = there.x;
-        one.y = there.y;
-        one.heading = there.heading;
+        one.x = known->second.x();
+        one.y = known->second.y();
       }
       for (std::size_t row = 0; row < timed_[s].truth.size(); ++row) {
         TruthRow& one = timed_[s].truth[row];

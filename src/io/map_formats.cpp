@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
 #include "trussmap/map_files.hpp"
+#include "trussmap/recording.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -37,6 +38,8 @@ std::string format_geojson(const LandmarkGraph& map) {
     const Landmark& landmark = map.landmark(k);
     json properties = {{"landmark", landmark.name}};
     if (landmark.covariance) add_covariance(properties, *landmark.covariance);
+    if (landmark.heading) properties["heading"] = *landmark.heading;
+    if (landmark.sd_heading) properties["sd_heading"] = *landmark.sd_heading;
     features.push_back(
         {{"type", "Feature"},
          {"geometry", {{"type", "Point"}, {"coordinates", coordinates(landmark.position)}}},
@@ -82,8 +85,14 @@ std::string format_dot(const LandmarkGraph& map) {
 
 std::string format_positions(const LandmarkGraph& map) {
   bool certain = map.landmarks() > 0;
-  for (int k = 0; k < map.landmarks(); ++k) certain = certain && map.landmark(k).covariance;
-  std::string text = certain ? "landmark,x,y,c_xx,c_xy,c_yy\n" : "landmark,x,y\n";
+  bool headings = false;
+  for (int k = 0; k < map.landmarks(); ++k) {
+    certain = certain && map.landmark(k).covariance;
+    headings = headings || map.landmark(k).heading;
+  }
+  std::string text = "landmark,x,y";
+  text += certain ? ",c_xx,c_xy,c_yy" : "";
+  text += headings ? ",heading,sd_heading\n" : "\n";
   for (int k = 0; k < map.landmarks(); ++k) {
     const Landmark& one = map.landmark(k);
     text += csv_field(one.name) + ',' + csv_number(one.position.x()) + ',' +
@@ -91,6 +100,10 @@ std::string format_positions(const LandmarkGraph& map) {
     if (certain) {
       const Matrix2& C = *one.covariance;
       text += ',' + csv_number(C(0, 0)) + ',' + csv_number(C(0, 1)) + ',' + csv_number(C(1, 1));
+    }
+    if (headings) {
+      text += ',' + csv_number(one.heading.value_or(kAbsent)) + ',' +
+              csv_number(one.sd_heading.value_or(kAbsent));
     }
     text += '\n';
   }

@@ -34,6 +34,13 @@ std::string without_double_hyphens(std::string text) {
   return text;
 }
 
+bool has_headings(const LandmarkGraph& map) {
+  for (int k = 0; k < map.landmarks(); ++k) {
+    if (map.landmark(k).heading) return true;
+  }
+  return false;
+}
+
 using KeyNames = std::map<std::string, std::string>;
 
 /// The data of one node or edge, by attribute name.
@@ -113,6 +120,11 @@ void read_node(const XmlElement& element, const KeyNames& names, const std::stri
   if (map.find(name)) data.fail("stands twice, expected each landmark once");
   const int landmark = map.add_landmark(name, {data.number("x"), data.number("y")});
   if (data.has("c_xx")) map.set_covariance(landmark, data.covariance());
+  if (!data.has("heading")) return;
+  std::optional<double> sd;
+  if (data.has("sd_heading")) sd = data.number("sd_heading");
+  if (sd && *sd < 0.0) data.fail("sd_heading is negative, expected 0 or more");
+  map.set_heading(landmark, data.number("heading"), sd);
 }
 
 void read_edge(const XmlElement& element, const KeyNames& names, const std::string& file,
@@ -178,6 +190,9 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
             "\"/>\n";
   };
   for (const char* name : {"x", "y", "c_xx", "c_xy", "c_yy"}) declare("node", "n_", name);
+  if (has_headings(map)) {
+    for (const char* name : {"heading", "sd_heading"}) declare("node", "n_", name);
+  }
   for (const char* name :
        {"traversals", "stretch", "orientation", "dx", "dy", "c_xx", "c_xy", "c_yy"}) {
     declare("edge", "e_", name);
@@ -189,6 +204,8 @@ std::string format_map_graphml(const LandmarkGraph& map, const std::string& comm
     write_data(text, "n_x", landmark.position.x());
     write_data(text, "n_y", landmark.position.y());
     if (landmark.covariance) write_covariance(text, "n_", *landmark.covariance);
+    if (landmark.heading) write_data(text, "n_heading", *landmark.heading);
+    if (landmark.sd_heading) write_data(text, "n_sd_heading", *landmark.sd_heading);
     text += "    </node>\n";
   }
   for (int number = 0; number < map.routes(); ++number) {

@@ -88,6 +88,11 @@ void LandmarkGraph::set_covariance(int landmark, const Matrix2& covariance) {
   landmarks_[idx(landmark)].covariance = covariance;
 }
 
+void LandmarkGraph::set_heading(int landmark, double heading, std::optional<double> sd) {
+  landmarks_[idx(landmark)].heading = heading;
+  landmarks_[idx(landmark)].sd_heading = sd;
+}
+
 const Landmark& LandmarkGraph::landmark(int number) const {
   return landmarks_[idx(number)];
 }

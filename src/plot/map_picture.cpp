@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -65,6 +66,17 @@ std::string cross(const Frame& view, const Vector2& at) {
       y - r, 2 * r, 2 * r, -2 * r, 2 * r, -2 * r);
 }
 
+/// From a landmark's joint along its own axis.
+std::string tick(const Frame& view, const Vector2& at, double heading) {
+  constexpr double kLength = 14.0;
+  const double x = view.x(at);
+  const double y = view.y(at);
+  return fmt::format(
+      "<line class=\"axis\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
+      "stroke-width=\"1.60\"/>\n",
+      x, y, x + kLength * std::cos(heading), y - kLength * std::sin(heading));
+}
+
 /// The largest of 1, 2, 5 times a power of ten that is at most `length`.
 double round_length(double length) {
   const double power = std::pow(10.0, std::floor(std::log10(length)));
@@ -105,7 +117,8 @@ std::string header(const MapPicture& picture, const Frame& view) {
 constexpr const char* kMapStyle =
     "<style>text{font:13px system-ui,sans-serif;fill:#222}.title{font-size:17px;font-weight:600}"
     ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.after{stroke:#111}"
-    ".joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:1.6;fill:none}"
+    ".axis{stroke:#1b6ca8}.joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:"
+    "1.6;fill:none}"
     ".scale{stroke:#222;fill:none}</style>\n";
 
 }  // namespace
@@ -150,6 +163,9 @@ std::string draw_map(const MapPicture& picture) {
     body += line(view, after(route.source), after(route.target), "after", width);
   }
   for (int k = 0; k < picture.map.landmarks(); ++k) {
+    if (const std::optional<double>& heading = picture.map.landmark(k).heading) {
+      body += tick(view, after(k), *heading + lay.angle);
+    }
     body += fmt::format("<circle class=\"joint\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.6\"/>\n",
                         view.x(after(k)), view.y(after(k)));
   }

@@ -3,7 +3,7 @@
 //
 // A map as a picture (SVG): before correction grey, after black, true positions as crosses, like
 // Figures 7 and 8 of Golfarelli, Maio & Rizzi (1998). Routes are drawn straight; a route's width
-// grows with its traversals.
+// grows with its traversals. A tick at a landmark is its own axis, where it has one.
 #pragma once
 
 #include "trussmap/build_map.hpp"

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -99,6 +101,32 @@ ChartLayer bar_layer(const Drawn& drawn) {
   return layer;
 }
 
+/// Ticks from landmarks along their own axes, as long as a share of the map.
+ChartLayer axis_layer(const Drawn& drawn) {
+  constexpr double kShare = 0.025;
+  const MapPicture& picture = drawn.picture;
+  ChartLayer layer{LayerKind::net, "axis of the landmark", {{"x [m]"}, {"y [m]"}}, "2"};
+  Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity());
+  Vector2 high = -low;
+  for (int k = 0; k < picture.map.landmarks(); ++k) {
+    const Vector2 at = picture.map_onto_truth.apply(picture.map.landmark(k).position);
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  const double length = kShare * (high - low).maxCoeff();
+  for (int k = 0; k < picture.map.landmarks(); ++k) {
+    const Landmark& one = picture.map.landmark(k);
+    if (!one.heading) continue;
+    const Vector2 at = picture.map_onto_truth.apply(one.position);
+    const Vector2 axis = rotation(*one.heading + picture.map_onto_truth.angle).col(0);
+    for (const Vector2& p : {at, Vector2(at + length * axis), Vector2(kAbsent, kAbsent)}) {
+      layer.columns[0].numbers.push_back(p.x());
+      layer.columns[1].numbers.push_back(p.y());
+    }
+  }
+  return layer;
+}
+
 void add_landmarks(Chart& chart, const Drawn& drawn) {
   const MapPicture& picture = drawn.picture;
   ChartLayer dots{LayerKind::dots,
@@ -138,6 +166,8 @@ void add_landmarks(Chart& chart, const Drawn& drawn) {
   if (!truth.columns[2].texts.empty()) chart.layers.push_back(std::move(truth));
   ChartLayer ellipse = ellipse_layer("95 % ellipse", ellipses, "1");
   if (!ellipse.columns[0].numbers.empty()) chart.layers.push_back(std::move(ellipse));
+  ChartLayer axes = axis_layer(drawn);
+  if (!axes.columns[0].numbers.empty()) chart.layers.push_back(std::move(axes));
   chart.layers.push_back(std::move(dots));
   if (few) chart.layers.push_back(std::move(names));
 }
@@ -241,6 +271,12 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   page.tone = built.good() ? Tone::good : Tone::bad;
   page.facts.push_back({fmt::format("{:.3f} m", built.quality.median_sd),
                         "standard error of landmarks (median)", page.tone});
+  if (built.quality.oriented > 0) {
+    page.facts.push_back(
+        {fmt::format("{:.2f}\u00b0", built.quality.median_sd_heading * 180.0 / std::numbers::pi),
+         fmt::format("standard error of the axes of {} landmarks (median)",
+                     built.quality.oriented)});
+  }
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;
     page.facts.push_back({fmt::format("{:.3f} m", survey.rigid.rms), "map off the survey (rms)"});

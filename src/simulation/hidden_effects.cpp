@@ -63,6 +63,9 @@ class Draw {
         variables_(motion_variables(motion, true_rates(motion), robot.wheelbase)),
         random_(random_stream(seed, Stream::hidden)) {
     for (const CatalogueEntry& entry : catalogue()) {
+      // Robots without markers draw from the same list as before there were any.
+      const bool of_yaws = entry.channel == Channel::sighting_yaw;
+      if (of_yaws && !(robot.markers && surveyed)) continue;
       if (is_of_drive(entry.channel, Robot())) entries_.push_back(entry);
     }
   }

@@ -84,18 +84,31 @@ MeasurementRows HeldOutFilter::rows(std::size_t k) const {
   return measurement_rows(problem_, one, state_, one.value, view_of(border_, offsets_, one));
 }
 
+bool HeldOutFilter::is_known(int node) const {
+  if (problem_.is_orientation(node)) {
+    return !std::isnan(state_.orientations[idx(node - problem_.pose_end())]);
+  }
+  return !std::isnan(state_.landmarks[idx(node)].x());
+}
+
+Eigen::MatrixXd HeldOutFilter::covariance(int node) const {
+  if (!problem_.is_orientation(node)) return covariances_[idx(node)];
+  return Eigen::MatrixXd::Constant(1, 1, orientation_variances_[idx(node - problem_.pose_end())]);
+}
+
 FilterStep HeldOutFilter::see(std::size_t k) {
   const Measurement& one = problem_.measurements[k];
   FilterStep slopes;
   slopes.measurement = static_cast<std::ptrdiff_t>(k);
-  if (one.to >= 0 && std::isnan(state_.landmarks[idx(one.to)].x())) return slopes;
+  if (one.to >= 0 && !is_known(one.to)) return slopes;
   const MeasurementRows rows = this->rows(k);
   const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
   const Eigen::MatrixXd H = W * rows.by_from.topRows(one.rows);
   const Eigen::VectorXd error = W * rows.error.head(one.rows);
   Eigen::MatrixXd S = H * P_ * H.transpose() + Eigen::MatrixXd::Identity(one.rows, one.rows);
-  const Eigen::MatrixXd by_landmark = W * rows.by_to.topLeftCorner(one.rows, 2);
-  if (one.to >= 0) S += by_landmark * covariances_[idx(one.to)] * by_landmark.transpose();
+  const int size = one.to < 0 ? 0 : problem_.size_of(one.to);
+  const Eigen::MatrixXd by_seen = W * rows.by_to.topLeftCorner(one.rows, size);
+  if (one.to >= 0) S += by_seen * covariance(one.to) * by_seen.transpose();
   const Eigen::MatrixXd gain = P_ * H.transpose() * S.inverse();
   const Eigen::Vector3d change = -gain * error;
   Pose& pose = at(one.from);
@@ -106,8 +119,8 @@ FilterStep HeldOutFilter::see(std::size_t k) {
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   slopes.A -= gain * H;
   slopes.B.leftCols(one.rows) = -gain;
-  slopes.landmark = one.to;
-  if (one.to >= 0) slopes.L = -gain * by_landmark;
+  slopes.seen = one.to;
+  if (one.to >= 0) slopes.L.leftCols(size) = -gain * by_seen;
   return slopes;
 }
 

@@ -16,26 +16,29 @@ namespace trussmap {
 /// One step of the filter, as it would move with further effects:
 ///   s' = A s + B c + L dl     s    what one unit of a coefficient moves the estimate by
 ///                             c    the measurement's whitened rows by the coefficient
-///                             dl   what it moves the measurement's landmark by
+///                             dl   what it moves the measurement's landmark by, or of a yaw the
+///                                  landmark's orientation (in the first column of L)
 struct FilterStep {
   std::ptrdiff_t measurement = -1;  ///< -1: a new session begins
   Matrix3 A = Matrix3::Identity();
   Eigen::Matrix<double, 3, 4> B = Eigen::Matrix<double, 3, 4>::Zero();
   Eigen::Matrix<double, 3, 2> L = Eigen::Matrix<double, 3, 2>::Zero();
-  int landmark = -1;
+  int seen = -1;  ///< node
 };
 
 class HeldOutFilter {
  public:
-  /// Keeps references to all but the map, whose unknown landmarks are NaN.
+  /// Keeps references to all but the map, whose unknown landmarks and orientations are NaN.
   HeldOutFilter(const RecordingProblem& problem, const EffectParameters& border,
                 const Eigen::VectorXd& offsets, const RecordingState& map,
-                const std::vector<Matrix2>& map_covariances)
+                const std::vector<Matrix2>& map_covariances,
+                const std::vector<double>& orientation_variances)
       : problem_(problem),
         border_(border),
         offsets_(offsets),
         state_(map),
-        covariances_(map_covariances) {}
+        covariances_(map_covariances),
+        orientation_variances_(orientation_variances) {}
 
   void start(int node, const Pose& pose);
   [[nodiscard]] const Pose& pose(int node) const {
@@ -43,12 +46,15 @@ class HeldOutFilter {
   }
   /// Along a segment: its compass innovation first, which shares noise with its motion.
   FilterStep drive(std::size_t segment);
-  /// A sighting of a known landmark, or a truth row.
+  /// A sighting of a known landmark, a yaw of one with a known orientation, or a truth row.
   FilterStep see(std::size_t measurement);
   /// What a sighting or truth row says at the present estimate, of its pose.
   [[nodiscard]] MeasurementRows rows(std::size_t measurement) const;
 
  private:
+  [[nodiscard]] bool is_known(int node) const;
+  /// m^2 or rad^2.
+  [[nodiscard]] Eigen::MatrixXd covariance(int node) const;
   Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
 
   const RecordingProblem& problem_;
@@ -56,6 +62,7 @@ class HeldOutFilter {
   const Eigen::VectorXd& offsets_;
   RecordingState state_;
   const std::vector<Matrix2>& covariances_;
+  const std::vector<double>& orientation_variances_;
   Matrix3 P_ = Matrix3::Zero();
 };
 

@@ -43,7 +43,12 @@ Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,
     if (step.measurement < 0) return;
     const auto c = rows_of(static_cast<std::size_t>(step.measurement));
     s += step.B.leftCols(c.rows()) * c;
-    if (step.landmark >= 0) s += step.L * landmarks.middleRows(2 * step.landmark, 2);
+    if (step.seen < 0) return;
+    const int size = problem_.size_of(step.seen);
+    const int row = problem_.is_orientation(step.seen)
+                        ? 2 * problem_.landmark_count() + step.seen - problem_.pose_end()
+                        : 2 * step.seen;
+    s += step.L.leftCols(size) * landmarks.middleRows(row, size);
   };
   const auto seen = [&](const LegEnd& end, const Eigen::MatrixXd& s) -> Eigen::MatrixXd {
     const auto c = rows_of(end.measurement);
@@ -108,7 +113,7 @@ HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
 bool HeldOutLegs::same_layout(const RecordingProblem& problem) const {
   const auto& ours = problem_.measurements;
   const auto& theirs = problem.measurements;
-  return problem_.landmarks == problem.landmarks &&
+  return problem_.landmarks == problem.landmarks && problem_.oriented == problem.oriented &&
          std::equal(ours.begin(), ours.end(), theirs.begin(), theirs.end(),
                     [](const Measurement& a, const Measurement& b) {
                       return a.kind == b.kind && a.from == b.from && a.to == b.to &&

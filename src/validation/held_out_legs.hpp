@@ -24,8 +24,9 @@ class HeldOutLegs {
   [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }
 
   /// What one unit of further coefficients does, to first order, from their whitened columns over
-  /// all measurements (ColumnBuilder) and what they move the landmarks by (two rows each): per leg
-  /// six rows, of the arrival error, the predicted chord and the true one.
+  /// all measurements (ColumnBuilder) and what they move the landmarks by (two rows each, then one
+  /// for each orientation): per leg six rows, of the arrival error, the predicted chord and the
+  /// true one.
   [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
                                        const Eigen::MatrixXd& landmarks) const;
   /// Metrics with the legs' predictions moved by that much (empty: not at all).

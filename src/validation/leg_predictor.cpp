@@ -70,6 +70,30 @@ KnownMap known_map(const RecordingProblem& problem, const FitState& training, bo
   return map;
 }
 
+/// Orientations of a problem where the training has them, else where a survey does, else NaN.
+void know_orientations(const FitState& training, bool survey,
+                       const std::vector<Recording>& recordings, TrainedModel& result) {
+  std::map<std::string, std::pair<double, double>> known;  // rad, rad^2
+  const double surveyed = std::pow(training.model.noise.yaw, 2);
+  for (const Recording& recording : recordings) {
+    for (const SurveyPoint& point : recording.survey) {
+      if (survey && !std::isnan(point.heading)) known[point.landmark] = {point.heading, surveyed};
+    }
+  }
+  const RecordingAdjustment& fit = training.adjustment;
+  for (std::size_t k = 0; k < training.problem.oriented.size(); ++k) {
+    if (std::isnan(fit.orientation_sds[k])) continue;
+    known[training.problem.landmarks[idx(training.problem.oriented[k])]] = {
+        fit.state.orientations[k], std::pow(fit.orientation_sds[k], 2)};
+  }
+  for (const int landmark : result.problem.oriented) {
+    const auto found = known.find(result.problem.landmarks[idx(landmark)]);
+    const bool is_known = found != known.end();
+    result.state.orientations.push_back(is_known ? found->second.first : kAbsent);
+    result.orientation_variances.push_back(is_known ? found->second.second : 0.0);
+  }
+}
+
 std::string landmark_of(const RecordingProblem& problem, const Measurement& one) {
   return one.to < 0 ? std::string() : problem.landmarks[idx(one.to)];
 }
@@ -93,6 +117,7 @@ TrainedModel trained_model(const FitState& training, const std::vector<Recording
   KnownMap map = known_map(result.problem, training, options.survey, recordings);
   result.state.landmarks = std::move(map.places);
   result.covariances = std::move(map.covariances);
+  know_orientations(training, options.survey, recordings, result);
   for (const PoseNode& node : result.problem.poses) {
     const std::size_t session = idx(node.session);
     result.state.poses.push_back(
@@ -106,13 +131,13 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
       problem_(trained.problem),
       legs_(legs),
       events_(trained.problem.poses.size()),
-      filter_(trained.problem, trained.effects, trained.offsets, trained.state,
-              trained.covariances) {
+      filter_(trained.problem, trained.effects, trained.offsets, trained.state, trained.covariances,
+              trained.orientation_variances) {
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     // What lies ahead is not known yet, and a loop ties it to what lies behind.
     if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::loop) continue;
-    if (is_of_orientation(one.kind)) continue;
+    if (one.kind == MeasurementKind::survey_heading) continue;
     if (one.kind == MeasurementKind::gyro) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
     if (one.kind == MeasurementKind::segment) {

@@ -22,8 +22,9 @@ struct TrainedModel {
   RecordingProblem problem;
   EffectParameters effects;
   Eigen::VectorXd offsets;           ///< of the effects' coefficients from their references
-  RecordingState state;              ///< landmarks that are not known: NaN
+  RecordingState state;              ///< landmarks and orientations that are not known: NaN
   std::vector<Matrix2> covariances;  ///< of the landmarks, m^2
+  std::vector<double> orientation_variances;  ///< rad^2
 };
 
 /// Landmarks that the training has not are where a survey in use has them.

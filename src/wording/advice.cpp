@@ -58,6 +58,11 @@ std::vector<std::string> in_words(const std::vector<DataLack>& lacks) {
 
 Advice advice_on(const Unobservable& unseen) {
   constexpr const char* kSurvey = "measure the positions of a few landmarks (survey.csv)";
+  const bool hides = unseen.why == Unseen::in_the_map || unseen.why == Unseen::absorbed;
+  if (unseen.effect.channel == Channel::sighting_yaw && hides) {
+    return {"", "without measured headings of landmarks their axes turn with it",
+            "measure the headings of a few landmarks (survey.csv, heading)"};
+  }
   switch (unseen.why) {
     case Unseen::never_happens:
       return {"", "what it depends on never occurs in these data",

@@ -43,6 +43,10 @@ const Separation kSeparations[] = {
      "body, or sight landmarks with a bearing sensor fixed to it"},
     {[](const Effect& e) { return e.channel == Channel::lever; }, is_turn,
      "no drive that stands on landmarks tells these apart: measure where the sensor sits"},
+    {[](const Effect& e) { return e.channel == Channel::sighting_yaw; },
+     [](const Effect& e) { return e.channel == Channel::compass || e.channel == Channel::bearing; },
+     "survey where more landmarks are and how their axes point, and meet them on several headings: "
+     "positions tell the compass and bearings, headings the yaws"},
     {[](const Effect& e) { return e.channel == Channel::compass; },
      [](const Effect& e) { return e.channel == Channel::compass; },
      "turn on the spot with other loads and at other places, read the compass at rest, then with "

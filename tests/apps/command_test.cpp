@@ -155,6 +155,27 @@ TEST(Command, SimulateBuildAndConvertGoTogether) {
   EXPECT_NE(files.at("m.svg").find("</svg>"), std::string::npos);
 }
 
+TEST(Command, BuildShowsHowLandmarksAreTurned) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --markers --seed 6 --out " + at + "/r").status, 0);
+  const Ran built = run_trussmap("build " + at + "/r --model " + at + "/r/model.toml --out " + at +
+                                 "/m.graphml --json " + at + "/m.json --csv " + at + "/p.csv");
+  ASSERT_EQ(built.status, 0) << built.output;
+  EXPECT_NE(built.output.find("landmarks with orientation          9  of 9, their axes good to 0."),
+            std::string::npos)
+      << built.output;
+  const json result = read_json(scratch.path() / "m.json");
+  EXPECT_EQ(result["quality"]["oriented"], 9);
+  EXPECT_LT(result["quality"]["median_sd_heading_rad"].get<double>(), 0.02);
+  const json& one = result["positions"]["L1_1"];
+  EXPECT_LE(std::abs(one["heading"].get<double>()), 3.1416);
+  EXPECT_GT(one["sd_heading"].get<double>(), 0.0);
+  const auto files = scratch.contents();
+  EXPECT_EQ(files.at("p.csv").rfind("landmark,x,y,c_xx,c_xy,c_yy,heading,sd_heading\n", 0), 0U);
+  EXPECT_NE(files.at("m.graphml").find("<data key=\"n_sd_heading\">"), std::string::npos);
+}
+
 TEST(Command, TheSameSeedGivesTheSameFiles) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string();

@@ -26,6 +26,7 @@ struct Equipment {
   bool survey = true;
   bool views = false;
   bool truth = false;
+  bool markers = false;
 
   [[nodiscard]] std::string text() const {
     return std::string("sightings") + (compass ? "Compass" : "") + (survey ? "Survey" : "") +
@@ -61,6 +62,7 @@ World world_of(const Equipment& equipment, std::uint64_t seed, int effects = 0) 
   WheeledRobot robot;
   robot.compass = equipment.compass;
   robot.range_sensor = equipment.views;
+  robot.markers = equipment.markers;
   SimulatedEffects acting;
   if (effects > 0) {
     acting.effects = draw_hidden_effects(mesh, tours.walk, {}, robot, equipment.survey, seed);
@@ -356,6 +358,39 @@ TEST(Check, HealthyRecordingsHaveNoFinding) {
 
 TEST(SlowCheck, FiveHundredHealthyRecordingsHaveNoFinding) {
   expect_no_finding(32);
+}
+
+/// With markers, seeds 300 to 304; with and without a compass, standing on them or seeing them.
+TEST(Check, YawsThatAreWrongAreNamed) {
+  const auto kinds_of = [](const World& world) {
+    std::set<std::string> kinds;
+    for (const CheckFinding& one : check_recordings({world.recording}, &world.model, "model")) {
+      kinds.insert(one.kind);
+    }
+    return kinds;
+  };
+  for (const bool compass : {false, true}) {
+    for (std::uint64_t seed = 300; seed < 305; ++seed) {
+      const bool views = seed % 2 == 0;
+      const World healthy = world_of({compass, true, views, false, true}, seed);
+      EXPECT_TRUE(kinds_of(healthy).empty()) << seed;
+      World world = healthy;
+      for (Sighting& one : world.recording.sightings) one.yaw = -one.yaw;
+      const std::set<std::string> clockwise = kinds_of(world);
+      EXPECT_TRUE(clockwise.contains("yaws clockwise") || clockwise.contains("turns opposite"))
+          << seed;
+      for (Sighting& one : world.recording.sightings) one.yaw *= -kDegrees;
+      EXPECT_EQ(kinds_of(world), std::set<std::string>{"angle unit"}) << seed;
+      for (Sighting& one : world.recording.sightings) one.yaw *= -1.0;
+      EXPECT_TRUE(kinds_of(world).contains("angle unit")) << seed;
+      world = healthy;
+      for (SurveyPoint& one : world.recording.survey) one.heading *= kDegrees;
+      EXPECT_EQ(kinds_of(world), std::set<std::string>{"angle unit"}) << seed;
+      world = healthy;
+      std::swap(world.recording.drive.left, world.recording.drive.right);
+      EXPECT_TRUE(kinds_of(world).contains("wheels exchanged")) << seed;
+    }
+  }
 }
 
 TEST(Check, TheSameSessionTwice) {

@@ -100,7 +100,8 @@ TEST(Catalogue, KnowsEveryEffectThatTheProjectNames) {
                            "lever arm",
                            "range bias",
                            "range scale",
-                           "bearing offset"}) {
+                           "bearing offset",
+                           "yaw offset"}) {
     const CatalogueEntry* entry = find_entry(name);
     ASSERT_NE(entry, nullptr) << name;
     EXPECT_FALSE(entry->cause.empty() || entry->remedy.empty()) << name;

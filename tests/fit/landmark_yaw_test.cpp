@@ -107,6 +107,56 @@ TEST(LandmarkYaw, TellsTheHeadingOfARobotWithoutCompass) {
   EXPECT_LT(with, 0.5 * without);
 }
 
+/// One surveyed tag ties a robot without compass to the map, wherever it looks as it starts: seeds
+/// 30 to 35.
+TEST(LandmarkYaw, OneSurveyedTagTellsPlaceAndHeading) {
+  for (std::uint64_t seed = 30; seed < 36; ++seed) {
+    PlacedOptions options = with_markers();
+    options.sees = std::nullopt;
+    PlacedDrive drive = placed_drive(options, seed);
+    // The map turned by this much about the origin: the robot starts anywhere, looking anywhere.
+    const double turn = static_cast<double>(seed);
+    const Matrix2 R = rotation(turn);
+    SurveyPoint tag = drive.recording.survey[seed % drive.recording.survey.size()];
+    const Vector2 place = R * Vector2(tag.x, tag.y);
+    tag = {tag.landmark, place.x(), place.y(), 0.01, wrap_angle(tag.heading + turn)};
+    drive.recording.survey = {tag};
+    const ModelFit fit = fit_model({drive.recording}, drive.model);
+    EXPECT_LT(fit.chi2, 1.5 * fit.dof) << seed;
+    // The yaw is good to 0.03 rad in all, the way 10 m long.
+    EXPECT_LT(path_error(drive, fit, {0.0, 0.0, turn}), 1.0) << seed;
+  }
+}
+
+/// Two sessions with a survey each: equal headings count once, different ones at the same place
+/// twice.
+TEST(LandmarkYaw, SeveralSurveyedHeadingsOfALandmarkCount) {
+  const PlacedDrive drive = placed_drive(with_markers(), 9);
+  Recording again = placed_drive(with_markers(), 10).recording;
+  again.name = "again";
+  again.survey = drive.recording.survey;
+  const auto dof = [&](const std::vector<SurveyPoint>& survey) {
+    Recording second = again;
+    second.survey = survey;
+    return fit_model({drive.recording, second}, drive.model).dof;
+  };
+  std::vector<SurveyPoint> other = again.survey;
+  const int once = dof(again.survey);
+  other.front().heading += 0.01;
+  EXPECT_EQ(dof(other), once + 1);
+  other.front().heading = kAbsent;
+  EXPECT_EQ(dof(other), once);
+  other.front() = again.survey.front();
+  other.front().x += 0.01;
+  EXPECT_EQ(dof(other), once + 3);
+  // It may as well be the later session that has headings at all.
+  std::vector<SurveyPoint> plain = again.survey;
+  for (SurveyPoint& one : plain) one.heading = kAbsent;
+  Recording first = drive.recording;
+  first.survey = plain;
+  EXPECT_EQ(fit_model({first, again}, drive.model).dof, once);
+}
+
 /// A wrong yaw is left out and named; the sighting that it came with stays.
 TEST(LandmarkYaw, WrongOnesAreLeftOut) {
   PlacedDrive drive = placed_drive(with_markers(), 8);

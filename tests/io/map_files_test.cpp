@@ -36,6 +36,39 @@ TEST(MapFiles, TheEndingSaysTheFormat) {
   EXPECT_FALSE(is_map_file("m.txt"));
 }
 
+/// Landmarks with an axis and its error, with an axis alone, and with none.
+LandmarkGraph oriented_map() {
+  LandmarkGraph map;
+  map.add_landmark("tag", {0.5, 0.25});
+  map.set_heading(0, 1.0 / 3.0, 0.1 / 7.0);
+  map.add_landmark("code", {1.0, 2.0});
+  map.set_heading(1, -3.0);
+  map.add_landmark("pole", {4.0, 2.0});
+  return map;
+}
+
+TEST(MapFiles, OrientationsAreReadBackWithoutLoss) {
+  const ScratchFolder scratch;
+  const LandmarkGraph map = oriented_map();
+  const auto file = scratch.path() / "m.graphml";
+  write_file(file, format_map(map, file));
+  const LandmarkGraph back = read_map(file);
+  ASSERT_EQ(back.landmarks(), 3);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(back.landmark(k).heading, map.landmark(k).heading) << k;
+    EXPECT_EQ(back.landmark(k).sd_heading, map.landmark(k).sd_heading) << k;
+  }
+  EXPECT_EQ(format_map_graphml(back), format_map_graphml(map));
+  const std::string geojson = format_geojson(map);
+  EXPECT_NE(geojson.find("\"heading\": -3.0"), std::string::npos) << geojson;
+  EXPECT_NE(geojson.find("\"sd_heading\": 0.0142857"), std::string::npos) << geojson;
+  EXPECT_EQ(format_positions(map),
+            "landmark,x,y,heading,sd_heading\n"
+            "tag,0.5,0.25,0.3333333333333333,0.014285714285714287\n"
+            "code,1,2,-3,\n"
+            "pole,4,2,,\n");
+}
+
 std::string message_of(const std::filesystem::path& file) {
   try {
     (void)read_map(file);
@@ -43,6 +76,25 @@ std::string message_of(const std::filesystem::path& file) {
     return error.what();
   }
   return "read without complaint";
+}
+
+TEST(MapFiles, AnOrientationThatIsNoneIsRefused) {
+  const ScratchFolder scratch;
+  const auto refused = [&](const std::string& data) {
+    scratch.write("m.graphml",
+                  "<graphml><graph edgedefault=\"undirected\">\n<node id=\"A\">"
+                  "<data key=\"x\">0</data><data key=\"y\">0</data>" +
+                      data + "</node></graph></graphml>");
+    return message_of(scratch.path() / "m.graphml");
+  };
+  const auto says = [](const std::string& text, const char* what) {
+    return text.find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(says(refused("<data key=\"heading\">north</data>"),
+                   ":2: landmark A: heading is \"north\", expected a finite number"));
+  EXPECT_TRUE(says(refused("<data key=\"heading\">1</data><data key=\"sd_heading\">-1</data>"),
+                   "sd_heading is negative, expected 0 or more"));
+  EXPECT_EQ(refused("<data key=\"heading\">1</data>"), "read without complaint");
 }
 
 TEST(MapFiles, WhatIsNoMapIsRefusedByTheFilesName) {

@@ -70,6 +70,24 @@ TEST(HiddenEffects, KeepToWhatTheRobotHas) {
   }
 }
 
+/// A turned camera shows where there are markers and a survey, and there alone.
+TEST(HiddenEffects, AYawOffsetNeedsMarkersAndASurvey) {
+  Field f = field();
+  const auto drawn = [&](bool surveyed, std::uint64_t seeds) {
+    int count = 0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      for (const Effect& effect : draw_hidden_effects(f.motion, f.mesh, f.robot, surveyed, seed)) {
+        count += effect.channel == Channel::sighting_yaw ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  EXPECT_EQ(drawn(true, 40), 0);
+  f.robot.markers = true;
+  EXPECT_GT(drawn(true, 150), 0);
+  EXPECT_EQ(drawn(false, 40), 0);
+}
+
 TEST(HiddenEffects, AreDrawnFromTheirSeed) {
   const Field f = field();
   const std::vector<Effect> a = draw_hidden_effects(f.motion, f.mesh, f.robot, true, 7);

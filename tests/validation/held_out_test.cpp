@@ -3,7 +3,9 @@
 #include "trussmap/held_out.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "criticism/score_test.hpp"
 #include "estimation/recording_problem.hpp"
+#include "fit/placed_drives.hpp"
 #include "trussmap/catalogue.hpp"
 #include "validation/held_out_legs.hpp"
 #include "validation/leg_spans.hpp"
@@ -209,6 +211,49 @@ TEST(HeldOut, NothingLeaksFromHeldOutLegs) {
     EXPECT_GT(fit_recordings({bad}, model).adjustment.chi2,
               1.2 * fit_recordings({clean}, model).adjustment.chi2)
         << name;
+  }
+}
+
+/// A robot without compass that stands on its tags knows its heading at each by a good yaw: seeds
+/// 60 to 64.
+TEST(HeldOut, YawsTellTheHeadingAtALegsStart) {
+  double with = 0.0;
+  double without = 0.0;
+  for (std::uint64_t seed = 60; seed < 65; ++seed) {
+    testing::PlacedOptions options;
+    options.markers = options.landmarks = true;
+    options.yaw_sd = 0.002;
+    options.tours = 3;
+    testing::PlacedDrive drive = testing::placed_drive(options, seed);
+    with += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+    for (Sighting& one : drive.recording.sightings) one.yaw = kAbsent;
+    without += std::pow(predicted({drive.recording}, drive.model).arrival_rms, 2);
+  }
+  EXPECT_LT(with, 0.8 * without);
+}
+
+/// A drive without noise whose yaws err: what their effect would move the predictions by, to first
+/// order and with the landmarks' shifts of the fit to all legs, takes most of the error away.
+TEST(HeldOut, SlopesOfAYawEffectTakeItsErrorAway) {
+  for (const auto& [shape, g] : {std::pair{"t", 1e-4}, std::pair{"sin(heading)", 1e-2}}) {
+    testing::PlacedOptions options;
+    options.markers = options.landmarks = true;
+    options.noise = false;
+    options.tours = 3;
+    options.effects = {{"turned", Channel::sighting_yaw, {shape}, {g}, false}};
+    const testing::PlacedDrive drive = testing::placed_drive(options, 66);
+    const FitState fit = fit_recordings({drive.recording}, drive.model);
+    const HeldOutLegs legs({drive.recording}, fit, FitterOptions());
+    ASSERT_GT(legs.metrics().legs.size(), 5U);
+    Effect open = options.effects.front();
+    open.coefficients.clear();
+    const ScoreTest test(fit);
+    const Score score = test.test({open}).front();
+    ASSERT_EQ(score.dof, 1);
+    const Eigen::VectorXd change = g * legs.slopes(score.columns, score.landmarks).col(0);
+    const double before = legs.metrics().arrival_rms;
+    EXPECT_LT(legs.moved(change).arrival_rms, 0.5 * before) << shape;
+    EXPECT_GT(legs.moved(-change).arrival_rms, 1.5 * before) << shape;
   }
 }
 
