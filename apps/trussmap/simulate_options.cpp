@@ -119,6 +119,11 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
                    "The robot has a gyro: drive.csv gets a column yaw_rate");
   add_positive("--gyro-noise", options.gyro_noise,
                "Angle random walk of the gyro [rad/s^1/2]: how its heading errs after a second");
+  command
+      .add_option("--gyro-walk", options.gyro_walk,
+                  "How the gyro's bias walks [rad/s per s^1/2]; model.toml does not state it")
+      .check(zero_or_more())
+      .capture_default_str();
   command.add_flag(
       "--range-sensor", options.range_sensor,
       "From each stop the robot also sees landmarks in reach (half of them, at random) "
@@ -169,6 +174,7 @@ WheeledRobot make_robot(const SimulateOptions& options) {
   robot.compass = !options.no_compass;
   robot.gyro = options.gyro;
   robot.noise.gyro = options.gyro_noise;
+  robot.noise.gyro_walk = options.gyro_walk;
   robot.range_sensor = options.range_sensor || options.ranges_alone || options.bearings_alone;
   if (options.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
   if (options.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;

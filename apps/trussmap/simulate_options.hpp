@@ -39,6 +39,7 @@ struct SimulateOptions {
   bool bearings_alone = false;
   bool rests = false;
   double gyro_noise = 0.0005;        // rad/s^1/2
+  double gyro_walk = 0.0;            // rad/s per s^1/2
   double reach = 8.0;                // m
   double fix_rate = 0.0;             // Hz
   double fix_noise = 0.05;           // m

@@ -3,6 +3,7 @@
 #include "criticism/diagnosis.hpp"
 
 #include "criticism/data_lacks.hpp"
+#include "criticism/defence.hpp"
 #include "criticism/effect_search.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/noise_beside.hpp"
@@ -312,9 +313,11 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   auto under = std::make_shared<const FitWithNoise>(with_noise_beside(recordings, fit, stated));
   DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
   const std::vector<Effect> missing = effects_found(run.result);
-  if (!missing.empty() && !(under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway)) {
+  if (!missing.empty()) {
+    const bool as_stated = under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway;
     Defended defended = defended_against_noise(
-        recordings, *under, stated, missing, static_cast<double>(run.result.tried), options.level);
+        recordings, *under, missing,
+        {stated, static_cast<double>(run.result.tried), options.level, as_stated});
     if (defended.otherwise) {
       under = std::make_shared<const FitWithNoise>(std::move(*defended.otherwise));
       run = Diagnostician(recordings, under->fit, options).run();

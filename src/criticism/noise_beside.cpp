@@ -52,19 +52,6 @@ Eigen::MatrixXd suspects(const FitState& fit) {
   return columns;
 }
 
-/// Whether an effect is the mean of a process that this noise has beyond that one. Of such an
-/// effect one asks without any search: a walk, say, begins at 0, and a gyro that walks has a bias.
-bool is_mean_of_new_process(const Effect& effect, const Noise& noise, const Noise& before) {
-  const auto is_new = [&before](const NoiseProcess& one) {
-    return std::none_of(before.processes.begin(), before.processes.end(),
-                        [&one](const NoiseProcess& other) { return is_same_source(one, other); });
-  };
-  return effect.is_constant() &&
-         std::any_of(noise.processes.begin(), noise.processes.end(), [&](const NoiseProcess& one) {
-           return one.channel == effect.channel && is_new(one);
-         });
-}
-
 }  // namespace
 
 FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
@@ -92,49 +79,6 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
     result.fit = refit(recordings, model, result.fit);
     if (!result.noise.changed()) break;
   }
-  return result;
-}
-
-Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
-                                const Noise& stated, const std::vector<Effect>& effects,
-                                double tried, double level) {
-  const FitState& state = *found.fit.state;
-  const ScoreTest tests(state);
-  std::vector<Eigen::MatrixXd> columns;
-  columns.reserve(effects.size());
-  for (const Effect& one : effects) columns.push_back(tests.columns(one));
-  const auto together = [&](const std::vector<bool>& wanted) {
-    Eigen::MatrixXd all(tests.system().rows(), 0);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      if (wanted[k]) append_columns(all, columns[k]);
-    }
-    return all;
-  };
-  NoiseFitOptions options;
-  options.errors = false;
-  Defended result;
-  result.effects.assign(effects.size(), true);
-  NoiseReml reml(state, stated);
-  const double with_all =
-      minus_two_log_under(reml, found.fit.model.noise, together(result.effects));
-  const std::vector<bool> all = result.effects;
-  for (std::size_t k = 0; k < effects.size(); ++k) {
-    std::vector<bool> others = all;
-    others[k] = false;
-    const FittedNoise noise = fit_noise(reml, together(others), options);
-    if (noise.noise == found.fit.model.noise) continue;
-    const double without = minus_two_log_under(reml, noise.noise, together(others));
-    const double p =
-        chi2_p_value(std::max(0.0, without - with_all), static_cast<int>(columns[k].cols()));
-    const bool natural = is_mean_of_new_process(effects[k], noise.noise, found.fit.model.noise);
-    result.effects[k] = (natural ? 1.0 : tried) * p < level;
-  }
-  if (result.effects == all) return result;
-  FitWithNoise otherwise{found.fit, fit_noise(reml, together(result.effects), options)};
-  Model model = found.fit.model;
-  model.noise = otherwise.noise.noise;
-  otherwise.fit = refit(recordings, model, found.fit);
-  result.otherwise = std::move(otherwise);
   return result;
 }
 

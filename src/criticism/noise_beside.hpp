@@ -15,7 +15,6 @@
 
 #include "fit/noise_fit.hpp"
 
-#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -23,20 +22,5 @@ namespace trussmap {
 /// `stated`: the noise that sizes are kept at where they can be. Throws as refit does.
 [[nodiscard]] FitWithNoise with_noise_beside(const std::vector<Recording>& recordings,
                                              const ModelFit& fit, const Noise& stated);
-
-/// Which of these effects, found under `found.fit`'s noise, noise that lasts cannot stand for: the
-/// likelihood with the effect, against that without it under the noise that is likeliest then,
-/// each with the others there; p < level over all that was tried. An effect that is the mean of the
-/// very process that would stand for it (a gyro's bias, where its walk would) is asked of by
-/// itself: no search chose it. The noise without those that it can stand for comes with it, where
-/// there are any.
-struct Defended {
-  std::vector<bool> effects;
-  std::optional<FitWithNoise> otherwise = std::nullopt;
-};
-[[nodiscard]] Defended defended_against_noise(const std::vector<Recording>& recordings,
-                                              const FitWithNoise& found, const Noise& stated,
-                                              const std::vector<Effect>& effects, double tried,
-                                              double level);
 
 }  // namespace trussmap

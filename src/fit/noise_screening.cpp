@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "fit/noise_screening.hpp"
 
-#include "estimation/measurement_rows.hpp"
 #include "fit/fit_projection.hpp"
+#include "fit/process_columns.hpp"
 #include "linalg/dense.hpp"
 
 #include <algorithm>
@@ -81,7 +81,7 @@ class Screening {
       const Measurement& one = problem.measurements[k];
       const auto y = draws.middleRows(reml_.system().first_row(k), one.rows);
       for (const NoiseTerm& term : laid.terms[k]) {
-        const Vector4 column = one.whitener * error_by(one, by_view_of(problem, k), term);
+        const Vector4 column = one.whitener * error_by(one, by_view_of(fit_, problem, k), term);
         u.row(term.state) += column.head(one.rows).transpose() * y;
       }
     }
@@ -96,14 +96,6 @@ class Screening {
       q += sd * sd * u.row(k).cwiseAbs2().transpose();
     }
     return q + quadratic(laid.within, draws);
-  }
-
-  [[nodiscard]] ByView by_view_of(const RecordingProblem& problem, std::size_t k) const {
-    const Measurement& one = problem.measurements[k];
-    if (is_driven(one.kind)) return ByView::Zero();
-    return measurement_rows(problem, one, fit_.adjustment.state, one.value,
-                            view_of(fit_.columns.border, offsets_of(fit_), one))
-        .by_view;
   }
 
   const FitState& fit_;

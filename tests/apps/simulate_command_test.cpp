@@ -4,8 +4,10 @@
 // Effects in simulated recordings, from the command line: named, taken from a model, or hidden.
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -223,6 +225,33 @@ TEST(SimulateCommand, RoughNoiseIsNotWhatTheModelStates) {
                 .status,
             0);
   EXPECT_EQ(read_json(scratch.path() / "c.json")["rough"], json({"haze", "floor"}));
+}
+
+/// A walk of 0.001 rad/s per s^1/2 is 0.014 rad/s off after 200 s; at the start it is nothing.
+TEST(SimulateCommand, ABiasWalksAndNothingElse) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string simulate = "simulate --mesh 4x4 --tours 1 --gyro --gyro-noise 1e-9 --seed 5 ";
+  ASSERT_EQ(run_trussmap(simulate + "--out " + at + "a").status, 0);
+  ASSERT_EQ(run_trussmap(simulate + "--gyro-walk 0.001 --out " + at + "b").status, 0);
+  const auto files = scratch.contents();
+  for (const char* file : {"model.toml", "sightings.csv", "survey.csv"}) {
+    EXPECT_EQ(files.at(std::string("a/") + file), files.at(std::string("b/") + file)) << file;
+  }
+  const Drive still = read_recording(scratch.path() / "a").drive;
+  const Drive walking = read_recording(scratch.path() / "b").drive;
+  EXPECT_EQ(still.left, walking.left);
+  EXPECT_EQ(still.heading, walking.heading);
+  double squares = 0.0;  // of the steps, rad/s
+  for (std::size_t k = 1; k < still.rows(); ++k) {
+    const double step = (walking.yaw_rate[k] - still.yaw_rate[k]) -
+                        (walking.yaw_rate[k - 1] - still.yaw_rate[k - 1]);
+    squares += step * step;
+  }
+  // Means over rows: half of one step and half of the next.
+  const double rows = static_cast<double>(still.rows());
+  const double expected = 0.5 * 1e-6 * (still.t.back() - still.start());
+  EXPECT_NEAR(squares / expected, 1.0, 4.0 * std::sqrt(3.0 / rows));
 }
 
 TEST(SimulateCommand, HelpListsTheCatalogue) {

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/defence.hpp"
+
+#include "criticism/candidates.hpp"
+#include "criticism/effect_or_process.hpp"
+#include "fit/process_columns.hpp"
+#include "linalg/dense.hpp"
+#include "statistics/distributions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr Eigen::Index kMostSteps = 256;  // of a process
+/// Effects of the catalogue have half of the level, all others the other half, as in the search.
+constexpr double kShareOfLevel = 0.5;
+
+bool is_of_gyro(Channel channel) {
+  return channel == Channel::gyro || channel == Channel::gyro_scale;
+}
+
+bool is_among(const NoiseProcess& process, const Noise& noise) {
+  return std::any_of(
+      noise.processes.begin(), noise.processes.end(),
+      [&process](const NoiseProcess& other) { return is_same_source(process, other); });
+}
+
+bool is_of_catalogue(const Candidate& one) {
+  return one.form == Form::catalogue && one.family.empty();
+}
+
+/// The question of one recording's effects.
+class Defence {
+ public:
+  Defence(const FitWithNoise& found, const std::vector<Effect>& effects,
+          const DefenceOptions& options)
+      : fit_(*found.fit.state),
+        noise_(found.fit.model.noise),
+        effects_(effects),
+        options_(options),
+        tests_(fit_),
+        reml_(fit_, options.stated),
+        stand_(effects.size(), true) {
+    for (const Effect& one : effects) columns_.push_back(tests_.columns(one));
+    fit_options_.errors = false;
+  }
+
+  std::vector<bool> run() {
+    for (std::size_t k = 0; k < effects_.size(); ++k) stand_[k] = stands(k);
+    return stand_;
+  }
+
+  /// Without those that do not stand.
+  FittedNoise likeliest_noise() {
+    FittedNoise result = fit_noise(reml_, together(stand_), fit_options_);
+    for (const NoiseSource& rival : rivals_) {
+      const bool is_there = std::any_of(result.noise.processes.begin(),
+                                        result.noise.processes.end(), [&](const NoiseProcess& one) {
+                                          return is_of_sensor(one.channel, rival.process.channel);
+                                        });
+      if (is_there) continue;
+      result.noise.processes.push_back(rival.process);
+      result.sources.push_back(rival);
+      result.gain += rival.gain;
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] static bool is_of_sensor(Channel process, Channel effect) {
+    return process == effect || (is_of_gyro(process) && is_of_gyro(effect));
+  }
+
+  [[nodiscard]] Eigen::MatrixXd together(const std::vector<bool>& wanted) const {
+    Eigen::MatrixXd all(tests_.system().rows(), 0);
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (wanted[k]) append_columns(all, columns_[k]);
+    }
+    return all;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd others(std::size_t k) const {
+    std::vector<bool> wanted(effects_.size(), true);
+    wanted[k] = false;
+    return together(wanted);
+  }
+
+  [[nodiscard]] bool stands(std::size_t k) {
+    std::optional<FittedNoise> without;
+    if (!options_.as_stated) without = fit_noise(reml_, others(k), fit_options_);
+    if (const std::optional<NoiseProcess> rival = rival_of(effects_[k], without)) {
+      if (const std::optional<bool> answer = stands_against(k, *rival)) return *answer;
+    }
+    if (!without || without->noise == noise_) return true;
+    const std::vector<bool> all(effects_.size(), true);
+    const double with_all = minus_two_log_under(reml_, noise_, together(all));
+    const double alone = minus_two_log_under(reml_, without->noise, others(k));
+    const double p =
+        chi2_p_value(std::max(0.0, alone - with_all), static_cast<int>(columns_[k].cols()));
+    return options_.tried * p < options_.level;
+  }
+
+  /// The process of its own sensor that would stand for it, where it does not stand beside it
+  /// already.
+  [[nodiscard]] std::optional<NoiseProcess> rival_of(
+      const Effect& effect, const std::optional<FittedNoise>& without) const {
+    if (without) {
+      for (const NoiseProcess& one : without->noise.processes) {
+        if (is_of_sensor(one.channel, effect.channel) && !is_among(one, noise_)) return one;
+      }
+    }
+    NoiseProcess walk;
+    walk.channel = Channel::gyro;
+    walk.process = ProcessKind::walk_in_t;
+    if (is_of_gyro(effect.channel) && !is_among(walk, noise_)) return walk;
+    return std::nullopt;
+  }
+
+  /// The effect's own columns first, then those of the others that one asks of besides.
+  [[nodiscard]] std::vector<Effect> asked_with(const Effect& effect) const {
+    std::vector<Candidate> candidates = candidates_for(fit_, tests_.context());
+    std::erase_if(candidates,
+                  [&effect](const Candidate& one) { return one.effect.channel != effect.channel; });
+    const bool known =
+        std::any_of(candidates.begin(), candidates.end(), [&effect](const Candidate& one) {
+          return is_of_catalogue(one) && one.effect.name == effect.name;
+        });
+    std::vector<Effect> asked{effect};
+    for (const Candidate& one : candidates) {
+      if (one.effect.name != effect.name && (!known || is_of_catalogue(one))) {
+        asked.push_back(one.effect);
+      }
+    }
+    return asked;
+  }
+
+  [[nodiscard]] std::optional<bool> stands_against(std::size_t k, NoiseProcess rival) {
+    ScoreTest tests = tests_;
+    tests.condition_on(others(k));
+    const std::optional<Eigen::MatrixXd> steps =
+        process_columns(fit_, rival, tests.residuals().size(), kMostSteps);
+    if (!steps || steps->isZero(0.0)) return std::nullopt;
+    std::vector<Eigen::MatrixXd> columns;
+    for (const Score& one : tests.test(asked_with(effects_[k]))) {
+      if (one.dof > 0) {
+        columns.push_back(one.projected);
+      } else if (columns.empty()) {
+        return std::nullopt;
+      }
+    }
+    const EffectOrProcess question(tests.residuals(), tests.projected(*steps), columns);
+    const double p = question.chance_of_process(0);
+    if (p < kShareOfLevel * options_.level) return true;
+    rival.sd = std::sqrt(question.likeliest_variance());
+    NoiseSource source;
+    source.name = name_of_source(rival);
+    source.lasts = true;
+    source.process = rival;
+    source.sd = rival.sd;
+    source.gain = question.gain_of_process();
+    if (rival.sd > 0.0) rivals_.push_back(source);
+    return false;
+  }
+
+  const FitState& fit_;
+  const Noise& noise_;
+  const std::vector<Effect>& effects_;
+  const DefenceOptions& options_;
+  ScoreTest tests_;
+  NoiseReml reml_;
+  NoiseFitOptions fit_options_;
+  std::vector<Eigen::MatrixXd> columns_;
+  std::vector<bool> stand_;
+  std::vector<NoiseSource> rivals_;  ///< that stand for an effect
+};
+
+}  // namespace
+
+Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
+                                const std::vector<Effect>& effects, const DefenceOptions& options) {
+  Defence defence(found, effects, options);
+  Defended result;
+  result.effects = defence.run();
+  if (std::find(result.effects.begin(), result.effects.end(), false) == result.effects.end()) {
+    return result;
+  }
+  FitWithNoise otherwise{found.fit, defence.likeliest_noise()};
+  Model model = found.fit.model;
+  model.noise = otherwise.noise.noise;
+  otherwise.fit = refit(recordings, model, found.fit);
+  result.otherwise = std::move(otherwise);
+  return result;
+}
+
+}  // namespace trussmap
