@@ -87,11 +87,14 @@ class Collector {
       };
       const auto copy = std::find_if(surveyed_.begin(), surveyed_.end(), same_place);
       if (copy == surveyed_.end()) problem_.measurements.push_back(one);
-      const bool same_heading = std::any_of(copy, surveyed_.end(), [&](const Surveyed& other) {
-        return same_place(other) && other.heading == point.heading;
-      });
+      const bool has_heading = !std::isnan(point.heading);
+      const bool new_heading =
+          has_heading && std::none_of(copy, surveyed_.end(), [&](const Surveyed& other) {
+            return same_place(other) && other.heading == point.heading;
+          });
+      if (copy != surveyed_.end() && !new_heading) continue;
       surveyed_.push_back({one.from, one.value.head<2>(), point.heading});
-      if (!same_heading) add_survey_heading(point, k, node->second);
+      if (new_heading) add_survey_heading(point, k, node->second);
     }
   }
 
@@ -302,7 +305,7 @@ class Collector {
 
   void add_survey_heading(const SurveyPoint& point, std::size_t source, int landmark) {
     const auto orientation = orientation_.find(landmark);
-    if (std::isnan(point.heading) || orientation == orientation_.end()) return;
+    if (orientation == orientation_.end()) return;
     Measurement one;
     one.kind = MeasurementKind::survey_heading;
     one.from = orientation->second;
