@@ -67,12 +67,12 @@ World draw_world(std::uint64_t seed, Survey survey) {
   world.surveyed = survey == Survey::either ? surveyed : survey == Survey::yes;
   world.robot.compass = pick(0, 3) != 0;
   world.robot.range_sensor = pick(0, 2) == 0;
-  world.robot.wheelbase = uniform(0.25, 0.5);
+  world.robot.geometry.wheelbase = uniform(0.25, 0.5);
   const double k = uniform(0.002, 0.005);
   world.robot.noise.left = k;
   world.robot.noise.right = k * uniform(0.8, 1.25);
   world.robot.noise.compass = uniform(0.01, 0.04);
-  world.model.robot.wheelbase = world.robot.wheelbase;
+  world.model.robot.wheelbase = world.robot.geometry.wheelbase;
   world.model.noise.left = world.robot.noise.left;
   world.model.noise.right = world.robot.noise.right;
   world.model.noise.compass = world.robot.noise.compass;

@@ -105,7 +105,7 @@ inline BrokenWorld draw_broken_world(std::uint64_t seed, const BrokenWorldOption
     const auto k = static_cast<std::size_t>(&one - world.right.sightings.data());
     return world.recording.sightings[k].landmark != one.landmark;
   });
-  world.nominal.robot.wheelbase = robot.wheelbase;
+  world.nominal.robot.wheelbase = robot.geometry.wheelbase;
   world.true_model = world.nominal;
   world.true_model.effects = effects;
   world.what =

@@ -280,8 +280,9 @@ void run_calibrate(const CalibrateOptions& options) {
   }
   if (options.page.wanted()) {
     add_page(files,
-             truth_page({found, held.nominal, held.calibrated, page_verdict(held)},
-                        subject_of(options.recordings, options.model)),
+             with_drive(truth_page({found, held.nominal, held.calibrated, page_verdict(held)},
+                                   subject_of(options.recordings, options.model)),
+                        model.robot, recordings),
              options.page);
   }
   files.write();

@@ -257,8 +257,9 @@ void run_compare(const CompareCommand& options) {
   }
   if (options.page.wanted()) {
     add_page(files,
-             comparison_page(evidence_of(fit, result),
-                             subject_of(options.input.recordings, options.input.model)),
+             with_drive(comparison_page(evidence_of(fit, result),
+                                        subject_of(options.input.recordings, options.input.model)),
+                        input.model.robot, input.recordings),
              options.page);
   }
   files.write();

@@ -215,8 +215,9 @@ void run_diagnose(const DiagnoseCommand& options) {
   progress.next();
   if (options.page.wanted()) {
     add_page(files,
-             diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
-                            subject_of(options.input.recordings, options.input.model)),
+             with_drive(diagnosis_page(result, evidence_of(input.recordings, fit, result, how),
+                                       subject_of(options.input.recordings, options.input.model)),
+                        input.model.robot, input.recordings),
              options.page);
   }
   files.write();

@@ -179,8 +179,9 @@ void run_discover(const DiscoverCommand& options) {
   }
   if (options.page.wanted()) {
     add_page(files,
-             discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
-                            subject_of(options.input.recordings, options.input.model)),
+             with_drive(discovery_page(result, evidence_of(input.recordings, result, how.diagnosis),
+                                       subject_of(options.input.recordings, options.input.model)),
+                        input.model.robot, input.recordings),
              options.page);
   }
   files.write();

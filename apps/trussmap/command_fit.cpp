@@ -161,7 +161,8 @@ void run_fit(const FitCommand& options) {
   if (options.page.wanted()) {
     FitEvidence evidence = evidence_of(input.recordings, result, compare_options(options.input));
     if (noise) evidence.noise = in_words(*noise);
-    add_page(files, fit_page(evidence, subject_of(options.input.recordings, options.input.model)),
+    const std::string subject = subject_of(options.input.recordings, options.input.model);
+    add_page(files, with_drive(fit_page(evidence, subject), input.model.robot, input.recordings),
              options.page);
   }
   files.write();

@@ -11,6 +11,7 @@
 #include "trussmap/simulation.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <cmath>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -83,9 +84,12 @@ nlohmann::json summary(const SimulateOptions& options, const Simulated& simulate
   const Mesh& mesh = simulated.mesh;
   const SimulatedDrive& drive = simulated.drive;
   double length = 0.0;
-  for (const TrueRow& row : drive.motion.rows) length += row.speed * row.duration;
+  for (const TrueRow& row : drive.motion.rows) {
+    length += std::hypot(row.speed, row.sideways) * row.duration;
+  }
   nlohmann::json results = {{"recording", options.out},
                             {"mesh", options.mesh},
+                            {"drive", options.drive},
                             {"walk", options.walk},
                             {"tours", options.tours},
                             {"seed", options.seed},
@@ -153,11 +157,11 @@ void setup_simulate(const Command& app) {
   auto options = std::make_shared<SimulateOptions>();
   const Command command = app.add_subcommand(
       "simulate",
-      "Write the recording of a simulated robot with two wheels, a compass and an eye for "
-      "landmarks "
+      "Write the recording of a simulated robot with wheels, a compass and an eye for landmarks "
       "that tours a square mesh of landmarks, with a survey and the robot's model.");
   add_simulate_options(command, *options);
   command.callback([options, command] {
+    check_drive_options(command, *options);
     if (options->hide && command.count("--seed") == 0) {
       options->seed = std::random_device()();
       options->seed_drawn = true;

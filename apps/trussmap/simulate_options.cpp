@@ -7,7 +7,11 @@
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace trussmap::app {
 namespace {
@@ -94,9 +98,27 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
   const auto add_positive = [&](const char* name, double& value, const char* help) {
     command.add_option(name, value, help).check(above_zero()).capture_default_str();
   };
-  add_positive("--wheelbase", options.wheelbase, "Distance of the wheels [m]");
+  command
+      .add_option("--drive", options.drive,
+                  "How wheels move the robot: two wheels, or others with the columns that "
+                  "docs/formats.md names (wheels: four omni wheels across its diagonals)")
+      .check(one_of(
+          {"differential", "skid-steer", "tricycle", "ackermann", "omni3", "mecanum", "wheels"}))
+      .capture_default_str();
+  add_positive("--wheelbase", options.wheelbase,
+               "Distance of the wheels on the left from those on the right [m]");
+  command
+      .add_option("--length", options.length,
+                  "From the rear axle to the steered wheel (tricycle, ackermann: 0.5) or to the "
+                  "front axle (mecanum: 0.3), from the centre to a wheel (omni3, wheels: 0.2) [m]")
+      .check(above_zero());
+  command.add_option("--wheel-left", options.wheel_left,
+                     "How far to the left of the rear axle's centre the measured wheel of an "
+                     "ackermann robot is [m]");
   add_positive("--wheel-noise", options.wheel_noise,
-               "k of both wheels [m^1/2]: a travel d is recorded with variance k^2 |d|");
+               "k of each wheel [m^1/2]: a travel d is recorded with variance k^2 |d|");
+  add_positive("--steer-noise", options.steer_noise,
+               "Noise of the steering [rad m^1/2]: of the mean angle over a metre");
   add_positive("--compass-noise", options.compass_noise, "Standard deviation of a reading [rad]");
   add_positive("--sighting-noise", options.sighting_noise,
                "How far off a landmark the robot stops [m, standard deviation per coordinate]");
@@ -155,6 +177,12 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
   add_positive("--reach", options.reach, "Reach of the range sensor [m]");
 }
 
+Robot geometry_of(const SimulateOptions& options) {
+  Robot robot = usual_robot(drive_named(options.drive), options.wheelbase, options.length);
+  robot.wheel_left = options.wheel_left;
+  return robot;
+}
+
 }  // namespace
 
 Mesh make_mesh(const SimulateOptions& options) {
@@ -168,9 +196,23 @@ Mesh make_mesh(const SimulateOptions& options) {
   return jittered(mesh_of_lines(x, y), kJitterShare * options.spacing, random);
 }
 
+void check_drive_options(const Command& command, const SimulateOptions& options) {
+  const auto refuse_unless = [&](const char* option, std::initializer_list<const char*> drives) {
+    const bool has_it = std::find(drives.begin(), drives.end(), options.drive) != drives.end();
+    if (has_it || command.count(option) == 0) return;
+    throw UsageError(fmt::format("simulate: {} is not of drive {}, expected one of {}", option,
+                                 options.drive, fmt::join(drives, ", ")));
+  };
+  refuse_unless("--wheelbase", {"differential", "skid-steer", "mecanum"});
+  refuse_unless("--length", {"tricycle", "ackermann", "omni3", "mecanum", "wheels"});
+  refuse_unless("--wheel-left", {"ackermann"});
+  refuse_unless("--steer-noise", {"tricycle", "ackermann"});
+}
+
 WheeledRobot make_robot(const SimulateOptions& options) {
   WheeledRobot robot;
-  robot.wheelbase = options.wheelbase;
+  robot.geometry = geometry_of(options);
+  robot.noise.steer = options.steer_noise;
   robot.compass = !options.no_compass;
   robot.gyro = options.gyro;
   robot.noise.gyro = options.gyro_noise;
@@ -222,7 +264,8 @@ DrivingStyle make_style(const SimulateOptions& options, const std::vector<Effect
 Model nominal_model(const SimulateOptions& options) {
   Model model;
   const SensorNoise sensors;
-  model.robot.wheelbase = options.wheelbase;
+  model.robot = geometry_of(options);
+  model.noise.steer = options.steer_noise;
   model.noise.left = options.wheel_noise;
   model.noise.right = options.wheel_noise;
   model.noise.compass = options.compass_noise;

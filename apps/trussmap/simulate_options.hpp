@@ -23,8 +23,12 @@ struct SimulateOptions {
   std::string walk = "euler";
   int tours = 3;
   std::uint64_t seed = 1;
-  bool seed_drawn = false;        // for --hide without --seed
+  bool seed_drawn = false;  // for --hide without --seed
+  std::string drive = "differential";
   double wheelbase = 0.34;        // m
+  double length = 0.0;            // m; 0: the drive's usual one
+  double wheel_left = 0.0;        // m
+  double steer_noise = 0.005;     // rad m^1/2
   double wheel_noise = 0.003;     // m^1/2
   double compass_noise = 0.02;    // rad
   double sighting_noise = 0.005;  // m
@@ -63,6 +67,9 @@ struct SimulateOptions {
 
 /// Throws std::invalid_argument on a mesh that is no mesh.
 [[nodiscard]] Mesh make_mesh(const SimulateOptions& options);
+
+/// Throws UsageError where an option was given that the drive does not have.
+void check_drive_options(const Command& command, const SimulateOptions& options);
 
 [[nodiscard]] WheeledRobot make_robot(const SimulateOptions& options);
 

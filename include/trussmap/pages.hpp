@@ -11,6 +11,8 @@
 #pragma once
 
 #include "trussmap/calibrate.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
@@ -94,6 +96,11 @@ struct TruthCalibration {
 [[nodiscard]] Page truth_page(const TruthCalibration& found, const std::string& subject);
 /// Bands are 95 % intervals of the means over the seeds.
 [[nodiscard]] Page tour_page(const TourResult& result, int seeds, const std::string& subject);
+
+/// The page with the robot's drive on it: its wheels from above and, where it steers, how far it
+/// steered in these recordings (wheels taken in). Of two wheels the page as it is.
+[[nodiscard]] Page with_drive(const Page& page, const Robot& robot,
+                              const std::vector<Recording>& recordings);
 
 /// Pictures as SVG files: the map before and after, over its survey where there is one; where runs
 /// round a square of this side [m] ended, a cluster per direction and round; end errors with the

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Recordings of a simulated robot: a mesh of landmarks, a walk on it, the true motion, and what a
-// robot with two driven wheels, a compass and landmark recognition records on its way.
+// robot with driven wheels, a compass and landmark recognition records on its way.
 //
 //   y ^   L0_2 ---- L1_2 ---- L2_2        columns along x, rows along y; L{column}_{row}
 //     |    |         |         |          landmark number = column * rows + row, so that numbers
@@ -13,12 +13,17 @@
 //
 // Motion. At every landmark: rest perhaps, spin to the next leg's first direction, drive. A leg is
 // a gentle bow or S, or has a corner with a spin half-way; the true stop lies a little off the
-// landmark. In each row speed and turn rate are constant, so that a row is an arc.
+// landmark. In each row speed and turn rate are constant, so that a row is an arc. Robots whose
+// wheels have rollers drive legs at an angle to ahead, robots that steer some of them backwards;
+// in place of a spin these turn in arcs, to and fro where they steer as a car does.
 //
-//   v, w       speed [m/s] and turn rate [rad/s] of the axle's centre, constant within a row
+//   v, w       speed [m/s] and turn rate [rad/s] of the body's reference point (of two wheels the
+//              axle's centre), constant within a row
 //   B          distance of the wheels                                            m
-//   v -+ wB/2  speed of the left and right wheel over the floor                  m/s
+//   v -+ wB/2  speed of the left and right wheel over the floor                  m/s; of other
+//              wheels each the way of its own place in the rigid body
 //   k          wheel noise: a row's travel d is recorded with variance k^2 |d|   m^(1/2)
+//   q          steering noise: a row's angle with variance q^2/|d|               rad m^(1/2)
 //
 // The compass is read at the end of each row and wrapped to (-pi, pi]. At every stop the robot
 // sights the landmark it stands on, and with a range sensor some of the others in reach. Each kind
@@ -159,6 +164,7 @@ struct TrueRow {
   Surroundings surroundings;
   double slip_speed = 0.0;  ///< m/s to its left, constant within the row
   double jump = 0.0;        ///< m ahead beside its speed, all through the row
+  double sideways = 0.0;    ///< m/s to its left as its wheels drive it, constant within the row
 };
 
 /// The robot at a landmark.
@@ -174,14 +180,15 @@ struct TrueMotion {
   std::vector<TrueRow> rows;
   std::vector<TrueStop> stops;     ///< one per landmark of the walk
   std::vector<Covariate> further;  ///< what else was the case, one value per row
-  std::vector<int> segments;       ///< rows of each rest, spin and drive, in order
+  std::vector<int> segments;       ///< rows of each rest, spin, arc and drive, in order
+  std::vector<double> turns;       ///< rad, about, of each turn in arcs, in order
 };
 
 /// Standard deviations; the stop's distance from its landmark is part of the path
 /// (DrivingStyle::standing).
 struct SensorNoise {
   double left = 0.003;         ///< k of the left wheel, m^(1/2)
-  double right = 0.003;        ///< m^(1/2)
+  double right = 0.003;        ///< m^(1/2); k^2 of other wheels is the mean of both
   double compass = 0.02;       ///< rad per reading
   double range = 0.05;         ///< m
   double bearing = 0.02;       ///< rad
@@ -192,10 +199,12 @@ struct SensorNoise {
   double loop = 0.05;          ///< m per coordinate
   double loop_heading = 0.01;  ///< rad
   double yaw = 0.02;           ///< rad, of a landmark's yaw and of its surveyed heading
+  double steer = 0.005;        ///< rad m^(1/2), of the steering angle
 };
 
 /// Exact sensors.
-inline constexpr SensorNoise kNoiseFree{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+inline constexpr SensorNoise kNoiseFree{0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                                        0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 /// Noise that SensorNoise does not state, as real robots have it, to try estimators on. Kinds
 /// combine.
@@ -222,8 +231,13 @@ enum class SensorParts {
   bearing_alone  ///< as a camera has it
 };
 
+/// A robot of this drive as it might be built, columns named: wheelbase 0.34 m; length 0.5 m
+/// (tricycle, ackermann), 0.2 m (omni3) or 0.3 m (mecanum). `wheels` are four omni wheels 0.2 m
+/// from the centre that roll at 45 degrees to ahead. Lengths [m] of 0 stay as they are.
+[[nodiscard]] Robot usual_robot(DriveKind drive, double wheelbase = 0.0, double length = 0.0);
+
 struct WheeledRobot {
-  double wheelbase = 0.34;  ///< m
+  Robot geometry;  ///< its drive and wheels, nominal and true
   bool compass = true;
   bool gyro = false;
   bool range_sensor = false;
@@ -268,9 +282,10 @@ struct SimulatedDrive {
 /// adds the survey. The robot starts on the first landmark with heading 0 at time 0. Under a delay
 /// it rests before the first and after the last sighting, so that they stay within the drive. The
 /// same seed gives the same recording. Throws std::invalid_argument on a walk of fewer than two
-/// landmarks or of some too near each other (below 20 `standing`, or 1 cm), a style, robot or noise
-/// that makes no sense, and effects that leave no travel, a range of 0 or less or a sighting
-/// outside the drive.
+/// landmarks or of some too near each other (below 20 `standing`, 1 cm, or what the robot needs to
+/// turn), a style, robot or noise that makes no sense, and effects that its drive does not have or
+/// that leave no travel, a range of 0 or less or a sighting outside the drive. Of other wheels than
+/// two the recording has the columns alone (with_wheels takes them in).
 [[nodiscard]] SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
                                             const DrivingStyle& style, const WheeledRobot& robot,
                                             std::uint64_t seed,
@@ -306,7 +321,8 @@ enum class Stream : std::uint32_t {
   fixes,
   gyro,
   loops,
-  headings
+  headings,
+  steering
 };
 
 [[nodiscard]] inline std::mt19937_64 random_stream(std::uint64_t seed, Stream stream) {

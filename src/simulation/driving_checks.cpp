@@ -51,13 +51,51 @@ void check_style(const DrivingStyle& style) {
   }
 }
 
-void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing) {
+void check_wheels(const Robot& robot) {
+  const std::size_t columns = robot.columns.size();
+  const bool lengths_hold = std::isfinite(robot.length) && robot.length > 0.0;
+  const auto wants = [&](bool length, std::size_t count) {
+    require(!length || lengths_hold, "the robot's length must be above 0 m");
+    require(columns == count, fmt::format("a robot of drive {} has {} columns, expected {}",
+                                          name_of(robot.drive), columns, count));
+  };
+  require(std::isfinite(robot.wheelbase) && robot.wheelbase > 0.0,
+          "the wheelbase must be above 0 m");
+  switch (robot.drive) {
+    case DriveKind::differential:
+      return;
+    case DriveKind::skid_steer:
+      return require(
+          columns == 2 || columns == 4 || columns == 6,
+          fmt::format("a robot of drive skid-steer has {} columns, expected 2, 4 or 6", columns));
+    case DriveKind::tricycle:
+      return wants(true, 2);
+    case DriveKind::ackermann:
+      require(std::isfinite(robot.wheel_left), "the measured wheel's place must be a number of m");
+      return wants(true, 2);
+    case DriveKind::omni3:
+      return wants(true, 3);
+    case DriveKind::mecanum:
+      return wants(true, 4);
+    case DriveKind::wheels:
+      break;
+  }
+  require(robot.matrix.rows() == 3 && columns >= 2 && columns <= 6,
+          "a robot of drive wheels needs a matrix of 3 rows, and 2 to 6 columns");
+  wants(false, static_cast<std::size_t>(robot.matrix.cols()));
+  require(robot.places.empty() || robot.places.size() == columns,
+          "each wheel's place must be given, or none's");
+}
+
+void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing,
+                double turning_radius) {
   require(walk.size() >= 2, "a walk needs two landmarks");
-  const double least = std::max(0.01, 20.0 * standing);
+  const double least = std::max({0.01, 20.0 * standing, 2.0 * turning_radius});
   for (std::size_t k = 0; k < walk.size(); ++k) {
     require(walk[k] >= 0 && walk[k] < mesh.landmarks(), "a walk keeps to the mesh's landmarks");
     require(k == 0 || mesh.displacement(walk[k - 1], walk[k]).norm() >= least,
-            fmt::format("successive landmarks of a walk must be at least {:g} m apart", least));
+            fmt::format("successive landmarks of a walk must be at least {:g} m apart{}", least,
+                        turning_radius > 0.0 ? ", twice the radius in which the robot turns" : ""));
   }
 }
 

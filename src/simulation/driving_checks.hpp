@@ -12,7 +12,12 @@ namespace trussmap {
 
 void check_style(const DrivingStyle& style);
 
-/// Landmarks of the mesh, two or more, successive ones at least 20 `standing` (m) and 1 cm apart.
-void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing);
+/// Lengths above 0, columns as many as the drive has.
+void check_wheels(const Robot& robot);
+
+/// Landmarks of the mesh, two or more, successive ones at least 20 `standing` (m), 1 cm and twice
+/// the turning radius (m) apart.
+void check_walk(const Mesh& mesh, const std::vector<int>& walk, double standing,
+                double turning_radius);
 
 }  // namespace trussmap

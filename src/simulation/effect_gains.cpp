@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/effect_gains.hpp"
 
-#include "geometry/index.hpp"
+#include "effects/channel_physics.hpp"
 #include "simulation/true_motion.hpp"
 
 #include <algorithm>
@@ -25,11 +25,6 @@ bool is_reading(Channel channel) {
          channel == Channel::sighting_yaw;
 }
 
-double gain(const ChannelGains& gains, Channel channel, std::size_t row) {
-  const auto found = gains.find(channel);
-  return found == gains.end() ? 0.0 : found->second[row];
-}
-
 /// The largest change of any gain.
 double change(const ChannelGains& a, const ChannelGains& b) {
   double largest = 0.0;
@@ -47,6 +42,7 @@ double change(const ChannelGains& a, const ChannelGains& b) {
 PathBias bias_of(const ChannelGains& gains, const TrueMotion& motion) {
   PathBias bias;
   bias.segments = motion.segments;
+  bias.turns = motion.turns;
   const auto creep = gains.find(Channel::creep);
   if (creep != gains.end()) bias.slip = creep->second;
   // An event in a spin moves the robot, not its wheels: they would have to turn back for it, which
@@ -67,15 +63,19 @@ PathBias bias_of(const ChannelGains& gains, const TrueMotion& motion) {
 }
 
 std::vector<RowRates> rates_shown(const TrueMotion& motion, const ChannelGains& gains,
-                                  double wheelbase) {
-  const std::vector<WheelTravels> wheels = wheels_under(motion, gains, wheelbase);
+                                  const Robot& robot) {
   std::vector<RowRates> rates;
-  for (std::size_t row = 0; row < wheels.size(); ++row) {
-    const double duration = motion.rows[row].duration;
-    rates.push_back({0.5 * (wheels[row].left + wheels[row].right) / duration,
-                     (wheels[row].right - wheels[row].left) / (wheelbase * duration)});
-  }
+  for (const ShownRow& row : readings_under(motion, gains, robot)) rates.push_back(row.rates);
   return rates;
+}
+
+void check_drive(const std::vector<Effect>& effects, const Robot& robot) {
+  for (const Effect& effect : effects) {
+    if (is_of_drive(effect.channel, robot)) continue;
+    throw std::invalid_argument(
+        fmt::format("effect \"{}\": channel \"{}\" is of another drive than {}", effect.name,
+                    name_of(effect.channel), name_of(robot.drive)));
+  }
 }
 
 }  // namespace
@@ -103,52 +103,23 @@ ChannelGains channel_gains(const std::vector<Effect>& effects, const MotionVaria
   return gains;
 }
 
-std::vector<WheelTravels> wheels_under(const TrueMotion& motion, const ChannelGains& gains,
-                                       double wheelbase) {
-  std::vector<WheelTravels> result;
-  result.reserve(motion.rows.size());
-  for (std::size_t k = 0; k < motion.rows.size(); ++k) {
-    const TrueRow& row = motion.rows[k];
-    const auto g = [&](Channel channel) { return gain(gains, channel, k); };
-    // Each wheel's own share of what it shows, whatever the other does.
-    const double left = 1.0 + g(Channel::wheels) + g(Channel::left) - 0.5 * g(Channel::difference);
-    const double right =
-        1.0 + g(Channel::wheels) + g(Channel::right) + 0.5 * g(Channel::difference);
-    // Twice the travel and B times the turn, freed from what is added per row:
-    //   (left + travel) L + (right + travel) R = sum,   (right + turn) R - (left + turn) L = skew
-    const double travel = g(Channel::travel);
-    const double turn = g(Channel::turn);
-    const double sum = 2.0 * (row.speed * row.duration + row.jump - g(Channel::advance));
-    const double skew = wheelbase * (row.turn_rate * row.duration - g(Channel::rotate) -
-                                     g(Channel::drift) * row.duration);
-    const double determinant = (left + travel) * (right + turn) + (right + travel) * (left + turn);
-    if (!(std::abs(determinant) > 1e-6)) {
-      throw std::invalid_argument(fmt::format(
-          "the effects leave no wheel travels that could be shown at t = {:g} s, expected gains "
-          "above -1",
-          row.t));
-    }
-    result.push_back({((right + turn) * sum - (right + travel) * skew) / determinant,
-                      ((left + turn) * sum + (left + travel) * skew) / determinant});
-  }
-  return result;
-}
-
 MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk,
-                                  const DrivingStyle& style, double wheelbase,
+                                  const DrivingStyle& style, const Robot& robot,
                                   const std::vector<Effect>& effects, Rates rates,
                                   std::uint64_t seed) {
+  check_drive(effects, robot);
+  const DrivingManner manner = manner_of(robot);
   MotionUnderEffects result;
-  result.motion = lay_path(mesh, walk, style, seed);
+  result.motion = lay_path(mesh, walk, style, seed, {}, manner);
   if (effects.empty()) return result;
   const auto gains_now = [&] {
     const bool recorded = rates == Rates::as_recorded && !result.gains.empty() &&
                           result.gains.begin()->second.size() == result.motion.rows.size();
-    return channel_gains(
-        effects, motion_variables(result.motion,
-                                  recorded ? rates_shown(result.motion, result.gains, wheelbase)
-                                           : true_rates(result.motion),
-                                  wheelbase));
+    return channel_gains(effects,
+                         motion_variables(result.motion,
+                                          recorded ? rates_shown(result.motion, result.gains, robot)
+                                                   : true_rates(result.motion),
+                                          robot.wheelbase));
   };
   result.gains = gains_now();
   const bool bends_path =
@@ -160,7 +131,8 @@ MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk
   // Rows keep their number and times from pass to pass, so that gains can be carried over.
   for (int pass = 0; pass < kMostPasses; ++pass) {
     if (bends_path) {
-      result.motion = lay_path(mesh, walk, style, seed, bias_of(result.gains, result.motion));
+      result.motion =
+          lay_path(mesh, walk, style, seed, bias_of(result.gains, result.motion), manner);
     }
     ChannelGains next = gains_now();
     const double changed = change(next, result.gains);

@@ -60,13 +60,13 @@ class Draw {
         mesh_(mesh),
         robot_(robot),
         surveyed_(surveyed),
-        variables_(motion_variables(motion, true_rates(motion), robot.wheelbase)),
+        variables_(motion_variables(motion, true_rates(motion), robot.geometry.wheelbase)),
         random_(random_stream(seed, Stream::hidden)) {
     for (const CatalogueEntry& entry : catalogue()) {
       // Robots without markers draw from the same list as before there were any.
       const bool of_yaws = entry.channel == Channel::sighting_yaw;
       if (of_yaws && !(robot.markers && surveyed)) continue;
-      if (is_of_drive(entry.channel, Robot())) entries_.push_back(entry);
+      if (is_of_drive(entry.channel, robot.geometry)) entries_.push_back(entry);
     }
   }
 
@@ -112,6 +112,7 @@ class Draw {
   /// Two that cannot be told apart, or whose parts cannot, make no fair riddle.
   static bool fits(const Effect& effect, const std::vector<Effect>& drawn) {
     const auto kind = [](const Effect& one) {
+      if (one.channel == Channel::steer_gain) return Channel::turn;
       return one.channel == Channel::creep ? Channel::compass : one.channel;
     };
     return std::none_of(drawn.begin(), drawn.end(),
@@ -175,7 +176,7 @@ class Draw {
   bool surveyed_;
   MotionVariables variables_;
   std::mt19937_64 random_;
-  std::vector<CatalogueEntry> entries_;  ///< of a drive with two wheels
+  std::vector<CatalogueEntry> entries_;  ///< of the robot's drive
 };
 
 }  // namespace
@@ -189,7 +190,8 @@ std::vector<Effect> draw_hidden_effects(const TrueMotion& motion, const Mesh& me
 std::vector<Effect> draw_hidden_effects(const Mesh& mesh, const std::vector<int>& walk,
                                         const DrivingStyle& style, const WheeledRobot& robot,
                                         bool surveyed, std::uint64_t seed) {
-  return draw_hidden_effects(lay_path(mesh, walk, style, seed), mesh, robot, surveyed, seed);
+  return draw_hidden_effects(lay_path(mesh, walk, style, seed, {}, manner_of(robot.geometry)), mesh,
+                             robot, surveyed, seed);
 }
 
 }  // namespace trussmap

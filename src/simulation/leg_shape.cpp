@@ -36,11 +36,14 @@ std::vector<double> speed_profile(int rows, int ramp_rows) {
   return profile;
 }
 
-LegShape leg_shape(const std::array<double, 3>& bends, const std::vector<double>& profile) {
+LegShape leg_shape(const std::array<double, 3>& bends, const std::vector<double>& profile,
+                   Bends even) {
   const int rows = static_cast<int>(profile.size());
   LegShape shape;
+  double gone = 0.0;
   for (int k = 0; k <= rows; ++k) {
-    const double u = static_cast<double>(k) / rows;
+    const double u = even == Bends::in_time ? static_cast<double>(k) / rows : gone;
+    if (k < rows) gone += profile[idx(k)] / rows;
     shape.headings.push_back(bends[0] * std::sin(2.0 * std::numbers::pi * u) +
                              bends[1] * std::cos(std::numbers::pi * u) +
                              bends[2] * std::cos(2.0 * std::numbers::pi * u));
@@ -49,6 +52,11 @@ LegShape leg_shape(const std::array<double, 3>& bends, const std::vector<double>
         unit_step(shape.headings[idx(k - 1)], shape.headings[idx(k)]) * profile[idx(k - 1)] / rows;
   }
   return shape;
+}
+
+double sharpest_bend(const std::array<double, 3>& bends) {
+  return std::numbers::pi *
+         (2.0 * std::abs(bends[0]) + std::abs(bends[1]) + 2.0 * std::abs(bends[2]));
 }
 
 }  // namespace trussmap

@@ -24,8 +24,14 @@ struct LegShape {
   Vector2 end = Vector2::Zero();  ///< where it leads if it is 1 m long, m
 };
 
+/// Over what a leg's bends are even.
+enum class Bends { in_time, by_way };
+
 /// A bow, a sweep and an S [rad], one row per entry of the speed profile.
 [[nodiscard]] LegShape leg_shape(const std::array<double, 3>& bends,
-                                 const std::vector<double>& profile);
+                                 const std::vector<double>& profile, Bends even = Bends::in_time);
+
+/// The sharpest bend of such a leg if it is 1 m long, at most [rad/m].
+[[nodiscard]] double sharpest_bend(const std::array<double, 3>& bends);
 
 }  // namespace trussmap

@@ -113,7 +113,7 @@ std::vector<double> turnarounds(const TrueMotion& motion, double wheelbase, doub
 
 std::vector<RowRates> true_rates(const TrueMotion& motion) {
   std::vector<RowRates> rates;
-  for (const TrueRow& row : motion.rows) rates.push_back({row.speed, row.turn_rate});
+  for (const TrueRow& row : motion.rows) rates.push_back({row.speed, row.turn_rate, row.sideways});
   return rates;
 }
 
@@ -158,7 +158,7 @@ MotionVariables motion_variables(const TrueMotion& motion, const std::vector<Row
   for (std::size_t k = 0; k < motion.rows.size(); ++k) {
     const TrueRow& row = motion.rows[k];
     const Pose& before = k == 0 ? motion.start : motion.rows[k - 1].pose;
-    const double path = std::abs(rates[k].speed) * row.duration;
+    const double path = std::hypot(rates[k].speed, rates[k].sideways) * row.duration;
     const auto put = [&](const char* name, double half_way, double at_end) {
       middle[name].push_back(half_way);
       result.instant[name].push_back(at_end);

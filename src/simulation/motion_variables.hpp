@@ -28,10 +28,11 @@ struct MotionVariables {
   RowVariables instant;
 };
 
-/// Forward speed and turn rate of a row, constant within it.
+/// Speeds and turn rate of a row, constant within it.
 struct RowRates {
-  double speed = 0.0;      ///< m/s
+  double speed = 0.0;      ///< m/s ahead
   double turn_rate = 0.0;  ///< rad/s
+  double sideways = 0.0;   ///< m/s to the left, by the wheels
 };
 
 /// The rates of the true motion.

@@ -90,18 +90,23 @@ SensorErrors::SensorErrors(const WheeledRobot& robot, std::uint64_t seed)
       size_(robot.rough.half ? kHalfFactor : 1.0),
       white_wheels_(seed, Stream::wheels, Stream::wheel_tails, robot.rough.tails),
       white_compass_(seed, Stream::compass, Stream::compass_tails, robot.rough.tails),
-      left_(robot.rough.memory ? kWheelMemory : 0.0, LastingErrors::Keeps::sum),
-      right_(left_),
-      compass_(robot.rough.haze ? kCompassMemory : 0.0, LastingErrors::Keeps::variance) {}
-
-double SensorErrors::left(double travel, double duration) {
-  const double sd = noise_.left * std::sqrt(std::abs(travel));
-  return sd * (size_ * left_.next(white_wheels_.next(), duration));
+      wheel_noise_(std::max<std::size_t>(2, robot.geometry.columns.size()),
+                   std::hypot(noise_.left, noise_.right) * std::sqrt(0.5)),
+      wheels_(wheel_noise_.size(),
+              {robot.rough.memory ? kWheelMemory : 0.0, LastingErrors::Keeps::sum}),
+      compass_(robot.rough.haze ? kCompassMemory : 0.0, LastingErrors::Keeps::variance),
+      random_steering_(random_stream(seed, Stream::steering)) {
+  if (robot.geometry.drive == DriveKind::differential) wheel_noise_ = {noise_.left, noise_.right};
 }
 
-double SensorErrors::right(double travel, double duration) {
-  const double sd = noise_.right * std::sqrt(std::abs(travel));
-  return sd * (size_ * right_.next(white_wheels_.next(), duration));
+double SensorErrors::wheel(std::size_t column, double travel, double duration) {
+  const double sd = wheel_noise_[column] * std::sqrt(std::abs(travel));
+  return sd * (size_ * wheels_[column].next(white_wheels_.next(), duration));
+}
+
+double SensorErrors::steering(double travel) {
+  const double z = normal_(random_steering_);
+  return travel == 0.0 ? 0.0 : noise_.steer / std::sqrt(std::abs(travel)) * z;
 }
 
 double SensorErrors::compass(double duration) {

@@ -11,7 +11,9 @@
 //   memory   e_k sqrt((1 - a)/(1 + a)): the sum of n errors e_k has variance n (1 + a)/(1 - a) for
 //            large n, that of white ones n
 //   half     times 2
-//   floor    both wheels' travels of a leg, mean and difference, times 1 + a share of the leg's own
+//   floor    all wheels' travels of a leg, mean and difference, times 1 + a share of the leg's own
+//
+// The steering angle's noise is white and normal whatever the others are.
 //
 // Each acts on the one before, on the z that are there without it: a kind left out changes nothing
 // in the others.
@@ -19,6 +21,7 @@
 
 #include "trussmap/simulation.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -65,18 +68,21 @@ class SensorErrors {
  public:
   SensorErrors(const WheeledRobot& robot, std::uint64_t seed);
 
-  double left(double travel, double duration);   ///< m
-  double right(double travel, double duration);  ///< m
-  double compass(double duration);               ///< rad
+  /// m, of one of the robot's columns.
+  double wheel(std::size_t column, double travel, double duration);
+  double steering(double travel);   ///< rad
+  double compass(double duration);  ///< rad
 
  private:
   SensorNoise noise_;
   double size_;  ///< of wheel and compass errors, in units of the stated ones
   WhiteErrors white_wheels_;
   WhiteErrors white_compass_;
-  LastingErrors left_;
-  LastingErrors right_;
+  std::vector<double> wheel_noise_;    ///< k, m^(1/2)
+  std::vector<LastingErrors> wheels_;  ///< one per column
   LastingErrors compass_;
+  std::mt19937_64 random_steering_;
+  std::normal_distribution<double> normal_;
 };
 
 /// By which share the wheels misread a leg.

@@ -6,7 +6,7 @@
 //   L1 o .  (bow)  . o L2        At every landmark: rest perhaps, spin to the next leg's first
 //        spin   drive            direction, drive. A leg is a gentle bow or S, or has a corner
 //                                with a spin half-way. The true stop lies a little off the
-//                                landmark.
+//                                landmark. Other wheels drive otherwise (driving_manner.hpp).
 //
 // In each row speed and turn rate are constant, so a row is an arc; rests, spins and drives begin
 // and end with a row. A leg's shape is a profile of headings over its length, which is scaled and
@@ -18,6 +18,7 @@
 // (PathBias).
 #pragma once
 
+#include "simulation/driving_manner.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -32,15 +33,17 @@ struct PathBias {
   std::vector<double> jump;     ///< per row: ahead, while it spins on the spot, m
   std::vector<Vector2> sensor;  ///< per stop: what meets the landmark, from the axle; robot axes, m
   std::vector<int> segments;    ///< rows of each segment, of an earlier path of the same seed
+  std::vector<double> turns;    ///< likewise TrueMotion::turns
 };
 
 /// Lays the path along a walk (landmarks of the mesh, successive ones different). The robot starts
 /// on the first landmark with heading 0 at time 0. Throws std::invalid_argument on a walk of fewer
 /// than two landmarks, on a style that makes no sense, and on landmarks so near each other (below
 /// 20 `standing`, or 1 cm) that a leg would have no direction. The same seed gives the same path;
-/// with a bias, the same style of driving on a path that gives way to it.
+/// with a bias, the same style of driving on a path that gives way to it. A robot that cannot turn
+/// on the spot needs legs twice as long as the radius of its tightest bend.
 [[nodiscard]] TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk,
                                   const DrivingStyle& style, std::uint64_t seed,
-                                  const PathBias& bias = {});
+                                  const PathBias& bias = {}, const DrivingManner& manner = {});
 
 }  // namespace trussmap

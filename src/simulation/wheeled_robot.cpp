@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/wheeled_robot.hpp"
 
+#include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
+#include "simulation/driving_checks.hpp"
 #include "simulation/rough_noise.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -36,44 +38,34 @@ class Dice {
   std::normal_distribution<double> normal_;
 };
 
-/// What the sensors would say of a row without noise.
-struct SensorRow {
-  double left = 0.0;     ///< m
-  double right = 0.0;    ///< m
-  double heading = 0.0;  ///< rad, not wrapped
-};
-
-/// The gain of a channel in a row.
-double gain(const ChannelGains& gains, Channel channel, std::size_t row) {
-  const auto found = gains.find(channel);
-  return found == gains.end() ? 0.0 : found->second[row];
-}
-
-SensorRow sense(const TrueRow& row, const WheeledRobot& robot) {
-  const double speed_about_centre = row.turn_rate * 0.5 * robot.wheelbase;
-  return {(row.speed - speed_about_centre) * row.duration,
-          (row.speed + speed_about_centre) * row.duration, row.pose.heading};
-}
-
-std::vector<SensorRow> sense(const TrueMotion& motion, const WheeledRobot& robot,
-                             const ChannelGains& gains) {
-  std::vector<SensorRow> seen;
-  for (const TrueRow& row : motion.rows) seen.push_back(sense(row, robot));
-  if (gains.empty()) return seen;
-  const std::vector<WheelTravels> wheels = wheels_under(motion, gains, robot.wheelbase);
-  for (std::size_t row = 0; row < seen.size(); ++row) {
-    seen[row].left = wheels[row].left;
-    seen[row].right = wheels[row].right;
-    seen[row].heading += gain(gains, Channel::compass, row);
+/// What the wheels would show without noise. Without effects two wheels need no equations.
+std::vector<ShownRow> shown_by_wheels(const TrueMotion& motion, const Robot& robot,
+                                      const ChannelGains& gains) {
+  if (robot.drive != DriveKind::differential || !gains.empty()) {
+    return readings_under(motion, gains, robot);
+  }
+  std::vector<ShownRow> seen;
+  for (const TrueRow& row : motion.rows) {
+    const double speed_about_centre = row.turn_rate * 0.5 * robot.wheelbase;
+    seen.push_back({{(row.speed - speed_about_centre) * row.duration,
+                     (row.speed + speed_about_centre) * row.duration},
+                    {row.speed, row.turn_rate}});
   }
   return seen;
 }
 
 /// As the wheels show a row of a leg that they misread.
-SensorRow misread(const SensorRow& row, const LegMisreading& leg) {
-  const double forward = 0.5 * (row.left + row.right) * leg.travel;
-  const double apart = 0.5 * (row.right - row.left) * leg.turn;
-  return {row.left + forward - apart, row.right + forward + apart, row.heading};
+std::vector<double> misread(const ShownRow& row, double duration, const LegMisreading& leg,
+                            const Robot& robot) {
+  std::vector<double> shown = row.readings;
+  if (robot.drive == DriveKind::differential) {
+    const double forward = 0.5 * (shown[0] + shown[1]) * leg.travel;
+    const double apart = 0.5 * (shown[1] - shown[0]) * leg.turn;
+    return {shown[0] + forward - apart, shown[1] + forward + apart};
+  }
+  const std::vector<double> more = misreading_of(row, duration, leg.travel, leg.turn, robot);
+  for (std::size_t k = 0; k < shown.size(); ++k) shown[k] += more[k];
+  return shown;
 }
 
 /// What a gyro would say of a row without noise, rad/s.
@@ -82,11 +74,33 @@ double yaw_rate(const TrueRow& motion, const ChannelGains& gains, std::size_t ro
          (1.0 + gain(gains, Channel::gyro_scale, row));
 }
 
+/// One per column of the robot, with its noise.
+std::vector<std::vector<double>> record_wheels(const TrueMotion& motion, const WheeledRobot& robot,
+                                               std::uint64_t seed, const ChannelGains& gains,
+                                               SensorErrors& errors) {
+  const Robot& geometry = robot.geometry;
+  const std::vector<ShownRow> rows = shown_by_wheels(motion, geometry, gains);
+  const std::vector<LegMisreading> legs = leg_misreadings(motion, robot.rough, seed);
+  const bool steers = is_of_drive(Channel::steer, geometry);
+  std::vector<std::vector<double>> columns(rows.front().readings.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const double duration = motion.rows[row].duration;
+    const std::vector<double>& seen = rows[row].readings;
+    const std::vector<double> shown =
+        legs.empty() ? seen : misread(rows[row], duration, legs[row], geometry);
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      const double error =
+          steers && k == 1 ? errors.steering(seen[0]) : errors.wheel(k, seen[k], duration);
+      columns[k].push_back(shown[k] + error);
+    }
+  }
+  return columns;
+}
+
 Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uint64_t seed,
                    const ChannelGains& gains) {
-  const std::vector<SensorRow> sensed = sense(motion, robot, gains);
-  const std::vector<LegMisreading> legs = leg_misreadings(motion, robot.rough, seed);
   SensorErrors errors(robot, seed);
+  std::vector<std::vector<double>> columns = record_wheels(motion, robot, seed, gains, errors);
   Dice gyro(seed, Stream::gyro);
   double bias = 0.0;  // rad/s
   Drive drive;
@@ -94,26 +108,33 @@ Drive record_drive(const TrueMotion& motion, const WheeledRobot& robot, std::uin
   Covariate lights{"lights", {}};
   Covariate temperature{"temperature_C", {}};
   for (const TrueRow& row : motion.rows) {
-    const SensorRow& seen = sensed[drive.rows()];
-    const SensorRow shown = legs.empty() ? seen : misread(seen, legs[drive.rows()]);
+    const std::size_t at = drive.rows();
     drive.t.push_back(row.t);
-    drive.left.push_back(shown.left + errors.left(seen.left, row.duration));
-    drive.right.push_back(shown.right + errors.right(seen.right, row.duration));
     if (robot.compass) {
-      drive.heading.push_back(wrap_angle(seen.heading + errors.compass(row.duration)));
+      const double heading = row.pose.heading + gain(gains, Channel::compass, at);
+      drive.heading.push_back(wrap_angle(heading + errors.compass(row.duration)));
     }
     if (robot.gyro) {
       const double walked = gyro.deviation(robot.noise.gyro_walk * std::sqrt(row.duration));
       const double error = gyro.deviation(robot.noise.gyro / std::sqrt(row.duration));
-      drive.yaw_rate.push_back(yaw_rate(row, gains, drive.rows() - 1) + bias + 0.5 * walked +
-                               error);
+      drive.yaw_rate.push_back(yaw_rate(row, gains, at) + bias + 0.5 * walked + error);
       bias += walked;
     }
     payload.values.push_back(row.surroundings.payload_kg);
     lights.values.push_back(row.surroundings.lights);
     temperature.values.push_back(row.surroundings.temperature_C);
   }
-  drive.covariates = {payload, lights, temperature};
+  if (robot.geometry.drive == DriveKind::differential) {
+    drive.left = std::move(columns[0]);
+    drive.right = std::move(columns[1]);
+  } else {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      drive.covariates.push_back({robot.geometry.columns[k], std::move(columns[k])});
+    }
+  }
+  for (Covariate* one : {&payload, &lights, &temperature}) {
+    drive.covariates.push_back(std::move(*one));
+  }
   drive.covariates.insert(drive.covariates.end(), motion.further.begin(), motion.further.end());
   return drive;
 }
@@ -165,7 +186,8 @@ Pose part_of_row(const Pose& begin, const TrueRow& row, double time) {
   // Mean of the way ahead, and of the way to the left, over the angles turned through.
   const double ahead = turned == 0.0 ? 1.0 : std::sin(turned) / turned;
   const double aside = turned == 0.0 ? 0.0 : 2.0 * std::pow(std::sin(0.5 * turned), 2) / turned;
-  const Vector2 moved = time * Vector2(row.speed + row.jump / row.duration, row.slip_speed);
+  const Vector2 moved =
+      time * Vector2(row.speed + row.jump / row.duration, row.slip_speed + row.sideways);
   const Vector2 way(ahead * moved.x() - aside * moved.y(), aside * moved.x() + ahead * moved.y());
   const Vector2 place = begin.position() + rotation(begin.heading) * way;
   return {place.x(), place.y(), begin.heading + turned};
@@ -226,14 +248,12 @@ void check(const WheeledRobot& robot) {
   const SensorNoise& noise = robot.noise;
   for (const double sd :
        {noise.left, noise.right, noise.compass, noise.range, noise.bearing, noise.fix, noise.gyro,
-        noise.gyro_walk, noise.loop, noise.loop_heading, noise.yaw}) {
+        noise.gyro_walk, noise.loop, noise.loop_heading, noise.yaw, noise.steer}) {
     if (!std::isfinite(sd) || sd < 0.0) {
       throw std::invalid_argument("a sensor's noise must be a number of 0 or more");
     }
   }
-  if (!std::isfinite(robot.wheelbase) || robot.wheelbase <= 0.0) {
-    throw std::invalid_argument("the wheelbase must be above 0 m");
-  }
+  check_wheels(robot.geometry);
   if (!(robot.fix_rate >= 0.0) || !(robot.fix_rate <= 1e3)) {
     throw std::invalid_argument("the rate of fixes must be 0 to 1000 Hz");
   }
@@ -311,8 +331,14 @@ SimulatedDrive simulate_drive(const Mesh& mesh, const std::vector<int>& walk,
     patient.last_rest = std::max(style.last_rest, kPatience * (1.0 + latest));
   }
   check(robot);
+  for (const std::string& name : style.covariates) {
+    const std::vector<std::string>& wheels = robot.geometry.columns;
+    if (std::find(wheels.begin(), wheels.end(), name) == wheels.end()) continue;
+    throw std::invalid_argument(
+        fmt::format("a covariate's name is \"{}\", which is taken by a wheel", name));
+  }
   MotionUnderEffects laid =
-      lay_path_under(mesh, walk, patient, robot.wheelbase, effects.effects, effects.rates, seed);
+      lay_path_under(mesh, walk, patient, robot.geometry, effects.effects, effects.rates, seed);
   SimulatedDrive drive;
   drive.recording = record(laid.motion, mesh, robot, seed, laid.gains);
   drive.recording.survey = survey(mesh, robot.noise.survey, seed);

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -252,6 +254,68 @@ TEST(SimulateCommand, ABiasWalksAndNothingElse) {
   const double rows = static_cast<double>(still.rows());
   const double expected = 0.5 * 1e-6 * (still.t.back() - still.start());
   EXPECT_NEAR(squares / expected, 1.0, 4.0 * std::sqrt(3.0 / rows));
+}
+
+/// The model that comes with a recording names its columns: with the effect it fits, and its page
+/// draws the wheels.
+TEST(SimulateCommand, DrawsEveryDrive) {
+  const std::vector<std::pair<std::string, std::string>> drives = {
+      {"skid-steer --wheelbase 0.5", "radius of wheel 4"},
+      {"tricycle --length 0.8 --steer-noise 0.002", "steering offset by direction"},
+      {"ackermann --wheel-left 0.2", "steering offset"},
+      {"omni3 --length 0.25", "radius of wheel 2"},
+      {"mecanum", "roller slip"},
+      {"wheels", "radius of wheel 3"}};
+  for (const auto& [drive, effect] : drives) {
+    const ScratchFolder scratch;
+    const std::string at = scratch.path().string() + "/";
+    const Ran ran =
+        run_trussmap("simulate --mesh 3x3 --noise-free --drive " + drive + " --effect '" + effect +
+                     "=0.02' --out " + at + "r --json " + at + "r.json");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(read_json(scratch.path() / "r.json")["drive"], drive.substr(0, drive.find(' ')));
+    const Ran added =
+        run_trussmap("add " + at + "r/model.toml '" + effect + "' --out " + at + "m.toml");
+    ASSERT_EQ(added.status, 0) << added.output;
+    const Ran fitted = run_trussmap("fit " + at + "r --model " + at + "m.toml --out " + at +
+                                    "f.toml --json " + at + "f.json --html " + at + "f.html");
+    ASSERT_EQ(fitted.status, 0) << fitted.output;
+    const json fit = read_json(scratch.path() / "f.json");
+    EXPECT_LT(fit["chi2"].get<double>(), 1e-6) << drive;
+    EXPECT_NEAR(fit["effects"][0]["coefficients"][0].get<double>(), 0.02, 1e-6) << drive;
+    EXPECT_NE(scratch.contents().at("f.html").find("The robot's wheels"), std::string::npos);
+  }
+}
+
+TEST(SimulateCommand, HidesEffectsOfTheDrive) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const Ran ran = run_trussmap(
+      "simulate --mesh 4x4 --tours 1 --drive mecanum --seed 3 --hide --out " + at + "r");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const Ran revealed = run_trussmap("reveal " + at + "r");
+  EXPECT_EQ(revealed.status, 0) << revealed.output;
+}
+
+TEST(SimulateCommand, OptionsAndEffectsOfAnotherDriveEndWithOneLine) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"--length 0.5", "--length is not of drive differential"},
+      {"--drive tricycle --wheelbase 0.5", "--wheelbase is not of drive tricycle"},
+      {"--drive mecanum --steer-noise 0.01", "--steer-noise is not of drive mecanum"},
+      {"--drive unicycle", "unicycle"},
+      {"--effect 'roller slip=0.1'", "is of another drive than differential"},
+      {"--drive omni3 --effect 'steering offset=0.1'", "is of another drive than omni3"},
+      {"--drive ackermann --spacing 1", "at least 1.46"},
+      {"--drive omni3 --covariate wheel2", "taken by a wheel"}};
+  for (const auto& [options, what] : wrong) {
+    const Ran ran = run_trussmap("simulate --mesh 3x3 " + options + " --out " + at + "r");
+    EXPECT_EQ(ran.status, 2) << options;
+    EXPECT_NE(ran.output.find(what), std::string::npos) << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+  }
+  EXPECT_TRUE(scratch.contents().empty());
 }
 
 TEST(SimulateCommand, HelpListsTheCatalogue) {

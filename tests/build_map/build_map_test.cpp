@@ -34,7 +34,7 @@ TEST(BuildMap, AWheelbaseBeyondTenMetresIsDoubted) {
   const Mesh mesh = even_mesh({2, 2}, 30.0);
   for (const double wheelbase : {9.9, 10.1}) {
     WheeledRobot robot;
-    robot.wheelbase = wheelbase;
+    robot.geometry.wheelbase = wheelbase;
     Model model;
     model.robot.wheelbase = wheelbase;
     const Recording recording = simulate_drive(mesh, {0, 1, 3, 2, 0}, {}, robot, 5).recording;

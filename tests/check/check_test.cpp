@@ -72,7 +72,7 @@ World world_of(const Equipment& equipment, std::uint64_t seed, int effects = 0) 
   world.recording.name = "drive";
   if (equipment.truth) add_truth(drive.motion, world.recording);
   if (!equipment.survey) world.recording.survey.clear();
-  world.model.robot.wheelbase = robot.wheelbase;
+  world.model.robot.wheelbase = robot.geometry.wheelbase;
   world.equipment = equipment;
   return world;
 }

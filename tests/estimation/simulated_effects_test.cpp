@@ -76,7 +76,8 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
   const TrueMotion& motion = simulated.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables = row_variables(drive, simulated.robot.wheelbase, motion.start, path, 0);
+  RowVariables variables =
+      row_variables(drive, simulated.robot.geometry.wheelbase, motion.start, path, 0);
   if (effect.channel == Channel::compass) {
     for (std::size_t row = 0; row < path.size(); ++row) {
       variables["heading"][row] = path[row].heading;
@@ -91,7 +92,8 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
     pattern.name = effect.name;
     std::vector<DrivePattern>& rows = pattern.drives.emplace_back();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const DrivePattern unit = by_the_table(effect.channel, drive, row, simulated.robot.wheelbase);
+      const DrivePattern unit =
+          by_the_table(effect.channel, drive, row, simulated.robot.geometry.wheelbase);
       rows.push_back(
           {f[row] * unit.advance, f[row] * unit.slip, f[row] * unit.turn, f[row] * unit.compass});
     }

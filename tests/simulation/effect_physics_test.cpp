@@ -106,7 +106,7 @@ std::vector<double> reversals(const World& world, double side) {
   std::vector<double> events;
   double sense = 0.0;
   for (const TrueRow& row : world.drive.motion.rows) {
-    const double wheel = row.speed + side * 0.5 * world.robot.wheelbase * row.turn_rate;
+    const double wheel = row.speed + side * 0.5 * world.robot.geometry.wheelbase * row.turn_rate;
     events.push_back(wheel * sense < 0.0 ? 1.0 : 0.0);
     if (std::abs(wheel) * row.duration > 1e-6) sense = wheel;
   }
@@ -118,8 +118,8 @@ std::vector<double> gains(const World& world) {
   const TrueMotion& motion = world.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables =
-      row_variables(world.drive.recording.drive, world.robot.wheelbase, motion.start, path, 0);
+  RowVariables variables = row_variables(world.drive.recording.drive,
+                                         world.robot.geometry.wheelbase, motion.start, path, 0);
   variables["reverses_left"] = reversals(world, -1.0);
   variables["reverses_right"] = reversals(world, 1.0);
   const std::set<Channel> instant = {Channel::compass, Channel::range, Channel::range_scale,
@@ -192,7 +192,7 @@ Misfit misfit(const World& world) {
     for (; row < drive.rows() && drive.t[row] <= t + 1e-9; ++row) {
       const double dt = drive.t[row] - (row == 0 ? drive.start() : drive.t[row - 1]);
       pose = advance(pose, drive.left[row], drive.right[row], dt, g[row], channel,
-                     world.robot.wheelbase);
+                     world.robot.geometry.wheelbase);
       const double offset = channel == Channel::compass ? g[row] : 0.0;
       worst.compass =
           std::max(worst.compass, std::abs(wrap_angle(drive.heading[row] - offset - pose.heading)));
@@ -297,9 +297,10 @@ TEST(EffectPhysics, TwoEffectsActSideBySide) {
     started = truth.activity == Activity::drive;
     EXPECT_NEAR((left + right) / 2.0 + 0.02 * left / 2.0 + (starts ? 0.004 : 0.0),
                 truth.speed * truth.duration, 1e-12);
-    EXPECT_NEAR((right - left) / robot.wheelbase * (1.0 - 0.03 * truth.surroundings.lights) -
-                    0.02 * left / robot.wheelbase,
-                truth.turn_rate * truth.duration, 1e-12);
+    EXPECT_NEAR(
+        (right - left) / robot.geometry.wheelbase * (1.0 - 0.03 * truth.surroundings.lights) -
+            0.02 * left / robot.geometry.wheelbase,
+        truth.turn_rate * truth.duration, 1e-12);
   }
 }
 

@@ -102,7 +102,7 @@ TEST(HiddenEffects, AreDrawnFromTheirSeed) {
 TEST(HiddenEffects, AreOfASizeThatShowsAndThatARobotMayHave) {
   const Field f = field();
   const MotionVariables variables =
-      motion_variables(f.motion, true_rates(f.motion), f.robot.wheelbase);
+      motion_variables(f.motion, true_rates(f.motion), f.robot.geometry.wheelbase);
   const double legs = static_cast<double>(f.motion.stops.size()) - 1.0;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     for (const Effect& effect : draw_hidden_effects(f.motion, f.mesh, f.robot, true, seed)) {

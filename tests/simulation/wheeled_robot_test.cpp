@@ -65,7 +65,7 @@ TEST(WheeledRobot, WithoutNoiseItsWheelsLeadToEveryLandmark) {
   ASSERT_EQ(recording.sightings.size(), f.walk.size());
   for (std::size_t k = 0; k < f.walk.size(); ++k) {
     for (; row < drive.rows() && drive.t[row] <= recording.sightings[k].t; ++row) {
-      pose = roll(pose, drive.left[row], drive.right[row], f.robot.wheelbase);
+      pose = roll(pose, drive.left[row], drive.right[row], f.robot.geometry.wheelbase);
       length += 0.5 * std::abs(drive.left[row] + drive.right[row]);
       EXPECT_NEAR(wrap_angle(pose.heading - drive.heading[row]), 0.0, 1e-9);
     }
@@ -220,7 +220,8 @@ TEST(WheeledRobot, LeavingASensorOutChangesNothingElse) {
 TEST(WheeledRobot, RefusesSensorsThatMakeNoSense) {
   const Field f = field(1);
   for (const auto spoil : std::vector<void (*)(WheeledRobot&)>{
-           [](WheeledRobot& r) { r.wheelbase = 0.0; }, [](WheeledRobot& r) { r.noise.left = -0.1; },
+           [](WheeledRobot& r) { r.geometry.wheelbase = 0.0; },
+           [](WheeledRobot& r) { r.noise.left = -0.1; },
            [](WheeledRobot& r) { r.noise.compass = std::nan(""); },
            [](WheeledRobot& r) { r.noise.survey = -1.0; }, [](WheeledRobot& r) { r.reach = 0.0; },
            [](WheeledRobot& r) { r.recognition = 2.0; }}) {
