@@ -114,11 +114,9 @@ class SteeredWheel {
     const Eigen::Vector2d wanted(asked[0], L * asked[2]);
     if (wanted.norm() < 1e-12) return {0.0, angle};
     const auto shown = [&](double at) -> Eigen::Vector2d {
-      const Shares per = shares(at);
+      const Eigen::Vector2d per = shares(at + g(Channel::steer) + g(Channel::steer_gain) * at);
       const double common = 1.0 + g(Channel::wheels);
-      const double steered = g(Channel::steer) + g(Channel::steer_gain) * at;
-      return {(common + g(Channel::travel)) * per.value[0] + steered * per.slope[0],
-              (common + g(Channel::turn)) * per.value[1] + steered * per.slope[1]};
+      return {(common + g(Channel::travel)) * per[0], (common + g(Channel::turn)) * per[1]};
     };
     if (robot_.drive == DriveKind::tricycle) {
       const double sense = row.speed < 0.0 ? -1.0 : 1.0;
@@ -137,29 +135,22 @@ class SteeredWheel {
   }
 
   [[nodiscard]] Eigen::Vector3d motion(const Eigen::Vector2d& reading) const {
-    const Eigen::Vector2d moved = reading[0] * shares(reading[1]).value;
+    const Eigen::Vector2d moved = reading[0] * shares(reading[1]);
     return {moved[0], 0.0, moved[1] / robot_.length};
   }
 
  private:
-  /// Of a metre of travel: the way ahead, and length x turn [m]; and how they change with the
-  /// angle.
-  struct Shares {
-    Eigen::Vector2d value;
-    Eigen::Vector2d slope;
-  };
-
-  [[nodiscard]] Shares shares(double angle) const {
+  /// Of a metre of travel: the way ahead, and length x turn [m].
+  [[nodiscard]] Eigen::Vector2d shares(double angle) const {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     // The steered wheel is the front one, and goes where it points.
-    if (robot_.drive == DriveKind::tricycle) return {{c, s}, {-s, c}};
+    if (robot_.drive == DriveKind::tricycle) return {c, s};
     // All turn about a point on the rear axle, so far to the left that the front points across it;
     // the measured wheel is nearer to it than the middle.
     const double y = robot_.wheel_left / robot_.length;
     const double ahead = c / (c - y * s);
-    const double per_angle = ahead * ahead / (c * c);
-    return {{ahead, ahead * s / c}, {y * per_angle, per_angle}};
+    return {ahead, ahead * s / c};
   }
 
   /// Newton's method for the angle at which what is shown is along what is wanted.

@@ -13,9 +13,8 @@
 //   m           what the wheels do together, D w = J m
 //
 //   rolling     m + T J+ w = (f - advance, s, a - rotate - drift dt),   w = D^-1 J m
-//   steered     travel d at the angle b: f and a go by d's shares ahead and turning, (1 + g) of
-//   each;
-//               steer, steer_gain add their g to b, to first order. The angle comes from f : a
+//   steered     travel d at the angle b, to which steer, steer_gain add theirs: f and a go by d's
+//               shares ahead and turning, (1 + g) of each. The angle comes from f : a
 //
 // Several effects act side by side on what the wheels show, not one on the other's result. At rest
 // the steering stays as it was. A tricycle's wheel rolls backwards only where the robot drives so.
