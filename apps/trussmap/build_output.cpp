@@ -3,6 +3,7 @@
 #include "build_output.hpp"
 
 #include "json_values.hpp"
+#include "path_output.hpp"
 #include "terminal.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
@@ -123,6 +124,19 @@ void print_quality(const BuiltMap& built) {
   }
 }
 
+void print_map(const BuiltMap& built, bool several) {
+  print_quality(built);
+  const auto line = [](const char* what, int number) {
+    fmt::print("  {:<28} {:>8}\n", what, number);
+  };
+  line("legs", built.legs);
+  line("loops closed at first sight", built.first_sight);
+  line("known routes driven again", built.refinements);
+  line("sightings beside a leg's end", built.side_sightings);
+  print_left_out(built, several);
+  if (built.on_survey) print_survey(*built.on_survey);
+}
+
 }  // namespace
 
 nlohmann::ordered_json positions_json(const LandmarkGraph& map) {
@@ -171,24 +185,25 @@ nlohmann::ordered_json build_json(const BuiltMap& built, const std::string& meth
                  {"iterations", built.fit.iterations},
                  {"converged", built.fit.converged}};
   if (built.on_survey) result["survey"] = survey_json(*built.on_survey);
+  if (!built.paths.empty()) result["paths"] = paths_json(built.paths);
   return result;
 }
 
 void print_built(const BuiltMap& built, const std::string& method, bool several) {
-  fmt::print("map of {} landmarks and {} routes, method {}\n", built.map.landmarks(),
-             built.map.routes(), method);
+  const bool paths = !built.paths.empty();
+  if (paths) {
+    print_paths_built(built.paths);
+  } else {
+    fmt::print("map of {} landmarks and {} routes, method {}\n", built.map.landmarks(),
+               built.map.routes(), method);
+  }
   fmt::print("{}\n\n",
              verdict_text(built.good() ? Mood::good : Mood::doubt, verdict_in_words(built)));
-  print_quality(built);
-  const auto line = [](const char* what, int number) {
-    fmt::print("  {:<28} {:>8}\n", what, number);
-  };
-  line("legs", built.legs);
-  line("loops closed at first sight", built.first_sight);
-  line("known routes driven again", built.refinements);
-  line("sightings beside a leg's end", built.side_sightings);
-  print_left_out(built, several);
-  if (built.on_survey) print_survey(*built.on_survey);
+  if (paths) {
+    print_paths(built);
+  } else {
+    print_map(built, several);
+  }
   for (std::size_t k = 1; k < built.warnings.size(); ++k) {  // the verdict has the first
     fmt::print("\n{}", warning_text(built.warnings[k]));
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// trussmap build: a landmark map from recordings.
+// trussmap build: a landmark map from recordings; of recordings without landmarks, their path.
 #include "build_output.hpp"
 #include "commands.hpp"
 #include "model_recordings.hpp"
@@ -17,6 +17,7 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -106,6 +107,17 @@ void run_store(const BuildOptions& options) {
   add_sessions(how);
 }
 
+/// A map file would be empty.
+void check_landmarks(const BuildOptions& options, const std::vector<Recording>& recordings) {
+  if (options.out.empty() && options.csv.empty()) return;
+  const bool none = std::all_of(recordings.begin(), recordings.end(),
+                                [](const Recording& one) { return one.sightings.empty(); });
+  if (!none) return;
+  throw UsageError("no landmark was sighted, so that there is no map for " +
+                   std::string(options.out.empty() ? "--csv" : "--out") +
+                   ", expected apply --adjusted --out, which writes the path");
+}
+
 void run_build(const BuildOptions& options) {
   check_usage(options);
   if (!options.store.empty()) return run_store(options);
@@ -114,6 +126,7 @@ void run_build(const BuildOptions& options) {
   std::vector<Recording> recordings = read_recordings(options.recordings);
   const Model model = read_model(options.model, recordings);
   take_wheels(recordings, model.robot);
+  check_landmarks(options, recordings);
   warn_of_mistakes(recordings, model, options.model);
   progress.next();
   const BuiltMap built = [&] {
@@ -134,7 +147,8 @@ void run_build(const BuildOptions& options) {
     files.emplace_back(options.json_file, build_json(built, method).dump(2) + "\n");
   }
   if (!options.svg.empty()) {
-    files.emplace_back(options.svg, map_picture(built, "Landmark map, " + by));
+    files.emplace_back(options.svg, map_picture(built, built.paths.empty() ? "Landmark map, " + by
+                                                                           : "Path, " + by));
   }
   if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(built.map));
   if (options.page.wanted()) {
@@ -152,7 +166,9 @@ void run_build(const BuildOptions& options) {
 void setup_build(const Command& app) {
   auto options = std::make_shared<BuildOptions>();
   const Command command = app.add_subcommand(
-      "build", "Build a landmark map from recordings (several folders: several sessions)");
+      "build",
+      "Build a landmark map from recordings (several folders: several sessions); where no landmark "
+      "is sighted but there are fixes or loops, the path");
   command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
       .required()
       .type_name("DIR");
@@ -173,7 +189,9 @@ void setup_build(const Command& app) {
   command.add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
       .type_name("FILE");
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
-  command.add_option("--svg", options->svg, "Write a picture of the map before and after (SVG)")
+  command
+      .add_option("--svg", options->svg,
+                  "Write a picture of the map, or path, before and after (SVG)")
       .type_name("FILE");
   command
       .add_option(

@@ -133,6 +133,19 @@ void convert_steered_truck(const fs::path& in, const fs::path& out) {
   count(static_cast<int>(recording.drive.rows()), "drive rows, of one wheel and the steering");
   count(static_cast<int>(recording.fixes.size()), "fixes");
   count(foreign.repeated_fixes, "fixes whose time repeats or runs backwards dropped");
+  count(foreign.graph_poses, "poses of victoriaPark.txt found in the drive");
+  count(static_cast<int>(recording.sightings.size()), "sightings of trees from there");
+}
+
+void convert_line_robot(const fs::path& in, const fs::path& out) {
+  const LineRecording foreign = read_line_robot(in);
+  const Recording& recording = foreign.recording;
+  write_recording(out, recording, fmt::format("a robot on a line, {}", in.string()),
+                  {{"model.toml", format_model(foreign.model)}});
+  fmt::print("converted: a robot on a line {} to the recording {}\n\n", in.string(), out.string());
+  count(static_cast<int>(recording.drive.rows()), "drive rows, as of a wheelbase of 1 m");
+  count(static_cast<int>(recording.sightings.size()), "ranges to the post");
+  count(static_cast<int>(recording.truth.size()), "truth rows");
 }
 
 void convert_encoder_log(const fs::path& in, const fs::path& out) {
@@ -153,41 +166,28 @@ void check_folder(const fs::path& out) {
   }
 }
 
+/// A kind of foreign recording: what tells it, and what converts it.
+struct Foreign {
+  bool (*is)(const fs::path& in);
+  void (*convert)(const fs::path& in, const fs::path& out);
+};
+
+constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
+                                {&is_optiodom, &convert_optiodom},
+                                {&is_radio_ranges, &convert_radio_ranges},
+                                {&is_place_loops, &convert_place_loops},
+                                {&is_phil, &convert_phil},
+                                {&is_steered_truck, &convert_steered_truck},
+                                {&is_line_robot, &convert_line_robot},
+                                {&is_encoder_log, &convert_encoder_log}};
+
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
-  const bool ranges = is_radio_ranges(in);
-  const bool loops = is_place_loops(in);
-  const bool phil = is_phil(in);
-  const bool truck = is_steered_truck(in);
-  if (is_mrclam(in) || is_optiodom(in) || ranges || loops || phil || truck) check_folder(out);
-  if (is_mrclam(in)) {
-    convert_mrclam(in, out);
-    return;
-  }
-  if (is_optiodom(in)) {
-    convert_optiodom(in, out);
-    return;
-  }
-  if (ranges) {
-    convert_radio_ranges(in, out);
-    return;
-  }
-  if (loops) {
-    convert_place_loops(in, out);
-    return;
-  }
-  if (phil) {
-    convert_phil(in, out);
-    return;
-  }
-  if (truck) {
-    convert_steered_truck(in, out);
-    return;
-  }
-  if (is_encoder_log(in)) {
+  for (const Foreign& one : kForeign) {
+    if (!one.is(in)) continue;
     check_folder(out);
-    convert_encoder_log(in, out);
+    one.convert(in, out);
     return;
   }
   const bool graph = in.extension() == ".g2o" || in.string().ends_with(".g2o.xz");
@@ -201,8 +201,9 @@ void run_convert(const ConvertOptions& options) {
                      "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
                      "beacons (NAME_DR.txt, NAME_TD.txt), DIR/NAME of places that look alike "
                      "(NAME_Input.txt), DIR/NAME of a truck with steering and GPS (NAME_dr.mat, "
-                     "NAME_gpsx.mat), or a trial of PHIL's Turtlebot (a folder with "
-                     "kobuki_data.csv)");
+                     "NAME_gpsx.mat), a robot on a line (dataset1.csv), a log of a tricycle's "
+                     "encoders (.txt), or a trial of PHIL's Turtlebot "
+                     "(a folder with kobuki_data.csv)");
   }
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
   if (is_map_store(out)) {
@@ -221,11 +222,13 @@ void setup_convert(const Command& app) {
   const Command command = app.add_subcommand(
       "convert", "Convert maps between formats, and foreign recordings to recordings");
   command
-      .add_option("IN", options->in,
-                  "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
-                  "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
-                  "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), or "
-                  "DIR/trial_N of PHIL's Turtlebot (plain or .xz files)")
+      .add_option(
+          "IN", options->in,
+          "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
+          "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
+          "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), dataset1.csv of a "
+          "robot on a line, a log of a tricycle's encoders, or DIR/trial_N of PHIL's Turtlebot "
+          "(plain or .xz files)")
       .required()
       .type_name("FILE");
   command

@@ -21,6 +21,9 @@
 // part in it. Its frame is that of the first session with a compass (else of the first): the first
 // landmark lies at the origin and the first heading points as its compass says. Leg by leg, a
 // further session begins where it first sights a landmark of the map.
+//
+// Recordings of which none sights a landmark, but that have fixes or loops, have no map: what is
+// built is their adjusted path, in the frame of the fixes, else in that of the first pose.
 #pragma once
 
 #include "trussmap/landmark_map.hpp"
@@ -70,6 +73,7 @@ struct MapFit {
 struct MapQuality {
   /// How far landmarks are from the truth, by the adjustment, after the best rotation and
   /// translation: root mean square distances, m; the noise taken as large as it turned out to be.
+  /// Where there are none: how far the robot is, where something was measured, in the path's frame.
   double median_sd = 0.0;
   double worst_sd = 0.0;
   std::string worst_landmark;
@@ -81,7 +85,7 @@ struct MapQuality {
   /// loops.
   double misclosure_share = kAbsent;
   int sightings = 0;
-  double left_out_share = 0.0;  ///< of the sightings
+  double left_out_share = 0.0;  ///< of the sightings; where there are none, of fixes and loops
   double from_adjusted = 0.0;   ///< rms distance from the adjustment's map, m
 };
 
@@ -91,6 +95,39 @@ struct MapOnSurvey {
   SurveyComparison comparison;
   /// m, rigid, over the same landmarks; NaN: they are not reckoned, of ranges alone.
   double rms_dead_reckoning = kAbsent;
+};
+
+/// A fix or a loop beside an adjusted path.
+struct PathTie {
+  bool loop = false;
+  double t = 0.0;       ///< s
+  double t2 = kAbsent;  ///< s, of a loop
+  /// m: the fix; of a loop, where the path has the robot at t.
+  Vector2 from = Vector2::Zero();
+  Vector2 to = Vector2::Zero();  ///< m: where the path has the antenna; the robot at t2
+  double misfit = 0.0;           ///< m, between what was measured and the path
+  bool left_out = false;         ///< it contradicts the others
+};
+
+/// A path beside the truth, after the best rotation and translation.
+struct PathOnTruth {
+  int rows = 0;                     ///< of the truth, within the drive
+  double rms = 0.0;                 ///< m
+  double rms_dead_reckoning = 0.0;  ///< m, laid on the truth by itself
+};
+
+/// Where the robot drove, of a recording without landmarks.
+struct BuiltPath {
+  std::string recording;
+  std::vector<Vector2> adjusted;       ///< m: at the drive's start and at the end of every row
+  std::vector<Vector2> dead_reckoned;  ///< m, the same, never corrected, laid on the adjusted path
+  double length = 0.0;                 ///< m
+  double rms_dead_reckoning = 0.0;     ///< m, of it from the adjusted path
+  double median_sd = 0.0;              ///< m, as MapQuality
+  double worst_sd = 0.0;               ///< m
+  double worst_t = 0.0;                ///< s, when
+  std::vector<PathTie> ties;           ///< fixes, then loops, in order of time
+  std::optional<PathOnTruth> on_truth;
 };
 
 struct BuiltMap {
@@ -105,6 +142,7 @@ struct BuiltMap {
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there
   std::vector<RejectedSighting> rejected;
+  std::vector<BuiltPath> paths;          ///< one per recording, where there are no landmarks
   std::vector<FreedError> freed;         ///< what was estimated beside the map; empty: nothing
   std::vector<std::string> unconfirmed;  ///< landmarks that one sighting from afar alone has
   /// Positions by dead reckoning alone, never corrected: mean over all sightings of a landmark (of
@@ -137,10 +175,11 @@ enum class MapAxes {
                                   const Model& model, MapAxes axes,
                                   const BuildMapOptions& options = {});
 
-/// Builds one map from the sessions. Throws InputError where a recording has no sightings or there
-/// is no leg, SolveError where a session or a landmark is tied to nothing, std::invalid_argument on
-/// options out of range, on a recording that is not as recording.hpp has it and, naming it, on an
-/// effect that cannot be applied.
+/// Builds one map from the sessions, or the path where none sights a landmark (by the method
+/// adjustment alone). Throws InputError where a recording has no sightings (and others do, or it
+/// has neither fixes nor loops) or there is no leg, SolveError where a session or a landmark is
+/// tied to nothing, std::invalid_argument on options out of range, on a recording that is not as
+/// recording.hpp has it and, naming it, on an effect that cannot be applied.
 [[nodiscard]] BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
                                  const BuildMapOptions& options = {});
 

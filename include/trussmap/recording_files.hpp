@@ -153,15 +153,21 @@ struct PlaceLoopRecording {
 //
 //   PREFIX_dr.mat     time [ms], speed [m/s] of the rear left wheel, steering [rad]
 //   PREFIX_gpsx.mat   timeGps [ms], Lo_m, La_m: to the east and to the north [m]
+//   victoriaPark.txt  beside them, may be absent: the graph that comes with iSAM, plain or .xz; of
+//                     ODOMETRY pose, next pose, dx, dy, dtheta; of LANDMARK pose, tree, x, y
+//                     [m, rad, ahead and to the left of the rear axle's centre]
 //
 // MATLAB files of level 5. A speed and a steering angle hold from their row's time until the next
-// row's. The laser and its trees are not read.
+// row's. The graph has no times; but its odometry is that of the same log, summed up row by row
+// from one laser frame to the next, to all its digits: so every edge is found again in the log, and
+// its trees are sightings by range and bearing at the ends of rows.
 
 struct TruckRecording {
   Recording recording;
   Model model;  ///< the truck's axles and wheel as stated, and noise that suits it
 
   int repeated_fixes = 0;  ///< with a time no later than the one before, dropped
+  int graph_poses = 0;     ///< found in the log; 0: no graph
 };
 
 /// True if `prefix` (DIR/NAME) names such files, complete or not.
@@ -198,6 +204,28 @@ struct EncoderLogRecording {
 
 /// Throws InputError with file and line.
 [[nodiscard]] EncoderLogRecording read_encoder_log(const std::filesystem::path& file);
+
+// ----------------------------------------
+// A robot that drives to and fro on a line (Barfoot, "State Estimation for Robotics", 2017, data
+// of the exercises: "dataset1") as a recording.
+//
+//   dataset1.csv   t [s], x_true [m], v [m/s] by the wheels, r [m]: range to a post by laser; a
+//                  line of # at the top; plain or .xz
+//
+// A speed holds from its row's time until the next row's, and is both wheels'; the line is the x
+// axis, the landmark "post" stands on it where the authors state it. Its ranges have no bearing,
+// for none was measured.
+
+struct LineRecording {
+  Recording recording;
+  Model model;  ///< a wheelbase of 1 m, which the data do not state, and the authors' noise
+};
+
+/// True if the file is called dataset1.csv, or dataset1.csv.xz.
+[[nodiscard]] bool is_line_robot(const std::filesystem::path& file);
+
+/// Throws InputError, with the line where there is one.
+[[nodiscard]] LineRecording read_line_robot(const std::filesystem::path& file);
 
 // ----------------------------------------
 // A pose graph (g2o) as a recording: what SLAM benchmarks are kept in.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/build_map.hpp"
 
+#include "build_map/built_path.hpp"
 #include "build_map/leg_by_leg.hpp"
 #include "build_map/map_doubts.hpp"
 #include "build_map/map_fit.hpp"
@@ -34,7 +35,8 @@ void require_sightings(const std::vector<Recording>& recordings) {
   for (const Recording& one : recordings) {
     if (!one.sightings.empty()) continue;
     throw InputError(one.name, 0,
-                     "no landmark was sighted, expected sightings to build a map from");
+                     "no landmark was sighted, expected sightings to build a map from; a path is "
+                     "built where no recording has any, and all have fixes or loops");
   }
 }
 
@@ -163,12 +165,31 @@ Turn turn_onto(const LandmarkGraph& adjusted, const MapBuilder& builder,
   return turn;
 }
 
-/// What the fit says of the map, and what speaks against it.
-BuiltMap judged(BuiltMap built, const MapFitState& best, const std::vector<Recording>& recordings,
-                const Model& model, const std::vector<SightedDrive>& believed) {
+void take_fit(BuiltMap& built, const MapFitState& best) {
   const RecordingAdjustment& fit = best.fit.adjustment;
   built.fit = MapFit{fit.chi2, fit.dof, fit.p_value, fit.iterations, fit.converged};
   built.freed = best.freed;
+}
+
+BuiltMap build_paths(const std::vector<Recording>& recordings, const Model& model,
+                     const BuildMapOptions& options) {
+  if (options.method != Method::adjustment) {
+    throw InputError(recordings.front().name, 0,
+                     "has no landmarks, between which legs go, expected the method adjustment");
+  }
+  const MapFitState best = fit_map(recordings, model, options.gate);
+  BuiltMap built;
+  take_fit(built, best);
+  built.paths = paths_of(best, recordings, cleared(recordings, model), model);
+  built.quality = quality_of(built.paths, best);
+  doubt(built, best, recordings, model);
+  return built;
+}
+
+/// What the fit says of the map, and what speaks against it.
+BuiltMap judged(BuiltMap built, const MapFitState& best, const std::vector<Recording>& recordings,
+                const Model& model, const std::vector<SightedDrive>& believed) {
+  take_fit(built, best);
   built.rejected = left_out_of(best.fit);
   ReckonedMap reckoned = reckoned_map(believed);
   built.quality = quality_of(built, best, reckoned);
@@ -183,6 +204,7 @@ BuiltMap judged(BuiltMap built, const MapFitState& best, const std::vector<Recor
 BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
                    const BuildMapOptions& options) {
   check(recordings, options);
+  if (are_paths_alone(recordings)) return build_paths(recordings, model, options);
   require_sightings(recordings);
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);

@@ -66,15 +66,20 @@ double distance_from(const FitState& fit, const LandmarkGraph& map) {
   return here.size() < 2 ? 0.0 : align_rigidly(here, there).rms;
 }
 
-/// Root mean square distance of landmarks from their middle, m.
-double extent_of(const LandmarkGraph& map) {
+/// Root mean square distance of places from their middle, m.
+double extent_of(const std::vector<Vector2>& places) {
+  const double count = std::max(1.0, static_cast<double>(places.size()));
   Vector2 middle = Vector2::Zero();
-  for (int k = 0; k < map.landmarks(); ++k) middle += map.landmark(k).position / map.landmarks();
+  for (const Vector2& one : places) middle += one / count;
   double sum = 0.0;
-  for (int k = 0; k < map.landmarks(); ++k) {
-    sum += (map.landmark(k).position - middle).squaredNorm();
-  }
-  return std::sqrt(sum / std::max(1, map.landmarks()));
+  for (const Vector2& one : places) sum += (one - middle).squaredNorm();
+  return std::sqrt(sum / count);
+}
+
+double extent_of(const LandmarkGraph& map) {
+  std::vector<Vector2> places;
+  for (int k = 0; k < map.landmarks(); ++k) places.push_back(map.landmark(k).position);
+  return extent_of(places);
 }
 
 int sightings_of(const RecordingProblem& problem) {
@@ -171,47 +176,71 @@ void tell_left_out(const FitState& fit, std::vector<std::string>& warnings) {
   }
 }
 
+/// What was built, of what, and when a gate should be given.
+struct Words {
+  std::string built;
+  std::string of;
+  std::string gate_if;
+};
+
 void doubt_fit(BuiltMap& built, const MapFitState& best) {
   constexpr double kManyOut = 0.08;
   constexpr double kSurelyFreed = 1e-3;
   constexpr double kImplausible = 1e-4;
   constexpr double kNoticeable = 1.1;  // of the dispersion
   const RecordingAdjustment& fit = best.fit.adjustment;
+  const Words words = built.paths.empty()
+                          ? Words{"map", "sightings", "labels are often misread"}
+                          : Words{"path", "fixes and loops", "they are often wrong"};
   std::vector<std::string>& warnings = built.warnings;
   if (!fit.converged) {
-    warnings.push_back(joined("no minimum was reached in ", fit.iterations,
-                              " iterations: the map is not the best one"));
+    warnings.push_back(joined("no minimum was reached in ", fit.iterations, " iterations: the ",
+                              words.built, " is not the best one"));
   }
   if (!built.freed.empty()) {
-    const std::string words = words_of(built.freed);
+    const std::string freed = words_of(built.freed);
     if (best.p_freed < kSurelyFreed) {
-      warnings.push_back("the robot is not as its model says (" + words +
-                         ", estimated beside the map); run discover for what is missing");
+      warnings.push_back("the robot is not as its model says (" + freed +
+                         ", estimated beside the " + words.built +
+                         "); run discover for what is missing");
     } else {
-      built.notes.push_back("estimated beside the map, though hardly more than noise: " + words);
+      built.notes.push_back("estimated beside the " + words.built +
+                            ", though hardly more than noise: " + freed);
     }
   }
   const double share = built.quality.left_out_share;
   if (std::isinf(fit.gate_widened)) {
-    warnings.push_back(
-        "so many sightings contradict the rest that none was left out: the model is wrong, or its "
-        "noise is far too small; run discover, or give a gate (4, say) if labels are often "
-        "misread");
+    warnings.push_back("so many " + words.of +
+                       " contradict the rest that none was left out: the model is wrong, or its "
+                       "noise is far too small; run discover, or give a gate (4, say) if " +
+                       words.gate_if);
   } else if (fit.gate_widened > 1.0) {
     warnings.push_back(
-        "more sightings contradict the rest than are ever wrong: only those beyond " +
+        "more " + words.of + " contradict the rest than are ever wrong: only those beyond " +
         fixed_text(kAdjustmentGate * fit.gate_widened, 0) +
         " standard deviations were left out; the model is wrong, or its noise is too "
         "small; run discover");
   } else if (share > kManyOut) {
-    warnings.push_back(fixed_text(100.0 * share, 0) +
-                       " % of the sightings contradict the rest and were left out: that many are "
-                       "seldom wrong; run discover");
+    warnings.push_back(fixed_text(100.0 * share, 0) + " % of the " + words.of +
+                       " contradict the rest and were left out: that many are seldom wrong; run "
+                       "discover");
   }
   if (fit.p_value < kImplausible && built.quality.dispersion > kNoticeable) {
     warnings.push_back("errors are " + fixed_text(std::sqrt(built.quality.dispersion), 1) +
                        " times what the model's noise allows: its noise is too small, or an effect "
                        "is missing; run discover");
+  }
+}
+
+/// A path that hangs on too little.
+void doubt_ties(BuiltMap& built) {
+  constexpr double kLoose = 0.1;  // of the path's extent
+  for (const BuiltPath& path : built.paths) {
+    if (path.median_sd <= kLoose * extent_of(path.adjusted)) continue;
+    built.warnings.push_back((built.paths.size() > 1 ? path.recording + ": " : std::string()) +
+                             "the path is loosely tied: half of it is uncertain by " +
+                             fixed_text(path.median_sd, 2) +
+                             " m or more; it takes more fixes, or loops");
   }
 }
 
@@ -340,6 +369,10 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
            const Model& model) {
   doubt_units(recordings, model, built.warnings);
   doubt_fit(built, best);
+  if (!built.paths.empty()) {
+    doubt_ties(built);
+    return;
+  }
   tell_left_out(best.fit, built.warnings);
   std::ranges::move(mirror_warnings(best.fit.problem, best.fit.adjustment),
                     std::back_inserter(built.warnings));

@@ -77,10 +77,17 @@ double misfit_of(const FitState& fit, const Measurement& one) {
 
 }  // namespace
 
+bool are_paths_alone(const std::vector<Recording>& recordings) {
+  return std::all_of(recordings.begin(), recordings.end(), [](const Recording& one) {
+    return one.sightings.empty() && !(one.fixes.empty() && one.loops.empty());
+  });
+}
+
 MapFitState fit_map(const std::vector<Recording>& recordings, const Model& model,
                     const std::optional<double>& gate) {
   FitterOptions how = options_for(gate);
   how.free_common_errors = true;
+  how.paths = are_paths_alone(recordings);
   MapFitState result;
   result.fit = fit_recordings(recordings, model, how);
   result.p_freed = p_value_of_common_errors(result.fit);

@@ -26,7 +26,11 @@ struct MapFitState {
   double p_freed = 1.0;  ///< chance of common errors as large where there are none
 };
 
-/// Survey and truth have no part in it. Throws as build_map does.
+/// No sightings, but fixes or loops in each: there are paths to build, and no map.
+[[nodiscard]] bool are_paths_alone(const std::vector<Recording>& recordings);
+
+/// Survey and truth have no part in it; of paths alone the paths are laid. Throws as build_map
+/// does.
 [[nodiscard]] MapFitState fit_map(const std::vector<Recording>& recordings, const Model& model,
                                   const std::optional<double>& gate);
 

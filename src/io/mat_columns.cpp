@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -158,6 +159,27 @@ std::map<std::string, std::vector<double>> read_mat_columns(const std::filesyste
     read_matrix(element, name, columns);
   }
   return columns;
+}
+
+const std::vector<double>& mat_column(const std::map<std::string, std::vector<double>>& columns,
+                                      const std::string& name, const std::filesystem::path& file,
+                                      std::size_t rows) {
+  constexpr double kMostNumber = 1e12;  // in any unit: beyond all that is meant
+  const auto found = columns.find(name);
+  if (found == columns.end()) {
+    throw InputError(file.string(), 0, "has no \"" + name + "\", expected it");
+  }
+  const std::vector<double>& values = found->second;
+  if (rows > 0 && values.size() != rows) {
+    throw InputError(file.string(), 0,
+                     "\"" + name + "\" has " + std::to_string(values.size()) +
+                         " numbers, expected " + std::to_string(rows) + " as the times are");
+  }
+  for (const double one : values) {
+    if (std::abs(one) <= kMostNumber) continue;
+    throw InputError(file.string(), 0, "\"" + name + "\" holds no number, or one beyond 1e12");
+  }
+  return values;
 }
 
 }  // namespace trussmap

@@ -6,6 +6,7 @@
 // 2000 are kept in.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -16,5 +17,10 @@ namespace trussmap {
 /// By name. Throws InputError with the byte where it is something else.
 [[nodiscard]] std::map<std::string, std::vector<double>> read_mat_columns(
     const std::filesystem::path& file);
+
+/// A column by its name, of `rows` numbers (0: of any), none beyond 1e12; InputError otherwise.
+[[nodiscard]] const std::vector<double>& mat_column(
+    const std::map<std::string, std::vector<double>>& columns, const std::string& name,
+    const std::filesystem::path& file, std::size_t rows = 0);
 
 }  // namespace trussmap

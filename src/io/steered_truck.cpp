@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/mat_columns.hpp"
+#include "io/number_rows.hpp"
+#include "io/truck_trees.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
 
@@ -15,9 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using Columns = std::map<std::string, std::vector<double>>;
 
-constexpr double kAxles = 2.83;       // m, rear to front
-constexpr double kWheelLeft = 0.76;   // m, of the wheel with the encoder
-constexpr double kMostNumber = 1e12;  // ms, m: beyond all that is meant
+constexpr double kAxles = 2.83;      // m, rear to front
+constexpr double kWheelLeft = 0.76;  // m, of the wheel with the encoder
 
 fs::path drive_file(const fs::path& prefix) {
   return prefix.string() + "_dr.mat";
@@ -27,24 +28,20 @@ fs::path fixes_file(const fs::path& prefix) {
   return prefix.string() + "_gpsx.mat";
 }
 
-const std::vector<double>& column(const Columns& columns, const char* name, const fs::path& file,
-                                  std::size_t rows = 0) {
-  const auto found = columns.find(name);
-  if (found == columns.end()) {
-    throw InputError(file.string(), 0, std::string("has no \"") + name + "\", expected it");
+/// Empty: there is none.
+fs::path graph_file(const fs::path& prefix) {
+  return plain_or_xz(prefix.parent_path() / "victoriaPark.txt");
+}
+
+/// Of the rear axle's centre, by the truck's stated measures.
+std::vector<BodyStep> steps_of(const Drive& drive) {
+  std::vector<BodyStep> steps;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double curvature = std::tan(drive.covariates[1].values[row]) / kAxles;
+    const double ahead = drive.covariates[0].values[row] / (1.0 - kWheelLeft * curvature);
+    steps.push_back({ahead, ahead * curvature});
   }
-  const std::vector<double>& values = found->second;
-  if (rows > 0 && values.size() != rows) {
-    throw InputError(file.string(), 0,
-                     std::string("\"") + name + "\" has " + std::to_string(values.size()) +
-                         " numbers, expected " + std::to_string(rows) + " as the times are");
-  }
-  for (const double one : values) {
-    if (std::abs(one) <= kMostNumber) continue;
-    throw InputError(file.string(), 0,
-                     std::string("\"") + name + "\" holds no number, or one beyond 1e12");
-  }
-  return values;
+  return steps;
 }
 
 }  // namespace
@@ -66,9 +63,9 @@ TruckRecording read_steered_truck(const fs::path& prefix) {
 
   const fs::path driven = drive_file(prefix);
   const Columns drive = read_mat_columns(driven);
-  const std::vector<double>& time = column(drive, "time", driven);
-  const std::vector<double>& speed = column(drive, "speed", driven, time.size());
-  const std::vector<double>& steering = column(drive, "steering", driven, time.size());
+  const std::vector<double>& time = mat_column(drive, "time", driven);
+  const std::vector<double>& speed = mat_column(drive, "speed", driven, time.size());
+  const std::vector<double>& steering = mat_column(drive, "steering", driven, time.size());
   Recording& recording = result.recording;
   recording.name = prefix.string();
   recording.drive.covariates = {{"wheel", {}}, {"steer", {}}};
@@ -87,15 +84,21 @@ TruckRecording read_steered_truck(const fs::path& prefix) {
   }
   const fs::path received = fixes_file(prefix);
   const Columns fixes = read_mat_columns(received);
-  const std::vector<double>& stamped = column(fixes, "timeGps", received);
-  const std::vector<double>& east = column(fixes, "Lo_m", received, stamped.size());
-  const std::vector<double>& north = column(fixes, "La_m", received, stamped.size());
+  const std::vector<double>& stamped = mat_column(fixes, "timeGps", received);
+  const std::vector<double>& east = mat_column(fixes, "Lo_m", received, stamped.size());
+  const std::vector<double>& north = mat_column(fixes, "La_m", received, stamped.size());
   for (std::size_t k = 0; k < stamped.size(); ++k) {
     if (k > 0 && !(stamped[k] > stamped[k - 1])) {
       ++result.repeated_fixes;
       continue;
     }
     recording.fixes.push_back({1e-3 * (stamped[k] - time[0]), east[k], north[k]});
+  }
+  const fs::path graph = graph_file(prefix);
+  if (!graph.empty()) {
+    result.graph_poses = take_trees(graph, steps_of(recording.drive), recording);
+    result.model.noise.range = 0.15;
+    result.model.noise.bearing = 0.01;
   }
   return result;
 }

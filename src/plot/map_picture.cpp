@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "plot/map_picture.hpp"
 
+#include "plot/path_picture.hpp"
+#include "plot/picture_frame.hpp"
 #include "text/xml_text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,42 +15,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kWidth = 800.0;  // pixels
-constexpr double kMargin = 40.0;
-constexpr double kHeader = 76.0;             // title and legend
 constexpr std::size_t kMostNamesDrawn = 80;  // beyond that names only clutter
 
-/// Metres to pixels, y upwards.
-class Frame {
- public:
-  void include(const Vector2& point) {
-    low_ = low_.cwiseMin(point);
-    high_ = high_.cwiseMax(point);
-  }
-
-  void finish() {
-    const Vector2 size = (high_ - low_).cwiseMax(1e-6);
-    scale_ = std::min((kWidth - 2.0 * kMargin) / size.x(), kWidth / size.y());
-    height_ = kHeader + 2.0 * kMargin + scale_ * size.y();
-  }
-
-  [[nodiscard]] double x(const Vector2& point) const {
-    return kMargin + scale_ * (point.x() - low_.x());
-  }
-  [[nodiscard]] double y(const Vector2& point) const {
-    return height_ - kMargin - scale_ * (point.y() - low_.y());
-  }
-  [[nodiscard]] double height() const { return height_; }
-  [[nodiscard]] double scale() const { return scale_; }
-
- private:
-  Vector2 low_ = Vector2::Constant(std::numeric_limits<double>::infinity());
-  Vector2 high_ = Vector2::Constant(-std::numeric_limits<double>::infinity());
-  double scale_ = 1.0;
-  double height_ = 0.0;
-};
-
-std::string line(const Frame& view, const Vector2& a, const Vector2& b, const char* kind,
+std::string line(const PictureFrame& view, const Vector2& a, const Vector2& b, const char* kind,
                  double width) {
   return fmt::format(
       "<line class=\"{}\" x1=\"{:.2f}\" y1=\"{:.2f}\" x2=\"{:.2f}\" y2=\"{:.2f}\" "
@@ -57,7 +25,7 @@ std::string line(const Frame& view, const Vector2& a, const Vector2& b, const ch
       kind, view.x(a), view.y(a), view.x(b), view.y(b), width);
 }
 
-std::string cross(const Frame& view, const Vector2& at) {
+std::string cross(const PictureFrame& view, const Vector2& at) {
   constexpr double r = 4.5;
   const double x = view.x(at);
   const double y = view.y(at);
@@ -84,10 +52,10 @@ double round_length(double length) {
   return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
 }
 
-std::string header(const MapPicture& picture, const Frame& view) {
-  std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n", kMargin,
-                                xml_escaped(picture.title));
-  double x = kMargin;
+std::string header(const MapPicture& picture, const PictureFrame& view) {
+  std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"28\">{}</text>\n",
+                                kPictureMargin, xml_escaped(picture.title));
+  double x = kPictureMargin;
   const auto entry = [&](const std::string& mark, const char* label, double width) {
     svg += fmt::format(
         "<g transform=\"translate({:.1f},54)\">{}<text x=\"30\" y=\"5\">{}</text>"
@@ -98,28 +66,43 @@ std::string header(const MapPicture& picture, const Frame& view) {
   const std::string bar =
       "<line class=\"{}\" x1=\"0\" y1=\"0\" x2=\"24\" y2=\"0\" "
       "stroke-width=\"2\"/>";
-  if (!picture.before.empty()) {
+  const bool paths = !picture.paths.empty();
+  if (paths) {
+    entry(fmt::format(fmt::runtime(bar), "before"), "dead reckoning", 150.0);
+  } else if (!picture.before.empty()) {
     entry(fmt::format(fmt::runtime(bar), "before"), "before correction", 170.0);
   }
-  entry(fmt::format(fmt::runtime(bar), "after"), "corrected map", 150.0);
+  entry(fmt::format(fmt::runtime(bar), "after"), paths ? "adjusted path" : "corrected map", 150.0);
   if (!picture.truth.empty()) {
     entry("<path class=\"truth\" d=\"M7.5 -4.5l9 9m-9 0l9 -9\"/>", "true position", 140.0);
   }
-  const double length = round_length(0.2 * kWidth / view.scale());
+  if (paths) {
+    entry(
+        "<circle class=\"fix\" cx=\"12\" cy=\"0\" r=\"2\"/>"
+        "<path class=\"loop\" d=\"M0 4h24\"/>",
+        "fix, loop", 100.0);
+    entry(
+        "<circle class=\"fix wrong\" cx=\"12\" cy=\"0\" r=\"2.5\"/>"
+        "<path class=\"loop wrong\" d=\"M0 4h24\"/>",
+        "left out", 90.0);
+  }
+  const double length = round_length(0.2 * kPictureWidth / view.scale());
   const double pixels = length * view.scale();
   svg += fmt::format(
       "<g transform=\"translate({:.1f},54)\"><path class=\"scale\" d=\"M0 -4v8M0 0h{:.1f}M{:.1f} "
       "-4v8\"/><text x=\"{:.1f}\" y=\"-8\" text-anchor=\"middle\">{:g} m</text></g>\n",
-      kWidth - kMargin - pixels, pixels, pixels, 0.5 * pixels, length);
+      kPictureWidth - kPictureMargin - pixels, pixels, pixels, 0.5 * pixels, length);
   return svg;
 }
 
 constexpr const char* kMapStyle =
     "<style>text{font:13px system-ui,sans-serif;fill:#222}.title{font-size:17px;font-weight:600}"
     ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.after{stroke:#111}"
-    ".axis{stroke:#1b6ca8}.joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:"
-    "1.6;fill:none}"
-    ".scale{stroke:#222;fill:none}</style>\n";
+    ".axis{stroke:#1b6ca8}"
+    ".joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:1.6;fill:none}"
+    ".scale{stroke:#222;fill:none}polyline,.loop{fill:none;stroke-width:1}"
+    ".fix{fill:#2a6fb0}.loop{stroke:#7fb3d9;stroke-width:.6}"
+    ".fix.wrong{fill:#d1495b}.loop.wrong{stroke:#d1495b;stroke-opacity:.4}</style>\n";
 
 }  // namespace
 
@@ -128,6 +111,7 @@ MapPicture picture_of(const BuiltMap& built, const std::string& title) {
   picture.title = title;
   picture.map = built.map;
   picture.before = built.dead_reckoned;
+  picture.paths = built.paths;
   if (built.on_survey) {
     picture.map_onto_truth = built.on_survey->comparison.rigid;
     for (const SurveyPoint& point : built.on_survey->points) {
@@ -141,15 +125,16 @@ std::string draw_map(const MapPicture& picture) {
   const Alignment& lay = picture.map_onto_truth;
   const auto after = [&](int k) { return lay.apply(picture.map.landmark(k).position); };
   const auto before = [&](int k) { return picture.before.find(picture.map.landmark(k).name); };
-  Frame view;
+  PictureFrame view;
   for (int k = 0; k < picture.map.landmarks(); ++k) {
     view.include(after(k));
     if (before(k) != picture.before.end()) view.include(lay.apply(before(k)->second));
   }
   for (const auto& [name, position] : picture.truth) view.include(position);
+  include_paths(picture.paths, view);
   view.finish();
 
-  std::string body;
+  std::string body = draw_paths(picture.paths, view);
   for (int number = 0; number < picture.map.routes(); ++number) {
     const Route& route = picture.map.route(number);
     const auto a = before(route.source);
@@ -180,7 +165,7 @@ std::string draw_map(const MapPicture& picture) {
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
              "width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n"
              "{3}<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-             kWidth, view.height(), xml_escaped(picture.title), kMapStyle) +
+             kPictureWidth, view.height(), xml_escaped(picture.title), kMapStyle) +
          header(picture, view) + body + "</svg>\n";
 }
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A map as a picture (SVG): before correction grey, after black, true positions as crosses, like
-// Figures 7 and 8 of Golfarelli, Maio & Rizzi (1998). Routes are drawn straight; a route's width
-// grows with its traversals. A tick at a landmark is its own axis, where it has one.
+// A map, or a path, as a picture (SVG): before correction grey, after black, true positions as
+// crosses, like Figures 7 and 8 of Golfarelli, Maio & Rizzi (1998). Routes are drawn straight; a
+// route's width grows with its traversals. A tick at a landmark is its own axis, where it has one.
 #pragma once
 
 #include "trussmap/build_map.hpp"
@@ -12,16 +12,18 @@
 #include "trussmap/survey_comparison.hpp"
 
 #include <string>
+#include <vector>
 
 namespace trussmap {
 
 struct MapPicture {
   std::string title;
-  LandmarkGraph map;         ///< after correction
-  LandmarkPositions before;  ///< may be empty, or lack landmarks
-  LandmarkPositions truth;   ///< may be empty
-  Alignment map_onto_truth;  ///< laid over map and before alike
-  bool names = true;         ///< write the landmarks' names beside them
+  LandmarkGraph map;             ///< after correction
+  LandmarkPositions before;      ///< may be empty, or lack landmarks
+  LandmarkPositions truth;       ///< may be empty
+  Alignment map_onto_truth;      ///< laid over map and before alike
+  std::vector<BuiltPath> paths;  ///< where there are no landmarks
+  bool names = true;             ///< write the landmarks' names beside them
 };
 
 /// The map before and after, laid over its survey where there is one.

@@ -4,6 +4,7 @@
 #include "plot/map_picture.hpp"
 #include "report/page.hpp"
 #include "report/page_words.hpp"
+#include "report/path_page.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/wording.hpp"
@@ -263,6 +264,7 @@ PageTable survey_table(const SurveyErrors& errors) {
 }  // namespace
 
 Page map_page(const BuiltMap& built, const std::string& subject) {
+  if (!built.paths.empty()) return path_page(built, subject);
   const Drawn drawn{built, picture_of(built, "")};
   PageContent page;
   page.command = "build";

@@ -202,7 +202,8 @@ std::string verdict_in_words(const BuiltMap& built) {
       built.method == Method::adjustment
           ? fmt::format("certain to {:.3f} m (median)", built.quality.median_sd)
           : fmt::format("{:.3f} m off the adjusted one (rms)", built.quality.from_adjusted);
-  return fmt::format("{}: nothing speaks against this map, {}", verdict_of(built), size);
+  return fmt::format("{}: nothing speaks against this {}, {}", verdict_of(built),
+                     built.paths.empty() ? "map" : "path", size);
 }
 
 }  // namespace trussmap

@@ -169,8 +169,21 @@ void fuzz_phil(std::string_view bytes) {
 }
 
 void fuzz_truck(std::string_view bytes) {
-  write_parts(bytes, {"a_dr.mat", "a_gpsx.mat"});
+  write_parts(bytes, {"a_dr.mat", "a_gpsx.mat", "victoriaPark.txt"});
   may_refuse([] { static_cast<void>(read_steered_truck(folder().path() / "a")); });
+  folder().remove("victoriaPark.txt");
+}
+
+void fuzz_line(std::string_view bytes) {
+  const fs::path file = folder().write("dataset1.csv", bytes);
+  may_refuse([&file] { static_cast<void>(read_line_robot(file)); });
+}
+
+void fuzz_encoders(std::string_view bytes) {
+  const fs::path file = folder().write("log.txt", bytes);
+  may_refuse([&file] {
+    if (is_encoder_log(file)) static_cast<void>(read_encoder_log(file));
+  });
 }
 
 void fuzz_runs(std::string_view bytes) {
@@ -268,6 +281,7 @@ const std::map<std::string, Target>& targets() {
       {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
       {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
       {"phil", &fuzz_phil},           {"truck", &fuzz_truck},
+      {"line", &fuzz_line},           {"encoders", &fuzz_encoders},
       {"runs", &fuzz_runs},           {"store", &fuzz_store},
       {"words", &fuzz_words},         {"xz", &fuzz_xz}};
   return kTargets;

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -65,6 +66,76 @@ TEST(SteeredTruck, ColumnsBecomeADriveAndFixes) {
   EXPECT_EQ(read.recording.fixes[1].y, 6.0);
 }
 
+/// Seven rows of 25 ms: at rest, then ahead with the front wheels turned, at rest, ahead.
+std::string moving() {
+  return mat(column("time", {0.0, 25.0, 50.0, 75.0, 100.0, 125.0, 150.0, 175.0}) +
+             column("speed", {0.0, 4.0, 4.0, 2.0, 0.0, 0.0, 4.0, 9.0}) +
+             column("steering", {0.1, 0.1, 0.2, -0.1, 0.1, 0.1, 0.0, 0.0}));
+}
+
+/// An edge over the rows [first, end) of `moving`, by the truck's stated axles: 2.83 m apart, the
+/// wheel 0.76 m to the left.
+std::string edge(int from, int to, std::size_t first, std::size_t end) {
+  const double speed[] = {0.0, 4.0, 4.0, 2.0, 0.0, 0.0, 4.0};
+  const double steering[] = {0.1, 0.1, 0.2, -0.1, 0.1, 0.1, 0.0};
+  double x = 0.0, y = 0.0, heading = 0.0;
+  for (std::size_t row = first; row < end; ++row) {
+    const double ahead = 0.025 * speed[row] / (1.0 - 0.76 * std::tan(steering[row]) / 2.83);
+    x += ahead * std::cos(heading);
+    y += ahead * std::sin(heading);
+    heading += ahead * std::tan(steering[row]) / 2.83;
+  }
+  char text[200];
+  std::snprintf(text, sizeof text, "ODOMETRY %d %d %.6g %.6g %.6g 100 0 0 500 0 500\n", from, to, x,
+                y, heading);
+  return text;
+}
+
+TEST(SteeredTruck, TreesOfTheGraphStandAtTheTimesOfItsEdges) {
+  const ScratchFolder scratch;
+  scratch.write("a_dr.mat", moving());
+  scratch.write("a_gpsx.mat", kFixes);
+  // Pose 1 stands after row 2, pose 3 after row 4; pose 4 is sought beyond a row at rest.
+  scratch.write("victoriaPark.txt", edge(0, 1, 0, 2) + edge(1, 3, 2, 4) + edge(3, 4, 6, 7) +
+                                        "LANDMARK 3 7 3 4 1.6 0 1.6\nLANDMARK 1 9 5 0 1.6 0 1.6\n");
+  const TruckRecording read = read_steered_truck(scratch.path() / "a");
+  EXPECT_EQ(read.graph_poses, 4);
+  const std::vector<Sighting>& seen = read.recording.sightings;
+  ASSERT_EQ(seen.size(), 2U);
+  EXPECT_EQ(seen[0].landmark, "9");
+  EXPECT_NEAR(seen[0].t, 0.050, 1e-12);
+  EXPECT_EQ(seen[1].landmark, "7");
+  EXPECT_NEAR(seen[1].t, 0.100, 1e-12);
+  EXPECT_NEAR(seen[1].range, 5.0, 1e-12);
+  EXPECT_NEAR(seen[1].bearing, std::atan2(4.0, 3.0), 1e-12);
+}
+
+TEST(SteeredTruck, GraphsOfOtherDrivesAreRefused) {
+  const ScratchFolder scratch;
+  scratch.write("a_dr.mat", moving());
+  scratch.write("a_gpsx.mat", kFixes);
+  const auto refusal = [&scratch](const std::string& graph) -> std::string {
+    scratch.write("victoriaPark.txt", graph);
+    try {
+      static_cast<void>(read_steered_truck(scratch.path() / "a"));
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(scratch.path().string().size() + 1);
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal("ODOMETRY 0 1 0.11 0 0 1 0 0 1 0 1\nLANDMARK 1 2 3 4 1 0 1\n"),
+            "victoriaPark.txt: has an edge from pose 0 to 1 that the drive has not, expected the "
+            "graph of this very drive");
+  EXPECT_EQ(refusal(edge(0, 1, 0, 2) + edge(2, 3, 2, 4)),
+            "victoriaPark.txt: has an edge from pose 2 after one to pose 1, expected the odometry "
+            "from pose to pose in order");
+  EXPECT_EQ(refusal(edge(0, 1, 0, 2) + "LANDMARK 5 2 3 4 1 0 1\n"),
+            "victoriaPark.txt: sees a tree from pose 5, to which no odometry leads, expected poses "
+            "of the drive");
+  EXPECT_EQ(refusal(edge(0, 1, 0, 2) + "LANDMARK 1 2 three 4 1 0 1\n").substr(0, 18),
+            "victoriaPark.txt:2");
+}
+
 std::string complaint(const std::string& drive) {
   const ScratchFolder scratch;
   scratch.write("a_dr.mat", drive);
@@ -114,7 +185,8 @@ TEST(SteeredTruck, NoDamageIsMoreThanAnError) {
 TEST(SlowSteeredTruck, VictoriaParkFollowsItsGps) {
   TRUSSMAP_NEEDS_SHARED("data/victoria-park/aa3_dr.mat");
   const TruckRecording read = read_steered_truck(testing::shared("data/victoria-park/aa3"));
-  const Recording recording = with_wheels(read.recording, read.model.robot);
+  Recording recording = with_wheels(read.recording, read.model.robot);
+  recording.sightings.clear();
   Model model = read.model;
   for (const Channel channel : {Channel::steer, Channel::steer_gain, Channel::wheels,
                                 Channel::antenna, Channel::antenna_left}) {
@@ -139,6 +211,28 @@ TEST(SlowSteeredTruck, VictoriaParkFollowsItsGps) {
     ++count;
   }
   EXPECT_LT(std::sqrt(sum / count), 5.0);  // 2.3 m when this was written
+}
+
+/// The same constants from trees alone: the truth is what the GPS tells in the test above.
+TEST(SlowSteeredTruck, VictoriaParksTreesTellTheSteeringAsItsGpsDoes) {
+  TRUSSMAP_NEEDS_SHARED("data/victoria-park/aa3_dr.mat");
+  const TruckRecording read = read_steered_truck(testing::shared("data/victoria-park/aa3"));
+  EXPECT_EQ(read.graph_poses, 6969);
+  ASSERT_EQ(read.recording.sightings.size(), 3640U);
+  Recording recording = with_wheels(read.recording, read.model.robot);
+  recording.fixes.clear();
+  Model model = read.model;
+  for (const Channel channel :
+       {Channel::steer, Channel::steer_gain, Channel::wheels, Channel::delay}) {
+    model.effects.push_back({std::string(name_of(channel)), channel, {"1"}, {}, false});
+  }
+  FitOptions options;
+  options.gate = 16.0;
+  const ModelFit fit = fit_model({recording}, model, options);
+  const auto found = [&fit](std::size_t k) { return fit.model.effects[k].coefficients[0]; };
+  EXPECT_NEAR(found(0), 0.00433, 0.0005);  // by the GPS 0.248 deg
+  EXPECT_NEAR(found(1), 0.037, 0.007);     // by the GPS 3.7 %
+  EXPECT_LT(fit.left_out.size(), 40U);
 }
 
 }  // namespace

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "io/csv.hpp"
+#include "io/number_rows.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/recording_files.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kNominalWheelbase = 1.0;  // m: the data state none
+
+// As the authors give them beside the columns.
+constexpr double kPost = 4.42848;              // m, where it stands
+constexpr double kRangeVariance = 3.6692e-4;   // m^2
+constexpr double kSpeedVariance = 2.26134e-3;  // m^2/s^2, of a row
+
+/// t, x_true, v, r
+struct Row {
+  double t;      ///< s
+  double truth;  ///< m
+  double speed;  ///< m/s
+  double range;  ///< m
+};
+
+std::vector<Row> rows_of(const fs::path& file) {
+  std::vector<Row> rows;
+  for (const std::vector<double>& one : read_number_rows(file, 4, kCommas)) {
+    const Row row{one[0], one[1], one[2], one[3]};
+    if (!rows.empty() && !(row.t > rows.back().t)) {
+      throw InputError(file.string(), 0,
+                       "time repeats or runs backwards at " + csv_number(row.t) +
+                           ", expected rows in order of time");
+    }
+    if (!(row.range >= 0.0)) {
+      throw InputError(file.string(), 0,
+                       "a negative range at time " + csv_number(row.t) + ", expected 0 or more");
+    }
+    rows.push_back(row);
+  }
+  if (rows.size() < 3) {
+    throw InputError(file.string(), 0, "has fewer than three rows, expected a drive");
+  }
+  return rows;
+}
+
+}  // namespace
+
+bool is_line_robot(const fs::path& file) {
+  return file.filename() == "dataset1.csv" || file.filename() == "dataset1.csv.xz";
+}
+
+LineRecording read_line_robot(const fs::path& file) {
+  const std::vector<Row> rows = rows_of(file);
+  LineRecording result;
+  Recording& recording = result.recording;
+  recording.name = file.string();
+  recording.survey.push_back({"post", kPost, 0.0});
+  Drive& drive = recording.drive;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    recording.truth.push_back({rows[k].t, rows[k].truth, 0.0, 0.0});
+    if (k == 0) continue;
+    const double travel = rows[k - 1].speed * (rows[k].t - rows[k - 1].t);
+    drive.t.push_back(rows[k].t);
+    drive.left.push_back(travel);
+    drive.right.push_back(travel);
+    recording.sightings.push_back({rows[k].t, "post", rows[k].range, kAbsent});
+  }
+  const double step = (rows.back().t - rows.front().t) / static_cast<double>(drive.rows());
+  Model& model = result.model;
+  model.robot.wheelbase = kNominalWheelbase;
+  // An error of the same size in every row, whatever the wheels turn.
+  model.noise.travel_per_s = std::sqrt(kSpeedVariance * step);
+  model.noise.left = model.noise.right = 0.001;
+  model.noise.range = std::sqrt(kRangeVariance);
+  model.noise.truth = 0.001;
+  model.noise.truth_heading = 0.001;
+  return result;
+}
+
+}  // namespace trussmap
