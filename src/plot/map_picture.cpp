@@ -35,7 +35,7 @@ std::string cross(const PictureFrame& view, const Vector2& at) {
 }
 
 /// From a landmark's joint along its own axis.
-std::string tick(const Frame& view, const Vector2& at, double heading) {
+std::string tick(const PictureFrame& view, const Vector2& at, double heading) {
   constexpr double kLength = 14.0;
   const double x = view.x(at);
   const double y = view.y(at);
