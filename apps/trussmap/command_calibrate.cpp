@@ -63,11 +63,11 @@ CalibrationOptions calibration_options(const CalibrateOptions& options) {
 }
 
 Tested tested(const std::vector<Recording>& recordings, const Model& nominal,
-              const Model& calibrated) {
+              const WheelCalibration& found) {
   Tested result;
   for (const Recording& one : recordings) result.names.push_back(one.name);
   result.nominal = drive_errors(recordings, nominal);
-  result.calibrated = drive_errors(recordings, calibrated);
+  result.calibrated = drive_errors(recordings, found.model, found.truth);
   return result;
 }
 
@@ -269,7 +269,7 @@ void run_calibrate(const CalibrateOptions& options) {
     found = calibrate_wheels(recordings, model, how);
     progress.next();
     held = validate_calibration(recordings, model, how);
-    if (!test_drives.empty()) test = tested(test_drives, model, found.model);
+    if (!test_drives.empty()) test = tested(test_drives, model, found);
   } catch (const std::invalid_argument& error) {
     throw InputError(options.model, 0, error.what());
   }

@@ -10,9 +10,10 @@
 //   k     wheel noise: variance of a wheel's travel = k^2 |travel|                      m^(1/2)
 //
 // Of drives with other wheels than a left and a right one, each drive's own constants instead: g of
-// every wheel (channel wheel1 ...) and of `turn`, or of `steer`, `turn`, `wheels` and `steer_gain`
-// where a wheel is steered (from several gains on, where the stated one is off by far). Their
-// wheels' noise stays as the model states it.
+// every wheel (channel wheel1 ...) and of `turn`, with `omni3` and `mecanum` of `sideways`, with
+// `omni3` of `creep`; or of `steer`, `turn`, `wheels` and `steer_gain` where a wheel is steered
+// (from several gains on, where the stated one is off by far). Their wheels' noise stays as the
+// model states it.
 //
 // E_d, E_b and E_s are parameters of the adjustment, beside poses and landmarks; rows are corrected
 // and fitted again until the parameters no longer change. k_L and k_R maximise the restricted
@@ -158,9 +159,15 @@ struct DriveError {
   [[nodiscard]] double heading_per_metre() const { return driven > 0.0 ? heading / driven : 0.0; }
 };
 
-/// One per recording. Throws InputError where one has fewer than two truth rows in its drive.
+/// One per recording, of the point that the truth tracks. Throws InputError where one has fewer
+/// than two truth rows in its drive.
 [[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
                                                    const Model& model);
+
+/// The same, where a calibration has found how the truth is mounted: where the tracked point is on
+/// the robot, and how its heading is turned. Clocks are of single recordings, and stay.
+[[nodiscard]] std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings,
+                                                   const Model& model, const TruthAlignment& truth);
 
 /// Root mean squares over the drives, of which there is at least one.
 [[nodiscard]] double rms_end(const std::vector<DriveError>& errors);                ///< m

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "calibration/reckoning.hpp"
+#include "calibration/truth_alignment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"
@@ -65,6 +66,13 @@ std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, c
     result.push_back(one);
   }
   return result;
+}
+
+std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, const Model& model,
+                                     const TruthAlignment& truth) {
+  TruthAlignment mounting = truth;
+  mounting.clocks.clear();
+  return drive_errors(aligned(recordings, mounting, model.robot), model);
 }
 
 }  // namespace trussmap

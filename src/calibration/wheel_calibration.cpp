@@ -63,6 +63,15 @@ std::vector<Constant> constants_of(const Robot& robot) {
     result.push_back({"radius of " + column, channel, "the radius of " + column});
   }
   result.push_back(turn);
+  // With these the wheels may roll in other directions than stated, too, to first order: together
+  // with the place and the heading of the truth's point all nine numbers from three wheels'
+  // travels, or from as many as four can show, to (f, s, a).
+  if (robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum) {
+    result.push_back({"sideways scale", Channel::sideways, "the scale of what goes sideways"});
+  }
+  if (robot.drive == DriveKind::omni3) {
+    result.push_back({"creep", Channel::creep, "the slip to the left per travel ahead"});
+  }
   return result;
 }
 
@@ -143,9 +152,10 @@ double joined_gain(Channel channel, double g, double more) {
       return (g + more) / (1.0 + 0.25 * g * more);
     case Channel::turn:
     case Channel::wheels:
+    case Channel::sideways:
       return (1.0 + g) * (1.0 + more) - 1.0;
     default:
-      return g + more;  // of a reading, which stays as it is
+      return g + more;  // of a reading, which stays as it is, or beside it
   }
 }
 
@@ -297,7 +307,8 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
     const Channel channel = constants[k].channel;
     const double ratio = ratio_of(channel, g[k]);
     if (robot.drive != DriveKind::differential) {
-      const bool multiplies = channel == Channel::turn || channel == Channel::wheels;
+      const bool multiplies =
+          channel == Channel::turn || channel == Channel::wheels || channel == Channel::sideways;
       result.constants.push_back({channel, {g[k], multiplies ? (1.0 + g[k]) * sd : sd}});
     } else if (channel == Channel::difference) {
       result.diameter_ratio = Calibrated{ratio, sd / std::pow(1.0 - 0.5 * g[k], 2)};

@@ -29,7 +29,9 @@ void free_sightings(Channel channel, const std::vector<double>& g, Recording& re
 void apply(Channel channel, const std::vector<double>& g, double wheelbase, Recording& recording) {
   // A tracker's affair, or a receiver's.
   if (channel == Channel::truth_heading || acts_on_fixes(channel)) return;
-  if (!is_recordable(channel)) {
+  // A drive that goes sideways has a place for what it slips.
+  const bool creeps = channel == Channel::creep && !recording.drive.sideways.empty();
+  if (!creeps && !is_recordable(channel)) {
     throw std::invalid_argument("has channel \"" + std::string(name_of(channel)) +
                                 "\", which only an adjustment can take into account");
   }

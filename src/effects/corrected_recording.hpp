@@ -6,8 +6,8 @@
 //
 // Wheel channels change the rows' travels, after steering has (steering.hpp), `gyro` and
 // `gyro_scale` the yaw rates, `compass` the readings, `range`, `range_scale` and `bearing` the
-// sightings. Other channels (creep, lever, lever_left, delay) have no place in a recording; the
-// adjustment knows them.
+// sightings. Other channels (creep of a drive that goes nowhere sideways, lever, lever_left, delay)
+// have no place in a recording; the adjustment knows them.
 #pragma once
 
 #include "trussmap/channel.hpp"
