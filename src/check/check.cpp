@@ -277,8 +277,8 @@ void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
   if (two && (surveyed.contradicts || truth.contradicts)) {
     check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
   }
-  const bool sides =
-      two || (checked.robot != nullptr && checked.robot->drive == DriveKind::skid_steer);
+  const bool skids = checked.robot != nullptr && checked.robot->drive == DriveKind::skid_steer;
+  const bool sides = two || (skids && turns.sign == 0);
   const bool contradicted =
       turns.unsigned_wheels || surveyed.unsigned_wheels || truth.unsigned_wheels;
   if (checked.wheels_wrong() || !sides || !contradicted || !never_negative(drive)) return;

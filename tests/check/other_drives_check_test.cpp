@@ -157,6 +157,17 @@ class Mistakes {
 
   void travels(DriveKind kind) {
     const bool steers = kind == DriveKind::tricycle || kind == DriveKind::ackermann;
+    add(
+        "three times the model's distances", {"impossible wheelbase", "impossible length"},
+        [](const Sensors& s) { return s.compass; },
+        [](DriveWorld& world) {
+          Robot& robot = world.model.robot;
+          robot.wheelbase *= 3.0;
+          robot.length *= 3.0;
+          if (robot.drive != DriveKind::wheels) return;
+          robot.wheelbase /= 3.0;  // two wheels' that would show the same
+          robot.matrix.row(2) /= 3.0;
+        });
     add("travels in mm", {"travel unit"}, any, [steers](DriveWorld& world) {
       const std::size_t count = world.model.robot.columns.size();
       for (std::size_t k = 0; k < (steers ? 1 : count); ++k) scale(world.column(k), 1000.0);
