@@ -35,6 +35,7 @@ struct Mistake {
   std::function<bool(const Sensors&)> shown_by;
   std::function<void(DriveWorld&)> make;
   std::string column = {};  ///< that has to be among those named
+  std::string remedy = {};  ///< that names it too, where several are that cannot be told apart
 };
 
 bool any(const Sensors&) {
@@ -68,7 +69,7 @@ class Mistakes {
   void add(const std::string& name, const Kinds& kinds,
            std::function<bool(const Sensors&)> shown_by, std::function<void(DriveWorld&)> make,
            const std::string& column = "") {
-    all_.push_back({name, kinds, std::move(shown_by), std::move(make), column});
+    all_.push_back({name, kinds, std::move(shown_by), std::move(make), column, {}});
   }
   void exchanged(std::size_t a, std::size_t b, std::function<bool(const Sensors&)> shown_by) {
     add(
@@ -76,6 +77,7 @@ class Mistakes {
         {"wheels exchanged", "turns opposite"}, std::move(shown_by),
         [a, b](DriveWorld& world) { std::swap(world.column(a), world.column(b)); },
         robot_.columns[a]);
+    all_.back().remedy = "exchange " + robot_.columns[a] + " and " + robot_.columns[b];
   }
 
   void steered() {
@@ -250,6 +252,9 @@ std::string text_of(const std::vector<CheckFinding>& findings) {
 
 bool names(const CheckFinding& finding, const Mistake& mistake) {
   const std::string columns = "," + finding.column + ",";
+  if (!mistake.remedy.empty() && finding.remedy.find(mistake.remedy) != std::string::npos) {
+    return true;
+  }
   return mistake.kinds.contains(finding.kind) &&
          (mistake.column.empty() || finding.kind == "turns opposite" ||
           columns.find("," + mistake.column + ",") != std::string::npos);
