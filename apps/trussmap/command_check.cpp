@@ -43,7 +43,8 @@ void run_check(const CheckCommand& options) {
   std::vector<Recording> recordings = read_recordings(options.recordings);
   std::optional<Model> model;
   if (!options.model.empty()) model = read_model(options.model, recordings);
-  take_wheels(recordings, model ? model->robot : Robot());
+  // Named columns are the check's own affair: it knows angles that lead nowhere.
+  if (!model || model->robot.columns.empty()) take_wheels(recordings, Robot());
   const std::vector<CheckFinding> findings =
       check_recordings(recordings, model ? &*model : nullptr, options.model);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
@@ -69,8 +70,10 @@ void setup_check(const Command& app) {
       .required()
       .type_name("DIR");
   command
-      .add_option("--model", options->model,
-                  "Model of the robot (TOML); without it, and without a compass, less is found")
+      .add_option(
+          "--model", options->model,
+          "Model of the robot (TOML): its drive, and which columns are the wheels; without it, "
+          "and without a compass, less is found")
       .type_name("FILE");
   command.add_option("--json", options->json, "Write the findings as JSON").type_name("FILE");
   command.footer(

@@ -9,6 +9,10 @@
 //   sightings  where a landmark is seen    against where the wheels have led the robot since
 //   survey     from landmark to landmark   against the way driven, and against views of both
 //   truth      motion and heading          against the wheels
+//   gyro, fixes   turns, corners           against the wheels
+//
+// Of a drive with other wheels than two, the body's motion by its columns stands for the wheels,
+// and mistakes with single columns are looked for: signs, order, a steering angle in degrees.
 //
 // A quantity is reported where it contradicts another by far more than any robot's errors, and one
 // mistake explains all that is contradicted. Where several would, the finding names them all.
@@ -35,8 +39,9 @@ struct CheckFinding {
 
 /// Findings by recording, the columns of drives first. Without a model the wheelbase is found from
 /// the compass where there is one. Recordings are read_recording's, or as well formed
-/// (recording.hpp; otherwise std::invalid_argument). `model_file` is named in findings of the
-/// model.
+/// (recording.hpp; otherwise std::invalid_argument); columns that the model names are taken in as
+/// with_wheels does, if they are not yet, and it throws as that does. `model_file` is named in
+/// findings of the model.
 [[nodiscard]] std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordings,
                                                          const Model* model = nullptr,
                                                          const std::string& model_file = "");

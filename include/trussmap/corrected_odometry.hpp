@@ -5,6 +5,9 @@
 //
 //   wheels, compass, covariates --CorrectedOdometry, by a model--> motion of the row, pose so far
 //
+// The robot may have any drive (DriveKind): of two wheels a row says what left and right one
+// travelled, of others what the model's columns read.
+//
 // The same as dead_reckoned_poses (fit_model.hpp) reckons afterwards from a recording of the same
 // rows, but for what is not known yet:
 //
@@ -47,15 +50,18 @@ struct OdometryInputs {
 
 struct WheelRow {
   double duration = 0.0;      ///< s
-  double left = 0.0;          ///< m, signed travel of the left wheel
+  double left = 0.0;          ///< m, signed travel of the left wheel, of the drive `differential`
   double right = 0.0;         ///< m
   double compass = kAbsent;   ///< rad, reading at the row's end; NaN: none
   double yaw_rate = kAbsent;  ///< rad/s, gyro, mean over the row; NaN: none
+  /// Of other drives, in place of left and right: what the columns that the model names (Robot)
+  /// read in the row, in their order. m; rad where one steers.
+  std::vector<double> readings = {};
 };
 
 struct CorrectedRow {
-  /// By the wheels, and the gyro where there is one, in the frame of the row's start; covariance of
-  /// (x, y, heading).
+  /// By the wheels, and the gyro where there is one, in the frame of the row's start, effects taken
+  /// off; covariance of (x, y, heading).
   Motion motion;
   /// At the row's end, in the axes of the robot as it started. With a compass, by its readings too;
   /// the covariance then holds what they leave of the first heading.
@@ -75,7 +81,8 @@ class CorrectedOdometry {
   /// Effects without coefficients count as 0; one that is `per_session` must have those of one
   /// session. Throws std::invalid_argument, naming the effect, where it has no shape, a number of
   /// coefficients that does not match, or a shape with a variable that the robot does not supply;
-  /// and where a covariate's name is a variable's already, or the wheelbase is not positive.
+  /// and where a covariate's name is a variable's already, the wheelbase is not positive, or the
+  /// robot has not the columns or lengths of its drive.
   explicit CorrectedOdometry(const Model& model, const OdometryInputs& inputs = {});
   ~CorrectedOdometry();
   CorrectedOdometry(CorrectedOdometry&&) noexcept;
@@ -83,8 +90,9 @@ class CorrectedOdometry {
 
   /// The next row. `covariates` are its values, in the order of the names. Throws
   /// std::invalid_argument, and leaves all as it was, on a duration that is not positive, a number
-  /// that is not finite, too few or too many covariates, a reading where there is no compass or
-  /// gyro, and, naming the effect, where a shape has no finite value.
+  /// that is not finite, too few or too many covariates or readings of wheels, a steering angle
+  /// that leaves the measured wheel no way ahead, a reading where there is no compass or gyro, and,
+  /// naming the effect, where a shape has no finite value.
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates = {});
 
   /// The pose as the last row left it.

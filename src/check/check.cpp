@@ -3,6 +3,7 @@
 #include "trussmap/check.hpp"
 
 #include "check/findings.hpp"
+#include "check/turn_signs.hpp"
 #include "recording/legs.hpp"
 #include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
@@ -10,15 +11,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
+#include <utility>
 
 namespace trussmap {
 namespace {
 
 constexpr double kNarrowest = 0.01;    // m: wheelbases that robots have
 constexpr double kWidest = 5.0;        // m
+constexpr double kLongest = 20.0;      // m from axle to axle
 constexpr double kWheelbaseOff = 2.5;  // factor that skidding does not reach
-constexpr double kBackwards = -0.5;    // share of the way, of a robot that drives backwards
 constexpr int kHandful = 5;            // degrees of freedom that test nothing
 
 const std::vector<std::string> kKinds = {"travel unit",
@@ -36,11 +39,15 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "wheels negated",
                                          "wheel negated",
                                          "wheels unsigned",
+                                         "steering clockwise",
+                                         "still steering",
+                                         "gyro clockwise",
                                          "compass clockwise",
                                          "compass turned",
                                          "bearings clockwise",
                                          "yaws clockwise",
                                          "survey mirrored",
+                                         "fixes mirrored",
                                          "truth mirrored",
                                          "truth turned",
                                          "turns opposite",
@@ -54,143 +61,8 @@ const std::vector<std::string> kKinds = {"travel unit",
                                          "labels exchanged",
                                          "no wheelbase",
                                          "impossible wheelbase",
+                                         "impossible length",
                                          "nothing to test"};
-
-/// What may count its turns the other way round.
-enum Quantity {
-  wheels,
-  compass,
-  bearings,
-  yaws,
-  survey,
-  whole_truth,  ///< both of the next
-  truth_heading,
-  truth_course,
-  quantities
-};
-
-/// Signs by which pairs of quantities agree; which quantity, alone, explains those that do not?
-class Signs {
- public:
-  void add(Quantity a, Quantity b, int sign) {
-    if (sign != 0) known_.push_back({a, b, sign});
-  }
-
-  [[nodiscard]] std::vector<Quantity> culprits() const {
-    std::vector<Quantity> result;
-    const bool wrong =
-        std::any_of(known_.begin(), known_.end(), [](const Known& one) { return one.sign < 0; });
-    if (!wrong) return result;
-    for (int q = 0; q < quantities; ++q) {
-      const auto is_of = [q](Quantity one) {
-        return one == q || (q == whole_truth && (one == truth_heading || one == truth_course));
-      };
-      const auto explains = [&is_of](const Known& one) {
-        return (is_of(one.a) || is_of(one.b)) == (one.sign < 0);
-      };
-      if (std::all_of(known_.begin(), known_.end(), explains)) {
-        result.push_back(static_cast<Quantity>(q));
-      }
-    }
-    return result.empty() ? suspects() : result;
-  }
-
- private:
-  /// Where no mistake alone explains all: whatever is contradicted.
-  [[nodiscard]] std::vector<Quantity> suspects() const {
-    std::set<Quantity> all;
-    for (const Known& one : known_) {
-      if (one.sign < 0) all.insert({one.a, one.b});
-    }
-    if (all.contains(truth_heading) && all.contains(truth_course)) {
-      all.erase(truth_heading);
-      all.erase(truth_course);
-      all.insert(whole_truth);
-    }
-    return {all.begin(), all.end()};
-  }
-
-  struct Known {
-    Quantity a;
-    Quantity b;
-    int sign;
-  };
-  std::vector<Known> known_;
-};
-
-struct Blame {
-  const char* file;
-  const char* column;
-  const char* kind;
-  const char* words;
-  const char* remedy;
-};
-
-/// A robot that seems to drive backwards nearly all the time has its wheels negated, not exchanged.
-Blame blame_of(Quantity quantity, double forward) {
-  switch (quantity) {
-    case wheels:
-      if (forward < kBackwards) {
-        return {"drive.csv", "left,right", "wheels negated", "both wheels negated",
-                "change the sign of left and right"};
-      }
-      return {"drive.csv", "left,right", "wheels exchanged", "wheels exchanged",
-              "exchange the columns left and right"};
-    case compass:
-      return {"drive.csv", "heading", "compass clockwise", "a compass that counts clockwise",
-              "change the sign of heading; where it counts from north, too: pi/2 - heading"};
-    case bearings:
-      return {"sightings.csv", "bearing", "bearings clockwise", "bearings that count clockwise",
-              "change the sign of bearing"};
-    case yaws:
-      return {"sightings.csv", "yaw", "yaws clockwise",
-              "yaws that count clockwise, or from the landmark's axis to the robot's",
-              "change the sign of yaw: the landmark's axis less the robot's heading"};
-    case survey:
-      return {"survey.csv", "x,y", "survey mirrored", "a survey with x and y exchanged",
-              "exchange x and y, or change the sign of one of them"};
-    case whole_truth:
-    case truth_heading:
-    case truth_course:
-    case quantities:
-      break;
-  }
-  return {"truth.csv", "x,y,heading", "truth mirrored", "a truth with axes exchanged",
-          "make x, y and heading right-handed: counter-clockwise from x to y"};
-}
-
-/// Share of the way that leads forward.
-double forward_share(const Drive& drive) {
-  double forward = 0.0;
-  double all = 0.0;
-  for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double path = 0.5 * (drive.left[row] + drive.right[row]);
-    forward += path;
-    all += std::abs(path);
-  }
-  return all > 0.0 ? forward / all : 0.0;
-}
-
-void blame(Checked& checked, const std::vector<Quantity>& culprits, const std::string& seen) {
-  if (culprits.empty()) return;
-  const double forward = forward_share(checked.recording.drive);
-  const Blame first = blame_of(culprits.front(), forward);
-  if (culprits.size() == 1) {
-    checked.add(first.file, first.column, first.kind, seen, first.remedy);
-    return;
-  }
-  std::string words;
-  std::string columns;
-  for (const Quantity one : culprits) {
-    const Blame each = blame_of(one, forward);
-    words += joined(words.empty() ? "" : ", or ", each.words, " (", each.file, ")");
-    if (std::string(each.file) == first.file) {
-      columns += joined(columns.empty() ? "" : ",", each.column);
-    }
-  }
-  checked.add(first.file, columns, "turns opposite", seen + ": " + words,
-              "drive a left turn and look which of them gets it wrong");
-}
 
 /// Degrees of freedom of what was recorded, counted as the adjustment does but for what a compass
 /// adds on the way.
@@ -252,28 +124,60 @@ void check_freedom(const std::vector<Recording>& recordings, CheckFindings& find
           "drive routes again, or survey landmarks");
 }
 
+/// What the model states of the wheels' distances: a wrong one makes all turns too large or too
+/// small.
+struct Geometry {
+  const char* key = "wheelbase";
+  const char* kind = "impossible wheelbase";
+  double stated = 0.0;  ///< m
+  double widest = kWidest;
+};
+
+Geometry geometry_of(const Robot& robot) {
+  switch (robot.drive) {
+    case DriveKind::tricycle:
+    case DriveKind::ackermann:
+      return {"length", "impossible length", robot.length, kLongest};
+    case DriveKind::omni3:
+      return {"radius", "impossible length", robot.length};
+    case DriveKind::mecanum:
+      return {"wheelbase,length", "impossible wheelbase", robot.wheelbase + robot.length};
+    case DriveKind::wheels:
+      return {"wheel,matrix", "impossible length", robot.wheelbase};
+    default:
+      return {"wheelbase", "impossible wheelbase", robot.wheelbase};
+  }
+}
+
 void check_wheelbase(Checked& checked, const Model& model, const std::string& model_file,
                      const TurnAgreement& turns, CheckFindings& findings) {
-  const double stated = model.robot.wheelbase;
-  const auto add = [&](const char* kind, const std::string& evidence, const std::string& remedy) {
-    findings.push_back({model_file, "wheelbase", kind, evidence, remedy});
+  const auto [key, kind, stated, widest] = geometry_of(model.robot);
+  const bool wheelbase = std::string(key) == "wheelbase";
+  const auto add = [&](const std::string& evidence, const std::string& remedy) {
+    findings.push_back({model_file, key, kind, evidence, remedy});
   };
-  if (stated < kNarrowest || stated > kWidest) {
-    add("impossible wheelbase", joined("the wheelbase is ", figure(stated, "m")),
-        "state it in metres");
+  if (stated < kNarrowest || stated > widest) {
+    add(joined("the ", wheelbase ? key : "distance of the wheels", " is ", figure(stated, "m")),
+        joined("state ", wheelbase ? "it" : key, " in metres"));
     return;
   }
   if (turns.sign == 0 || checked.wrong.contains("left") || checked.wrong.contains("heading")) {
     return;
   }
-  const double driven = 1.0 / std::abs(turns.slope);
-  if (std::abs(std::log(driven / stated)) < std::log(kWheelbaseOff)) return;
-  add("impossible wheelbase",
-      joined("the wheelbase is ", figure(stated, "m"),
-             ", but the wheels turn with the compass as if "
-             "it were ",
-             figure(driven, "m")),
-      "measure it again; if it is right, look at the units of left, right and heading");
+  const double times = 1.0 / (std::abs(turns.slope) * model.robot.wheelbase);
+  if (std::abs(std::log(times)) < std::log(kWheelbaseOff)) return;
+  if (wheelbase) {
+    add(joined("the wheelbase is ", figure(stated, "m"),
+               ", but the wheels turn with the compass as if "
+               "it were ",
+               figure(times * stated, "m")),
+        "measure it again; if it is right, look at the units of left, right and heading");
+    return;
+  }
+  add(joined("the wheels turn with the compass as if distances were ", figure(times),
+             " times as long as the model's"),
+      joined("measure ", key, " again; if it is right, look at the units of the columns and of ",
+             "heading"));
 }
 
 /// The same travels, readings and sightings, to the last digit: a programme driven twice has its
@@ -312,6 +216,11 @@ void check_twice(const std::vector<Recording>& recordings, CheckFindings& findin
 
 bool never_negative(const Drive& drive) {
   const auto negative = [](double travel) { return travel < 0.0; };
+  if (!drive.wheels.empty()) {
+    return std::none_of(drive.wheels.begin(), drive.wheels.end(), [&](const WheelColumn& one) {
+      return !one.steers && std::any_of(one.reading.begin(), one.reading.end(), negative);
+    });
+  }
   return std::none_of(drive.left.begin(), drive.left.end(), negative) &&
          std::none_of(drive.right.begin(), drive.right.end(), negative);
 }
@@ -331,23 +240,59 @@ void check_lone_wheel(Checked& checked, bool by_survey, bool by_truth) {
   }
 }
 
+/// What the sensors say of a recording's turns.
+struct Turns {
+  TurnAgreement compass;
+  TurnAgreement gyro;
+  TurnAgreement views;
+  int fixes = 0;  ///< sign
+  int yaws = 0;   ///< sign
+};
+
 /// What each pair of quantities says of the other's turns, and which of them has to be wrong.
-void check_turns(Checked& checked, const TurnAgreement& turns, const TurnAgreement& views,
-                 int by_yaws, const SurveyAgreement& surveyed, const TruthAgreement& truth) {
-  Signs signs;
-  std::string seen;
-  const auto add = [&](Quantity a, Quantity b, int sign, const char* words) {
-    signs.add(a, b, sign);
-    if (sign < 0) seen += std::string(seen.empty() ? "" : ", ") + words;
-  };
-  add(wheels, compass, turns.sign, "the compass turns against the wheels");
-  add(wheels, bearings, views.sign, "landmarks shift against the wheels' turns");
-  add(wheels, yaws, by_yaws, "the landmarks' yaws turn with the robot, not against it");
-  add(wheels, survey, surveyed.by_way, "the survey's corners turn against the wheels");
-  add(bearings, survey, surveyed.by_views, "the survey's corners turn against what is seen");
-  add(wheels, truth_heading, truth.by_heading, "the truth's heading turns against the wheels");
-  add(wheels, truth_course, truth.by_course, "the truth's course turns against the wheels");
-  blame(checked, signs.culprits(), seen);
+void check_turns(Checked& checked, const Turns& turns, const SurveyAgreement& surveyed,
+                 const TruthAgreement& truth) {
+  TurnSigns signs;
+  signs.add(Turning::wheels, Turning::compass, turns.compass.sign,
+            "the compass turns against the wheels");
+  signs.add(Turning::wheels, Turning::gyro, turns.gyro.sign, "the gyro turns against the wheels");
+  signs.add(Turning::wheels, Turning::bearings, turns.views.sign,
+            "landmarks shift against the wheels' turns");
+  signs.add(Turning::wheels, Turning::yaws, turns.yaws,
+            "the landmarks' yaws turn with the robot, not against it");
+  signs.add(Turning::wheels, Turning::survey, surveyed.by_way,
+            "the survey's corners turn against the wheels");
+  signs.add(Turning::bearings, Turning::survey, surveyed.by_views,
+            "the survey's corners turn against what is seen");
+  signs.add(Turning::wheels, Turning::fixes, turns.fixes,
+            "the fixes' corners turn against the wheels");
+  signs.add(Turning::wheels, Turning::truth_heading, truth.by_heading,
+            "the truth's heading turns against the wheels");
+  signs.add(Turning::wheels, Turning::truth_course, truth.by_course,
+            "the truth's course turns against the wheels");
+  blame(checked, signs);
+}
+
+/// One of two wheels, or unsigned ones, where the wheels agree with nothing as they are.
+void check_contradicted_wheels(Checked& checked, const TurnAgreement& turns,
+                               const SurveyAgreement& surveyed, const TruthAgreement& truth) {
+  const Drive& drive = checked.recording.drive;
+  const bool two = drive.wheels.empty();
+  if (two && (surveyed.contradicts || truth.contradicts)) {
+    check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
+  }
+  const bool skids = checked.robot != nullptr && checked.robot->drive == DriveKind::skid_steer;
+  const bool sides = two || (skids && turns.sign == 0);
+  const bool contradicted =
+      turns.unsigned_wheels || surveyed.unsigned_wheels || truth.unsigned_wheels;
+  if (checked.wheels_wrong() || !sides || !contradicted || !never_negative(drive)) return;
+  checked.add("drive.csv", wheel_columns(drive), "wheels unsigned",
+              joined("no travel is negative, and the wheels go straight on where ",
+                     turns.unsigned_wheels      ? "the compass turns"
+                     : surveyed.unsigned_wheels ? "the survey has corners"
+                                                : "the truth turns",
+                     " on the spot"),
+              "record travels with their sign: a turn on the spot has one wheel going backwards");
 }
 
 /// Of one recording. Returns what its compass says of the wheels.
@@ -357,46 +302,35 @@ TurnAgreement check_recording(Checked& checked) {
   check_drive_values(checked);
   check_bearing_unit(checked);
   check_yaw_units(checked);
-  if (!recording.drive.wheels.empty()) return {};  // what follows knows of a left and a right wheel
+  if (!recording.drive.wheels.empty()) {
+    if (checked.robot == nullptr) return {};  // what they do is not known
+    check_still_columns(checked);
+    check_columns(checked);
+  }
   const TurnAgreement turns = check_compass(checked);
   if (!checked.wheelbase_known && turns.sign != 0) {
     checked.wheelbase = 1.0 / std::abs(turns.slope);
     checked.wheelbase_known = true;
   }
-  const auto wheels_wrong = [&checked] {
-    return checked.wrong.contains("left") || checked.wrong.contains("right") ||
-           checked.wrong.contains("t");
-  };
   if (!checked.wheelbase_known) return turns;
   const Track track(recording.drive, checked.wheelbase);
   const SurveyAgreement surveyed = survey_agreement(checked, track);
-  if (wheels_wrong()) {  // nothing is to be compared with them
+  if (checked.wheels_wrong()) {  // nothing is to be compared with them
     check_survey(checked, track, {}, false);
     return turns;
   }
+  const TurnAgreement gyro = check_gyro(checked);
   const TurnAgreement views = check_views(checked, track);
-  if (wheels_wrong()) return turns;
-  const int by_yaws = yaws_sign(checked, track);
+  if (checked.wheels_wrong()) return turns;
   const TruthAgreement truth = truth_agreement(checked, track);
-  if (surveyed.contradicts || truth.contradicts) {
-    check_lone_wheel(checked, surveyed.contradicts, truth.contradicts);
-  }
-  const bool contradicted =
-      turns.unsigned_wheels || surveyed.unsigned_wheels || truth.unsigned_wheels;
-  if (!wheels_wrong() && contradicted && never_negative(recording.drive)) {
-    checked.add("drive.csv", "left,right", "wheels unsigned",
-                joined("no travel is negative, and the wheels go straight on where ",
-                       turns.unsigned_wheels      ? "the compass turns"
-                       : surveyed.unsigned_wheels ? "the survey has corners"
-                                                  : "the truth turns",
-                       " on the spot"),
-                "record travels with their sign: a turn on the spot has one wheel going backwards");
-  }
-  if (wheels_wrong()) return turns;
+  check_contradicted_wheels(checked, turns, surveyed, truth);
+  if (checked.wheels_wrong()) return turns;
   check_survey(checked, track, surveyed, turns.sign > 0);
   check_truth(checked, track, truth);
   const std::size_t before = checked.findings.size();
-  check_turns(checked, turns, views, by_yaws, surveyed, truth);
+  check_turns(checked,
+              {turns, gyro, views, sign_of_fixes(checked, track), yaws_sign(checked, track)},
+              surveyed, truth);
   if (checked.findings.size() > before) return turns;
   if (!checked.broken && !checked.wrong.contains("x") && !checked.wrong.contains("range")) {
     check_survey_points(checked, surveyed);
@@ -449,6 +383,26 @@ void check_fix_unit(Checked& checked) {
               "project them into metres, x to the east and y to the north");
 }
 
+/// With its wheels taken in; a steering angle in degrees, which may lead nowhere, as what it is.
+Recording by_its_columns(Recording recording, const Robot& robot) {
+  if (recording.drive.wheels.empty() && steers_in_degrees(recording, robot)) {
+    for (Covariate& one : recording.drive.covariates) {
+      if (one.name != robot.columns[1]) continue;
+      for (double& angle : one.values) angle *= std::numbers::pi / 180.0;
+    }
+  }
+  return with_wheels(std::move(recording), robot);
+}
+
+void add_degrees(Checked& checked) {
+  const std::string& name = checked.robot->columns[1];
+  const bool tricycle = checked.robot->drive == DriveKind::tricycle;
+  checked.add("drive.csv", name, "angle unit",
+              joined(name, " is beyond ", tricycle ? "a whole turn" : "a right angle",
+                     " in many rows, if it is in radians: it looks like degrees"),
+              "convert it to radians, left positive");
+}
+
 }  // namespace
 
 void Checked::add(const char* file, const std::string& column, const char* kind,
@@ -464,6 +418,10 @@ void Checked::add(const char* file, const std::string& column, const char* kind,
     wrong.insert(std::string(file) == "truth.csv"   ? "truth " + one
                  : std::string(file) == "fixes.csv" ? "fix " + one
                                                     : one);
+    const std::vector<WheelColumn>& wheels = recording.drive.wheels;
+    const bool wheel = std::any_of(wheels.begin(), wheels.end(),
+                                   [&one](const WheelColumn& each) { return each.name == one; });
+    if (wheel) wrong.insert({"left", "right"});  // which are made of it
     one.clear();
   }
 }
@@ -513,7 +471,13 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
                                            const Model* model, const std::string& model_file) {
   CheckFindings findings;
   if (recordings.empty()) return findings;
-  for (const Recording& one : recordings) require_well_formed(one);
+  const bool by_columns = model != nullptr && !model->robot.columns.empty();
+  std::vector<Recording> taken;
+  for (const Recording& one : recordings) {
+    if (by_columns) taken.push_back(by_its_columns(one, model->robot));
+  }
+  const std::vector<Recording>& all = by_columns ? taken : recordings;
+  for (const Recording& one : all) require_well_formed(one);
   if (model != nullptr && !model->robot.wheelbase_stated) {
     findings.push_back(
         {model_file, "wheelbase", "no wheelbase",
@@ -521,10 +485,14 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
          "state the distance of the wheels"});
   }
   bool said = false;
-  for (const Recording& one : recordings) {
-    Checked checked{one, findings};
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    Checked checked{all[k], findings};
     checked.wheelbase_known = model != nullptr && model->robot.wheelbase_stated;
     checked.wheelbase = model != nullptr ? model->robot.wheelbase : Robot().wheelbase;
+    if (by_columns && model->robot.drive != DriveKind::differential) {
+      checked.robot = &model->robot;
+      if (steers_in_degrees(recordings[k], model->robot)) add_degrees(checked);
+    }
     check_fix_unit(checked);
     const TurnAgreement turns = check_recording(checked);
     if (model == nullptr || !model->robot.wheelbase_stated || said) continue;
@@ -532,8 +500,8 @@ std::vector<CheckFinding> check_recordings(const std::vector<Recording>& recordi
     check_wheelbase(checked, *model, model_file, turns, findings);
     said = findings.size() > before;
   }
-  check_twice(recordings, findings);
-  check_freedom(recordings, findings);
+  check_twice(all, findings);
+  check_freedom(all, findings);
   return findings;
 }
 

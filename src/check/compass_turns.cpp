@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Turns of the compass against the difference of the wheels' travels, in stretches in which that
-// has grown by a tenth of a metre. In between no wheelbase is needed: it is the slope.
+// has grown by a tenth of a metre, of other drives than two wheels by a third of their wheelbase.
+// In between no wheelbase is needed: it is the slope.
 #include "check/findings.hpp"
 #include "text/number_text.hpp"
 
@@ -13,6 +14,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kStretch = 0.1;   // m of difference
+constexpr double kTurn = 0.3;      // rad, where the wheelbase is known
 constexpr double kLongest = 10.0;  // s
 constexpr int kFewest = 12;        // stretches
 constexpr double kClear = 0.8;     // correlation
@@ -23,7 +25,10 @@ double wrapped(double angle, double turn) {
 }
 
 /// Readings in units of which `turn` are a whole turn, brought within half of one or going on.
-TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn, bool wrap = true) {
+TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn,
+                       bool wrap = true) {
+  const Drive& drive = checked.recording.drive;
+  const double stretch = drive.wheels.empty() ? kStretch : kTurn * checked.wheelbase;
   double dd = 0.0;
   double dc = 0.0;
   double cc = 0.0;
@@ -44,7 +49,7 @@ TurnAgreement turns_of(const Drive& drive, WheelMistake mistake, double turn, bo
     }
     last = reading;
     waiting = 0.0;
-    const bool full = std::abs(difference) >= kStretch;
+    const bool full = std::abs(difference) >= stretch;
     if (!full && drive.t[row] - begun < kLongest) continue;
     if (full) {
       dd += difference * difference;
@@ -109,11 +114,11 @@ bool looks_unsigned(double turn, double difference, double sum, double wheelbase
 TurnAgreement check_compass(Checked& checked) {
   const Drive& drive = checked.recording.drive;
   if (!drive.has_compass() || checked.wrong.contains("left")) return {};
-  TurnAgreement best = turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi);
+  TurnAgreement best = turns_of(checked, WheelMistake::none, 2.0 * std::numbers::pi);
   if (best.turns >= kFewest && std::abs(best.correlation) < kClear) {
     const TurnAgreement going_on =
-        turns_of(drive, WheelMistake::none, 2.0 * std::numbers::pi, false);
-    const TurnAgreement degrees = turns_of(drive, WheelMistake::none, 360.0);
+        turns_of(checked, WheelMistake::none, 2.0 * std::numbers::pi, false);
+    const TurnAgreement degrees = turns_of(checked, WheelMistake::none, 360.0);
     if (is_clear(going_on, checked)) {
       best = going_on;  // few readings, whole turns apart
     } else if (is_clear(degrees, checked)) {
@@ -127,8 +132,8 @@ TurnAgreement check_compass(Checked& checked) {
     }
   }
   for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
-    if (std::abs(best.correlation) > kUnclear) break;
-    const TurnAgreement other = turns_of(drive, mistake, 2.0 * std::numbers::pi);
+    if (!drive.wheels.empty() || std::abs(best.correlation) > kUnclear) break;
+    const TurnAgreement other = turns_of(checked, mistake, 2.0 * std::numbers::pi);
     if (other.turns < kFewest || other.correlation < kClear) continue;
     add_lone_wheel(checked, mistake,
                    joined("with the ", lone_wheel(mistake),

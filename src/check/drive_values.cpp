@@ -10,7 +10,8 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFastest = 10.0;     // m/s that a robot with two wheels drives
+constexpr double kFastest = 10.0;     // m/s that a robot drives
+constexpr double kFastestCar = 60.0;  // m/s
 constexpr double kSlowest = 0.004;    // m/s
 constexpr double kShortTravel = 0.5;  // m in a row that has milliseconds for seconds
 constexpr double kOrdinary = 0.02;    // m/s once they are taken for what they are
@@ -29,6 +30,13 @@ struct Rows {
   }
 };
 
+bool travels_are_whole(const Drive& drive, std::size_t row) {
+  const auto whole = [](double travel) { return travel == std::round(travel); };
+  if (drive.wheels.empty()) return whole(drive.left[row]) && whole(drive.right[row]);
+  return std::all_of(drive.wheels.begin(), drive.wheels.end(),
+                     [&](const WheelColumn& one) { return one.steers || whole(one.reading[row]); });
+}
+
 Rows rows_of(const Drive& drive) {
   Rows rows;
   std::vector<double> durations;
@@ -38,8 +46,7 @@ Rows rows_of(const Drive& drive) {
     const double speed = travel / durations.back();
     if (travel > 0.0) rows.speeds.push_back(speed);
     if (speed > kSlowest) rows.driving.push_back(speed);
-    rows.whole = rows.whole && drive.left[row] == std::round(drive.left[row]) &&
-                 drive.right[row] == std::round(drive.right[row]);
+    rows.whole = rows.whole && travels_are_whole(drive, row);
   }
   rows.duration = median(std::move(durations));
   std::sort(rows.speeds.begin(), rows.speeds.end());
@@ -47,16 +54,10 @@ Rows rows_of(const Drive& drive) {
   return rows;
 }
 
-std::string wheel_columns(const Drive& drive) {
-  if (drive.wheels.empty()) return "left,right";
-  std::string names;
-  for (const WheelColumn& one : drive.wheels) names += (names.empty() ? "" : ",") + one.name;
-  return names;
-}
-
 void check_units(Checked& checked, const Rows& rows) {
   const double speed = rows.speed(0.5);
-  if (speed > kFastest) {
+  const bool car = checked.robot != nullptr && checked.robot->drive == DriveKind::ackermann;
+  if (speed > (car ? kFastestCar : kFastest)) {
     const char* unit = rows.whole ? "ticks" : speed > 100.0 ? "mm" : "cm";
     checked.add("drive.csv", wheel_columns(checked.recording.drive), "travel unit",
                 joined("the robot drives at ", figure(speed, "m/s"), " (median)",
@@ -100,7 +101,8 @@ void check_spikes(Checked& checked, const Rows& rows) {
 }  // namespace
 
 double larger_travel(const Drive& drive, std::size_t row) {
-  return std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+  const double ahead = std::max(std::abs(drive.left[row]), std::abs(drive.right[row]));
+  return drive.sideways.empty() ? ahead : std::hypot(ahead, drive.sideways[row]);
 }
 
 void check_drive_values(Checked& checked) {
@@ -113,7 +115,7 @@ void check_drive_values(Checked& checked) {
   check_units(checked, rows);
   check_spikes(checked, rows);
   check_gaps(checked, {rows.duration, rows.speed(0.5)});
-  check_still_wheels(checked);
+  if (checked.recording.drive.wheels.empty()) check_still_wheels(checked);
 }
 
 }  // namespace trussmap

@@ -9,6 +9,7 @@
 #include "trussmap/check.hpp"
 
 #include <complex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -25,12 +26,17 @@ struct Checked {
   std::set<std::string> wrong = {};  ///< columns that something was found of
   double wheelbase = 0.0;            ///< m, the model's or what stands for it
   bool wheelbase_known = false;      ///< the model's, or found from the compass
+  const Robot* robot = nullptr;      ///< the model's, where its drive is not of two wheels
   bool broken = false;               ///< a gap or spike: no track leads through it
   double angle_unit = 1.0;           ///< rad per unit of bearings
   double yaw_unit = 1.0;             ///< rad per unit of yaws
 
   void add(const char* file, const std::string& column, const char* kind,
            const std::string& evidence, const std::string& remedy);
+  /// Wheels or clock: then nothing else is compared with them.
+  [[nodiscard]] bool wheels_wrong() const {
+    return wrong.contains("left") || wrong.contains("right") || wrong.contains("t");
+  }
   /// The same of a few rows alone: the column is trusted otherwise.
   void note(const char* file, const std::string& column, const char* kind,
             const std::string& evidence, const std::string& remedy);
@@ -52,6 +58,16 @@ void check_gaps(Checked& checked, const UsualRow& usual);
 
 /// A wheel that stands still for so long that no turn about it is meant, or that nothing shows one.
 void check_still_wheels(Checked& checked);
+/// The same of the columns of other drives, and of a steering angle that never changes.
+void check_still_columns(Checked& checked);
+
+/// Columns of drives with other wheels than two, with signs or places that are not theirs: reported
+/// where the drive agrees with the other sensors without the mistake, and with it by none of
+/// theirs.
+void check_columns(Checked& checked);
+/// A steering angle in degrees, by its values alone. `drive` is as recorded, its columns
+/// covariates.
+[[nodiscard]] bool steers_in_degrees(const Recording& recording, const Robot& robot);
 
 /// "left" or "right", of a mistake with one wheel; and the finding that it is negated.
 [[nodiscard]] const char* lone_wheel(WheelMistake mistake);
@@ -81,10 +97,17 @@ struct TurnAgreement {
 
 /// Of the compass with the wheels, reported where it is in degrees or fits another mistake better.
 [[nodiscard]] TurnAgreement check_compass(Checked& checked);
+/// Of the gyro with the wheels, reported where it is in degrees.
+[[nodiscard]] TurnAgreement check_gyro(Checked& checked);
 
 /// Of views with the wheels: of the landmark's shift as seen with the robot's motion. Reported
 /// where another unit or mistake of the wheels fits better.
 [[nodiscard]] TurnAgreement check_views(Checked& checked, const Track& track);
+/// Median error of views predicted from earlier ones, by the size of the shift, at most 1; of those
+/// within [from, to] s, where there are enough.
+[[nodiscard]] std::optional<double> views_misfit(const Recording& recording, const Track& track,
+                                                 double range_unit, double bearing_unit,
+                                                 double from, double to);
 
 /// Units of yaws and of surveyed headings by themselves.
 void check_yaw_units(Checked& checked);
@@ -108,6 +131,8 @@ struct SurveyAgreement {
   std::vector<SurveyLeg> views;
 };
 [[nodiscard]] SurveyAgreement survey_agreement(const Checked& checked, const Track& track);
+/// Of the fixes' corners with those of the way.
+[[nodiscard]] int sign_of_fixes(const Checked& checked, const Track& track);
 /// What of it is wrong by itself: names, spread, units; `compass`: whether its turns agree.
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,
                   bool compass);

@@ -158,7 +158,8 @@ void check_units(Checked& checked, const SurveyAgreement& agreement) {
   if (survey) {
     checked.add("survey.csv", "x,y", "survey unit", evidence, "convert the survey to metres");
   } else if (off(by_way)) {
-    checked.add("drive.csv", "left,right", "travel unit", evidence, "convert travels to metres");
+    checked.add("drive.csv", wheel_columns(checked.recording.drive), "travel unit", evidence,
+                "convert travels to metres");
   } else {
     checked.add("sightings.csv", "range", "range unit", evidence, "convert ranges to metres");
   }
@@ -187,6 +188,13 @@ SurveyAgreement survey_agreement(const Checked& checked, const Track& track) {
     result.by_views = sign_of(result.views, result.views_ratio).value;
   }
   return result;
+}
+
+int sign_of_fixes(const Checked& checked, const Track& track) {
+  if (checked.wrong.contains("fix x")) return 0;
+  const std::vector<SurveyLeg> legs = legs_by_fixes(checked.recording, track);
+  const double ratio = ratio_of(legs);
+  return ratio > 0.0 ? sign_of(legs, ratio).value : 0;
 }
 
 void check_survey(Checked& checked, const Track& track, const SurveyAgreement& agreement,

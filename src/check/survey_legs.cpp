@@ -5,6 +5,7 @@
 #include "check/findings.hpp"
 #include "statistics/thinned.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace trussmap {
@@ -62,6 +63,29 @@ std::vector<SurveyLeg> legs_by_views(const Recording& recording, const SurveyPla
     before = &one;
   }
   return thinned(std::move(legs), kMost);
+}
+
+std::vector<SurveyLeg> legs_by_fixes(const Recording& recording, const Track& track) {
+  constexpr double kLeg = 5.0;       // m: corners are told in spite of a GNSS receiver's errors
+  constexpr double kLongest = 60.0;  // s
+  std::vector<SurveyLeg> legs;
+  const Fix* before = nullptr;
+  for (const Fix& one : recording.fixes) {
+    if (one.t < recording.drive.start() || one.t > recording.drive.t.back()) continue;
+    if (before == nullptr || one.t - before->t > kLongest) {
+      before = &one;
+      continue;
+    }
+    const double apart = std::hypot(one.x - before->x, one.y - before->y);
+    if (std::max(track.way_at(one.t) - track.way_at(before->t), apart) < kLeg) continue;
+    legs.push_back({{},
+                    {},
+                    track.at(one.t).position() - track.at(before->t).position(),
+                    Vector2(one.x - before->x, one.y - before->y),
+                    one.t});
+    before = &one;
+  }
+  return legs;
 }
 
 }  // namespace trussmap

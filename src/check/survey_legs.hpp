@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// From one surveyed landmark to another: as the survey has it, and as it was driven or seen.
+// From one surveyed landmark to another: as the survey has it, and as it was driven or seen; and
+// from fix to fix.
 #pragma once
 
 #include "check/track.hpp"
@@ -17,8 +18,8 @@ struct SurveyLeg {
   std::string_view from;
   std::string_view to;
   Vector2 measured = Vector2::Zero();  ///< m, track's axes
-  Vector2 surveyed = Vector2::Zero();
-  double t = 0.0;  ///< s, of its end
+  Vector2 surveyed = Vector2::Zero();  ///< by the survey, or by fixes
+  double t = 0.0;                      ///< s, of its end
 };
 
 using SurveyPlaces = std::map<std::string_view, Vector2>;
@@ -34,5 +35,7 @@ using SurveyPlaces = std::map<std::string_view, Vector2>;
 [[nodiscard]] std::vector<SurveyLeg> legs_by_views(const Recording& recording,
                                                    const SurveyPlaces& places, const Track& track,
                                                    double bearing_unit);
+/// From fix to fix, five metres of the way apart.
+[[nodiscard]] std::vector<SurveyLeg> legs_by_fixes(const Recording& recording, const Track& track);
 
 }  // namespace trussmap

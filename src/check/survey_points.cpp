@@ -45,14 +45,13 @@ double median_angle(const std::vector<double>& angles) {
   return best;
 }
 
-/// Turned as most of the legs about each are: the track's heading drifts.
-std::vector<SurveyLeg> turned_onto_survey(const std::vector<SurveyLeg>& legs) {
-  constexpr std::size_t kAbout = 12;
+/// Turned as most of the legs about each are, so many before and after: the track's heading drifts.
+std::vector<SurveyLeg> turned_onto_survey(const std::vector<SurveyLeg>& legs, std::size_t about) {
   std::vector<SurveyLeg> result = legs;
   for (std::size_t k = 0; k < legs.size(); ++k) {
     std::vector<double> angles;
-    const std::size_t first = k > kAbout ? k - kAbout : 0;
-    for (std::size_t other = first; other < std::min(legs.size(), k + kAbout + 1); ++other) {
+    const std::size_t first = k > about ? k - about : 0;
+    for (std::size_t other = first; other < std::min(legs.size(), k + about + 1); ++other) {
       const SurveyLeg& leg = legs[other];
       if (other == k || leg.measured.norm() < kOff || leg.surveyed.norm() < kOff) continue;
       angles.push_back(direction(leg.surveyed) - direction(leg.measured));
@@ -161,7 +160,10 @@ void check_survey_points(Checked& checked, const SurveyAgreement& agreement) {
   const bool driven = agreement.way.size() >= kFewestLegs;
   std::vector<SurveyLeg> legs = driven ? agreement.way : agreement.views;
   if (legs.size() < kFewestLegs) return;
-  legs = turned_onto_survey(legs);
+  // Of three wheels about a centre a large one turns the robot all the time.
+  constexpr std::size_t kAbout = 12;
+  constexpr std::size_t kAboutOthers = 4;
+  legs = turned_onto_survey(legs, checked.recording.drive.wheels.empty() ? kAbout : kAboutOthers);
   const std::string legs_words = joined(" are not what was ", driven ? "driven" : "seen");
   for (const By by : {By::vector, By::length}) {
     if (are_right(legs, by)) continue;

@@ -10,19 +10,27 @@ namespace trussmap {
 Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake) {
   const double left = drive.left[row];
   const double right = drive.right[row];
+  const double sideways = drive.slip(row);
   switch (mistake) {
     case WheelMistake::none:
-      return {left, right};
+      return {left, right, sideways};
     case WheelMistake::exchanged:
-      return {right, left};
+      return {right, left, -sideways};
     case WheelMistake::negated:
-      return {-left, -right};
+      return {-left, -right, -sideways};
     case WheelMistake::left_negated:
       return {-left, right};
     case WheelMistake::right_negated:
       return {left, -right};
   }
-  return {left, right};
+  return {left, right, sideways};
+}
+
+std::string wheel_columns(const Drive& drive) {
+  if (drive.wheels.empty()) return "left,right";
+  std::string names;
+  for (const WheelColumn& one : drive.wheels) names += (names.empty() ? "" : ",") + one.name;
+  return names;
 }
 
 Track::Track(const Drive& drive, double wheelbase, WheelMistake mistake, Heading heading) {
@@ -41,6 +49,10 @@ Track::Track(const Drive& drive, double wheelbase, WheelMistake mistake, Heading
     const double half = at.heading + 0.5 * turn;
     at.x += wheels.path() * std::cos(half);
     at.y += wheels.path() * std::sin(half);
+    if (wheels.sideways != 0.0) {
+      at.x -= wheels.sideways * std::sin(half);
+      at.y += wheels.sideways * std::cos(half);
+    }
     at.heading += turn;
     if (heading == Heading::of_compass && !std::isnan(drive.heading[row])) {
       const double off = wrap_angle(drive.heading[row] - at.heading);
@@ -49,7 +61,7 @@ Track::Track(const Drive& drive, double wheelbase, WheelMistake mistake, Heading
     }
     t_.push_back(drive.t[row]);
     poses_.push_back(at);
-    way_.push_back(way_.back() + std::abs(wheels.path()));
+    way_.push_back(way_.back() + std::hypot(wheels.path(), wheels.sideways));
   }
 }
 

@@ -1,27 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Where the wheels alone lead, taken as recorded or as if a mistake had been made with them.
+// Where the wheels alone lead, taken as recorded or as if a mistake had been made with them. Drives
+// with other wheels are taken by the body's motion that their columns give (with_wheels).
 #pragma once
 
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
 
+/// Of other drives than two wheels: `exchanged` is the mirrored motion.
 enum class WheelMistake { none, exchanged, negated, left_negated, right_negated };
 
 /// A row's travels as they would be without the mistake.
 struct Wheels {
-  double left = 0.0;   ///< m
-  double right = 0.0;  ///< m
+  double left = 0.0;      ///< m
+  double right = 0.0;     ///< m
+  double sideways = 0.0;  ///< m to the left
 
   [[nodiscard]] double path() const { return 0.5 * (left + right); }
   [[nodiscard]] double difference() const { return right - left; }
 };
 [[nodiscard]] Wheels wheels_of(const Drive& drive, std::size_t row, WheelMistake mistake);
+
+/// "left,right", or the names of the drive's own columns.
+[[nodiscard]] std::string wheel_columns(const Drive& drive);
 
 /// Whether headings are kept near a compass's readings.
 enum class Heading { of_wheels, of_compass };

@@ -29,6 +29,7 @@ struct Stretch {
   double turn = 0;       ///< of the truth, in its unit, not wrapped
   double heading = 0.0;  ///< of the truth, halfway
   double forward = 0.0;  ///< m driven, signed
+  double aside = 0.0;    ///< rad, of the wheels' way from ahead
   double way = 0.0;      ///< m driven
 };
 
@@ -53,6 +54,7 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Track& track
     one.heading = before->heading + 0.5 * wrap_angle(one.turn);
     const double along = 0.5 * (a.heading + b.heading);
     one.forward = one.wheels.x * std::cos(along) + one.wheels.y * std::sin(along);
+    one.aside = direction(one.wheels.position()) - along;
     one.way = way;
     result.push_back(one);
     before = &row;
@@ -126,9 +128,14 @@ void check_unit(Checked& checked, const std::vector<Stretch>& stretches) {
 }
 
 void check_turned(Checked& checked, const std::vector<Stretch>& stretches) {
+  const bool to_the_side = !checked.recording.drive.sideways.empty();
   MeanAngle offset;
   for (const Stretch& one : stretches) {
     if (std::abs(one.wheels.heading) > kStraight || one.truth.norm() < 0.3) continue;
+    if (to_the_side) {
+      offset.add(one.heading + one.aside - direction(one.truth));
+      continue;
+    }
     const Vector2 course = one.forward < 0.0 ? Vector2(-one.truth) : one.truth;
     offset.add(one.heading - direction(course));
   }

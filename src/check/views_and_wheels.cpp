@@ -42,11 +42,12 @@ bool is_view(const Sighting& one) {
   return std::isfinite(one.range) && std::isfinite(one.bearing);
 }
 
-std::vector<Pair> pairs_of(const Recording& recording, const Track& track) {
+std::vector<Pair> pairs_of(const Recording& recording, const Track& track, double from = -HUGE_VAL,
+                           double to = HUGE_VAL) {
   std::map<std::string_view, const Sighting*> last;
   std::vector<Pair> pairs;
   for (const Sighting& one : recording.sightings) {
-    if (!is_view(one)) continue;
+    if (!is_view(one) || one.t < from || one.t > to) continue;
     const Sighting*& before = last[one.landmark];
     if (before != nullptr && one.t - before->t <= kLongest) {
       const double way = track.way_at(one.t) - track.way_at(before->t);
@@ -59,6 +60,17 @@ std::vector<Pair> pairs_of(const Recording& recording, const Track& track) {
   return thinned(std::move(pairs), kMostPairs);
 }
 
+/// Those between which the robot turns: of the others a mirrored world looks the same.
+std::vector<Pair> turning(const std::vector<Pair>& pairs, const Track& track) {
+  constexpr double kTurns = 0.3;  // rad
+  std::vector<Pair> result;
+  for (const Pair& one : pairs) {
+    const double turn = track.at(one.second->t).heading - track.at(one.first->t).heading;
+    if (std::abs(turn) > kTurns) result.push_back(one);
+  }
+  return result;
+}
+
 struct Reading {
   double range_unit = 1.0;    ///< m
   double bearing_unit = 1.0;  ///< rad; negative: clockwise
@@ -66,6 +78,22 @@ struct Reading {
 
 Vector2 seen(const Sighting& one, const Reading& unit) {
   return unit.range_unit * one.range * rotation(unit.bearing_unit * one.bearing).col(0);
+}
+
+/// Those between which the robot turns by what it sees, whatever the track says of turns.
+std::vector<Pair> seen_turning(const std::vector<Pair>& pairs, const Track& track,
+                               const Reading& unit) {
+  constexpr double kTurns = 0.3;    // rad
+  constexpr double kNearest = 1.0;  // m: no errors of ranges look like turns
+  std::vector<Pair> result;
+  for (const Pair& pair : pairs) {
+    const Pose way = relative(track.at(pair.first->t), track.at(pair.second->t));
+    const Vector2 first = seen(*pair.first, unit) - way.position();
+    const Vector2 second = seen(*pair.second, unit);
+    if (first.norm() < kNearest || second.norm() < kNearest) continue;
+    if (std::abs(wrap_angle(direction(first) - direction(second))) > kTurns) result.push_back(pair);
+  }
+  return result;
 }
 
 double disagreement(const std::vector<Pair>& pairs, const Track& track, const Reading& unit) {
@@ -114,17 +142,37 @@ void check_bearing_unit(Checked& checked) {
       "convert them to radians");
 }
 
+std::optional<double> views_misfit(const Recording& recording, const Track& track,
+                                   double range_unit, double bearing_unit, double from, double to) {
+  const std::vector<Pair> pairs = pairs_of(recording, track, from, to);
+  if (pairs.size() < kFewestPairs) return std::nullopt;
+  const Reading unit{range_unit, bearing_unit};
+  constexpr std::size_t kSome = 10;  // one in so many
+  double worst = disagreement(pairs, track, unit);
+  for (const std::vector<Pair>& turns : {turning(pairs, track), seen_turning(pairs, track, unit)}) {
+    if (turns.size() < std::max(kFewestPairs, pairs.size() / kSome)) continue;
+    worst = std::max(worst, disagreement(turns, track, unit));
+  }
+  return std::min(worst, 1.0);
+}
+
 TurnAgreement check_views(Checked& checked, const Track& track) {
   TurnAgreement result;
   if (checked.wrong.contains("left") || checked.wrong.contains("t")) return result;
-  const std::vector<Pair> pairs = pairs_of(checked.recording, track);
+  std::vector<Pair> pairs = pairs_of(checked.recording, track);
   result.turns = static_cast<int>(pairs.size());
   if (pairs.size() < kFewestPairs) return result;
   const Reading stated{1.0, checked.angle_unit};
-  const double recorded = disagreement(pairs, track, stated);
+  double recorded = disagreement(pairs, track, stated);
   if (recorded < kAgrees) {
-    result.sign = 1;
-    return result;
+    std::vector<Pair> turns = turning(pairs, track);
+    const double turned = turns.size() < kFewestPairs ? 0.0 : disagreement(turns, track, stated);
+    if (turned < kAgrees) {
+      result.sign = 1;
+      return result;
+    }
+    pairs = std::move(turns);
+    recorded = turned;
   }
   const Drive& drive = checked.recording.drive;
   struct Best {
@@ -132,9 +180,12 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
     WheelMistake wheels = WheelMistake::none;
     Reading unit;
   } best{recorded, WheelMistake::none, stated};
-  for (const WheelMistake wheels :
-       {WheelMistake::none, WheelMistake::exchanged, WheelMistake::negated,
-        WheelMistake::left_negated, WheelMistake::right_negated}) {
+  std::vector<WheelMistake> mistakes{WheelMistake::none, WheelMistake::exchanged};
+  if (drive.wheels.empty()) {  // of others, check_columns knows more
+    mistakes.insert(mistakes.end(), {WheelMistake::negated, WheelMistake::left_negated,
+                                     WheelMistake::right_negated});
+  }
+  for (const WheelMistake wheels : mistakes) {
     const Track other(drive, checked.wheelbase, wheels);
     for (const double range : {1.0, 0.01, 0.001, 0.3048, 0.0254}) {
       const Reading unit{range, checked.angle_unit};

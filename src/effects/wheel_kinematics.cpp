@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/wheel_kinematics.hpp"
+
 #include "effects/channel_physics.hpp"
 #include "effects/steering.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/model.hpp"
 
 #include <algorithm>
 #include <array>
@@ -82,35 +83,38 @@ void take_body(Drive& drive, std::size_t row, const Eigen::Vector3d& motion, dou
   if (!drive.sideways.empty()) drive.sideways[row] = motion[1];
 }
 
-void take_steered(const Recording& recording, const Robot& robot, Drive& drive) {
-  const std::vector<double>& travel = drive.wheels[0].reading;
-  const std::vector<double>& angle = drive.wheels[1].reading;
-  for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const SteeredMotion body = steered_motion(robot, travel[row], angle[row]);
-    if (!body.possible) {
-      refuse(recording,
-             joined("a steering angle of ", short_text(angle[row]),
-                    " rad at t = ", short_text(drive.t[row]),
-                    " s leaves the measured wheel no way ahead, expected a smaller one"));
-    }
-    take_body(drive, row, body.motion, robot.wheelbase);
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Eigen::Vector3d& by = body.by_reading[k];
-      drive.wheels[k].by_reading.push_back({by[0], by[1], by[2]});
-    }
+std::size_t columns_of(const Robot& robot) {
+  switch (robot.drive) {
+    case DriveKind::tricycle:
+    case DriveKind::ackermann:
+      return 2;
+    case DriveKind::omni3:
+      return 3;
+    case DriveKind::mecanum:
+      return 4;
+    case DriveKind::wheels:
+      return static_cast<std::size_t>(robot.matrix.cols());
+    default:
+      return robot.columns.size();
   }
 }
 
-void take_matrix(const Eigen::MatrixXd& M, double wheelbase, Drive& drive) {
-  if (!M.row(1).isZero(0.0)) drive.sideways.assign(drive.rows(), 0.0);
-  for (std::size_t row = 0; row < drive.rows(); ++row) {
-    Eigen::Vector3d motion = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < drive.wheels.size(); ++k) {
-      const Eigen::Vector3d by = M.col(static_cast<Eigen::Index>(k));
-      drive.wheels[k].by_reading.push_back({by[0], by[1], by[2]});
-      motion += drive.wheels[k].reading[row] * by;
-    }
-    take_body(drive, row, motion, wheelbase);
+void require_geometry(const Robot& robot) {
+  const std::size_t columns = columns_of(robot);
+  const std::string drive = "drive " + std::string(name_of(robot.drive));
+  const bool halves = robot.drive != DriveKind::skid_steer || columns % 2 == 0;
+  if (columns == 0 || robot.columns.size() != columns || !halves) {
+    throw std::invalid_argument(joined(drive, " has ", robot.columns.size(), " columns, expected ",
+                                       halves && columns > 0 ? joined(columns) : "an even number"));
+  }
+  if (!(robot.wheelbase > 0.0)) throw std::invalid_argument("the wheelbase must be above 0 m");
+  const bool long_one = robot.drive != DriveKind::skid_steer && robot.drive != DriveKind::wheels;
+  if (long_one && !(robot.length > 0.0)) {
+    throw std::invalid_argument(drive + " has a length of " + short_text(robot.length) +
+                                " m, expected more than 0");
+  }
+  if (robot.drive == DriveKind::wheels && robot.matrix.rows() != 3) {
+    throw std::invalid_argument(drive + " has a matrix that has not three rows");
   }
 }
 
@@ -186,13 +190,12 @@ Recording with_wheels(Recording recording, const Robot& robot) {
         "has no columns left and right, expected them, or a model whose [robot] says which drive " +
             there + " are of");
   }
-  constexpr double kLargest = 1e6;  // m, rad: beyond all that a row may hold
   std::vector<WheelColumn> wheels;
   for (const std::string& name : robot.columns) {
     wheels.push_back({name, false, column_named(recording, name), {}});
     const std::vector<double>& reading = wheels.back().reading;
     for (std::size_t row = 0; row < reading.size(); ++row) {
-      if (std::abs(reading[row]) <= kLargest) continue;
+      if (is_possible_reading(reading[row])) continue;
       refuse(recording, joined("column ", name, " is ", short_text(reading[row]),
                                " at t = ", short_text(drive.t[row]),
                                " s, expected a travel in metres or an "
@@ -204,16 +207,62 @@ Recording with_wheels(Recording recording, const Robot& robot) {
     drive.right = wheels[1].reading;
     return recording;
   }
-  drive.wheels = std::move(wheels);
-  drive.left.assign(drive.rows(), 0.0);
-  drive.right.assign(drive.rows(), 0.0);
-  if (is_of_drive(Channel::steer, robot)) {
-    drive.wheels[1].steers = true;
-    take_steered(recording, robot, drive);
-  } else {
-    take_matrix(matrix_of(robot), robot.wheelbase, drive);
+  const WheelKinematics kinematics(robot);
+  kinematics.prepare(drive, drive.rows());
+  for (std::size_t k = 0; k < wheels.size(); ++k) {
+    drive.wheels[k].reading = std::move(wheels[k].reading);
+  }
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    if (kinematics.move(drive, row)) continue;
+    refuse(recording, joined("a steering angle of ", short_text(drive.wheels[1].reading[row]),
+                             " rad at t = ", short_text(drive.t[row]),
+                             " s leaves the measured wheel no way ahead, expected a smaller one"));
   }
   return recording;
+}
+
+bool is_possible_reading(double reading) {
+  constexpr double kLargest = 1e6;  // m, rad: beyond all that a row may hold
+  return std::abs(reading) <= kLargest;
+}
+
+WheelKinematics::WheelKinematics(const Robot& robot)
+    : robot_(robot), steers_(is_of_drive(Channel::steer, robot)) {
+  require_geometry(robot_);
+  if (!steers_) matrix_ = matrix_of(robot_);
+}
+
+void WheelKinematics::prepare(Drive& drive, std::size_t rows) const {
+  drive.left.assign(rows, 0.0);
+  drive.right.assign(rows, 0.0);
+  drive.sideways.assign(!steers_ && !matrix_.row(1).isZero(0.0) ? rows : 0, 0.0);
+  drive.wheels.clear();
+  for (const std::string& name : robot_.columns) {
+    drive.wheels.push_back({name, steers_ && !drive.wheels.empty(), std::vector<double>(rows, 0.0),
+                            std::vector<std::array<double, 3>>(rows)});
+  }
+}
+
+bool WheelKinematics::move(Drive& drive, std::size_t row, double more) const {
+  if (!steers_) {
+    Eigen::Vector3d motion = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < drive.wheels.size(); ++k) {
+      const Eigen::Vector3d by = matrix_.col(static_cast<Eigen::Index>(k));
+      drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};
+      motion += drive.wheels[k].reading[row] * by;
+    }
+    take_body(drive, row, motion, robot_.wheelbase);
+    return true;
+  }
+  const SteeredMotion body =
+      steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row] + more);
+  if (!body.possible) return false;
+  take_body(drive, row, body.motion, robot_.wheelbase);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Eigen::Vector3d& by = body.by_reading[k];
+    drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};
+  }
+  return true;
 }
 
 }  // namespace trussmap

@@ -3,6 +3,8 @@
 #include "trussmap/corrected_odometry.hpp"
 
 #include "effects/channel_physics.hpp"
+#include "effects/steering.hpp"
+#include "effects/wheel_kinematics.hpp"
 #include "fit/effect_columns.hpp"
 #include "fit/online_terms.hpp"
 #include "odometry/row_reckoner.hpp"
@@ -44,9 +46,10 @@ class CorrectedOdometry::State {
         covariates_(inputs_.covariates.size(), kAbsent),
         now_{RowReckoner({}, inputs_.compass)} {
     if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
+    one_row_.left = one_row_.right = {0.0};
     if (robot_.drive != DriveKind::differential) {
-      refuse("drive " + std::string(name_of(robot_.drive)) +
-             " is not reckoned row by row yet, expected differential");
+      kinematics_.emplace(robot_);
+      kinematics_->prepare(one_row_, 1);
     }
     std::vector<std::string> taken = reserved_variables();
     for (const std::string& name : inputs_.covariates) {
@@ -60,23 +63,33 @@ class CorrectedOdometry::State {
 
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
     check(row, covariates);
-    const CausalRow facts = variables_.next(row.left, row.right, row.duration);
+    take_wheels(row);
+    const GyroShare gyro = gyro_share(one_row_, 0, row.yaw_rate, row.duration, robot_, noise_);
+    const ReckonedRow recorded = as_recorded(row, gyro);
+    const RowWay wheels{gyro.left, gyro.right, gyro.sideways};
+    const RowWay both = kinematics_
+                            ? RowWay{recorded.travel.left, recorded.travel.right, recorded.sideways}
+                            : wheels;
+    const CausalRow facts = variables_.next(wheels, both, row.duration);
     // Shapes that speak of the pose see it first as the row says, then as corrected.
-    const bool twice = drives_.see_the_pose() || readings_.see_the_pose();
-    const GyroShare gyro =
-        gyro_share({row.left, row.right}, row.yaw_rate, row.duration, robot_, noise_);
-    ReckonedRow clear{together(gyro, robot_), row.duration, 0.0, row.compass};
-    clear.noise = noise_of(clear, gyro);
+    const bool twice =
+        steering_.see_the_pose() || drives_.see_the_pose() || readings_.see_the_pose();
+    ReckonedRow clear = recorded;
     Reckoning after = twice ? reckoned(clear) : now_;
     for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
-      clear = cleared(row, gyro, facts, covariates, after);
+      if (steering_.all().empty()) {
+        clear = cleared(recorded, gyro, facts, covariates, after);
+      } else {
+        const GyroShare share = steered(row, facts, covariates, after);
+        clear = cleared(as_recorded(row, share), share, facts, covariates, after);
+      }
       after = reckoned(clear);
     }
-    variables_.take(row.left, row.right, row.duration);
+    variables_.take(wheels, both, row.duration);
     last_ = facts;
     std::copy(covariates.begin(), covariates.end(), covariates_.begin());
     now_ = after;
-    return {{displacement_of(clear.travel, clear.slip, robot_.wheelbase),
+    return {{displacement_of(clear.travel, clear.slip + clear.sideways, robot_.wheelbase),
              covariance_of(clear, robot_, noise_)},
             now_.reckoner.at()};
   }
@@ -132,6 +145,7 @@ class CorrectedOdometry::State {
     OnlineTerms& terms = effect.channel == Channel::delay ? delays_
                          : acts == ActsOn::views          ? views_
                          : acts == ActsOn::readings       ? readings_
+                         : is_steering(effect.channel)    ? steering_
                                                           : drives_;
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
       try {
@@ -149,6 +163,18 @@ class CorrectedOdometry::State {
     }
     if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
       refuse("a row's travel is not finite");
+    }
+    if (row.readings.size() != one_row_.wheels.size()) {
+      refuse(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
+                    expected_readings()));
+    }
+    if (kinematics_ && (row.left != 0.0 || row.right != 0.0)) {
+      refuse("a row has travels left and right, expected readings of " + expected_readings());
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      if (is_possible_reading(row.readings[k])) continue;
+      refuse(joined("column ", one_row_.wheels[k].name, " reads ", short_text(row.readings[k]),
+                    ", expected a travel in metres or an angle in radians"));
     }
     if (std::isinf(row.compass)) refuse("a compass reading is infinite");
     if (std::isinf(row.yaw_rate)) refuse("a yaw rate is infinite");
@@ -168,24 +194,80 @@ class CorrectedOdometry::State {
     }
   }
 
-  /// Nothing without a gyro: then that of the wheels.
-  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row,
-                                                 const GyroShare& gyro) const {
-    if (!inputs_.gyro) return std::nullopt;
-    const ArcNoise wheels = arc_noise(row.travel, row.duration, robot_, noise_);
-    return noise_together(gyro, wheels, row.duration, noise_);
+  [[nodiscard]] std::string expected_readings() const {
+    if (!kinematics_) return "none of two wheels, but left and right";
+    std::string names;
+    for (const WheelColumn& one : one_row_.wheels) names += (names.empty() ? "" : ", ") + one.name;
+    return names;
+  }
+
+  /// What the row's wheels say, as a drive of this row alone.
+  void take_wheels(const WheelRow& row) {
+    if (!kinematics_) {
+      one_row_.left.front() = row.left;
+      one_row_.right.front() = row.right;
+      return;
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      one_row_.wheels[k].reading.front() = row.readings[k];
+    }
+    if (kinematics_->move(one_row_, 0)) return;
+    refuse("a steering angle of " + short_text(row.readings.back()) +
+           " rad leaves the measured wheel no way ahead, expected a smaller one");
+  }
+
+  /// The row as wheels and gyro together say.
+  ReckonedRow as_recorded(const WheelRow& row, const GyroShare& gyro) {
+    ReckonedRow result{together(gyro, robot_), row.duration, 0.0, row.compass};
+    result.sideways = gyro.sideways;
+    if (!one_row_.sideways.empty()) result.sideways += gyro.aside * gyro.excess;
+    result.noise = noise_of(result, gyro);
+    return result;
+  }
+
+  /// Nothing of two wheels without a gyro: then that of the wheels.
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
+    if (!inputs_.gyro && !kinematics_) return std::nullopt;
+    one_row_.left.front() = row.travel.left;
+    one_row_.right.front() = row.travel.right;
+    one_row_.gyro.clear();
+    if (inputs_.gyro) one_row_.gyro.push_back(gyro);
+    return row_noise(one_row_, 0, 1.0, row.duration, robot_, noise_);
+  }
+
+  /// The row in its middle, with `after` where it leads as far as is known.
+  [[nodiscard]] Pose middle_of(const Reckoning& after) const {
+    const Pose before = after.map_pose(pose().pose);
+    const Pose end = after.map_pose(after.reckoner.at().pose);
+    return {0.5 * (before.x + end.x), 0.5 * (before.y + end.y),
+            before.heading + 0.5 * wrap_angle(end.heading - before.heading)};
+  }
+
+  /// The row at hand, steered as the effects say; what the gyro adds to it then.
+  GyroShare steered(const WheelRow& row, const CausalRow& facts, std::span<const double> covariates,
+                    const Reckoning& after) {
+    steering_.fill(facts, middle_of(after), covariates);
+    double more = 0.0;  // rad
+    for (const OnlineTerm& term : steering_.all()) {
+      const double g = term.coefficient * steering_.value(term);
+      more += term.channel == Channel::steer ? g : g * row.readings.back();
+    }
+    if (kinematics_ && !kinematics_->move(one_row_, 0, more)) {
+      refuse("a steering angle of " + short_text(row.readings.back() + more) +
+             " rad, which the model's steering effects lead to, leaves the measured wheel no way "
+             "ahead");
+    }
+    return gyro_share(one_row_, 0, row.yaw_rate, row.duration, robot_, noise_);
   }
 
   /// The row less what the effects add to it; `after` is where it leads as far as is known.
-  ReckonedRow cleared(const WheelRow& row, const GyroShare& gyro, const CausalRow& facts,
+  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const CausalRow& facts,
                       std::span<const double> covariates, const Reckoning& after) {
-    const Pose before = after.map_pose(pose().pose);
+    const Pose middle = middle_of(after);
     const Pose end = after.map_pose(after.reckoner.at().pose);
-    const Pose middle{0.5 * (before.x + end.x), 0.5 * (before.y + end.y),
-                      before.heading + 0.5 * wrap_angle(end.heading - before.heading)};
     const double wheelbase = robot_.wheelbase;
-    const WheelTravel both = together(gyro, robot_);
-    const RowTravel shown = row_travel(gyro, row.duration, wheelbase);
+    RowTravel shown = row_travel(gyro, row.duration, wheelbase);
+    if (kinematics_) shown.wheels = &one_row_.wheels;
     DrivePattern more;
     drives_.fill(facts, middle, covariates);
     for (const OnlineTerm& term : drives_.all()) {
@@ -194,13 +276,12 @@ class CorrectedOdometry::State {
       more.slip += term.coefficient * unit.slip;
       more.turn += term.coefficient * unit.turn;
     }
-    ReckonedRow clear{{both.left + more.advance - 0.5 * wheelbase * more.turn,
-                       both.right + more.advance + 0.5 * wheelbase * more.turn},
-                      row.duration,
-                      more.slip,
-                      row.compass};
+    ReckonedRow clear = row;
+    clear.travel = {row.travel.left + more.advance - 0.5 * wheelbase * more.turn,
+                    row.travel.right + more.advance + 0.5 * wheelbase * more.turn};
+    clear.slip = more.slip;
     clear.noise = noise_of(clear, gyro);
-    if (std::isnan(row.compass)) return clear;
+    if (std::isnan(row.reading)) return clear;
     readings_.fill(facts, end, covariates);
     for (const OnlineTerm& term : readings_.all()) {
       clear.reading -= term.coefficient * readings_.value(term);
@@ -230,6 +311,9 @@ class CorrectedOdometry::State {
   Robot robot_;
   Noise noise_;
   OdometryInputs inputs_;
+  std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
+  Drive one_row_;                              ///< the row at hand
+  OnlineTerms steering_{OnlineTerms::Instant::middle};
   OnlineTerms drives_{OnlineTerms::Instant::middle};
   OnlineTerms readings_{OnlineTerms::Instant::end};
   OnlineTerms views_{OnlineTerms::Instant::end};

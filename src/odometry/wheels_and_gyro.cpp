@@ -77,6 +77,14 @@ GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration
   return share;
 }
 
+GyroShare gyro_share(const Drive& drive, std::size_t row, double yaw_rate, double duration,
+                     const Robot& robot, const Noise& noise) {
+  GyroShare share = gyro_share(wheels_of(drive, row, 1.0), yaw_rate, duration, robot, noise,
+                               wheels_noise(drive, row, 1.0, duration, robot, noise));
+  share.sideways = drive.slip(row);
+  return share;
+}
+
 WheelTravel together(const GyroShare& share, const Robot& robot) {
   const double apart = 0.5 * robot.wheelbase * share.turn * share.excess;
   const double along = share.along * share.excess;
@@ -105,10 +113,8 @@ Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
   if (!drive.has_gyro() || !drive.gyro.empty()) return result;
   result.gyro.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double duration = drive.duration(row);
-    GyroShare share = gyro_share(wheels_of(drive, row, 1.0), drive.yaw_rate[row], duration, robot,
-                                 noise, wheels_noise(drive, row, 1.0, duration, robot, noise));
-    share.sideways = drive.slip(row);
+    const GyroShare share =
+        gyro_share(drive, row, drive.yaw_rate[row], drive.duration(row), robot, noise);
     const WheelTravel both = together(share, robot);
     result.left[row] = both.left;
     result.right[row] = both.right;

@@ -33,6 +33,10 @@ namespace trussmap {
 [[nodiscard]] GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration,
                                    const Robot& robot, const Noise& noise,
                                    const ArcNoise& of_wheels);
+/// The same of a drive's row, of two wheels or others, that lasts `duration` s and has this yaw
+/// rate.
+[[nodiscard]] GyroShare gyro_share(const Drive& drive, std::size_t row, double yaw_rate,
+                                   double duration, const Robot& robot, const Noise& noise);
 /// s', as wheel travels that lead along it.
 [[nodiscard]] WheelTravel together(const GyroShare& share, const Robot& robot);
 /// Q' of a row, or of a part that lasts `duration` s, in which the wheels' noise is `wheels`.

@@ -26,15 +26,17 @@ std::size_t CausalVariables::window(MotionKind kind, double middle) const {
   return first;
 }
 
-CausalRow CausalVariables::next(double left, double right, double duration) const {
+CausalRow CausalVariables::next(const RowWay& wheels, const RowWay& together,
+                                double duration) const {
   CausalRow row;
-  const double travel = 0.5 * (left + right);
-  const double turn = (right - left) / wheelbase_;
-  row.kind = motion_kind(left, right, duration);
+  const double travel = 0.5 * (together.left + together.right);
+  const double turn = (together.right - together.left) / wheelbase_;
+  const double way = std::hypot(travel, together.sideways);
+  row.kind = motion_kind(wheels.left, wheels.right, duration, wheels.sideways);
   row.t = t_ + 0.5 * duration;
   row.t_end = t_ + duration;
-  row.distance = distance_ + 0.5 * std::abs(travel);
-  row.distance_end = distance_ + std::abs(travel);
+  row.distance = distance_ + 0.5 * way;
+  row.distance_end = distance_ + way;
 
   const std::size_t first = window(row.kind, row.t);
   const bool alone = first == past_.size();
@@ -51,13 +53,13 @@ CausalRow CausalVariables::next(double left, double right, double duration) cons
   const bool begins = row.kind != kind_;
   row.starts = begins && drives ? 1.0 : 0.0;
   row.spins = begins && row.kind == MotionKind::spinning ? 1.0 : 0.0;
-  row.reverses_left = reversal(sense_left_, sense_after(sense_left_, left));
-  row.reverses_right = reversal(sense_right_, sense_after(sense_right_, right));
+  row.reverses_left = reversal(sense_left_, sense_after(sense_left_, wheels.left));
+  row.reverses_right = reversal(sense_right_, sense_after(sense_right_, wheels.right));
   return row;
 }
 
-void CausalVariables::take(double left, double right, double duration) {
-  const CausalRow row = next(left, right, duration);
+void CausalVariables::take(const RowWay& wheels, const RowWay& together, double duration) {
+  const CausalRow row = next(wheels, together, duration);
   first_ = window(row.kind, row.t);
   if (2 * first_ >= past_.size()) {  // rarely moves much, and allocates nothing
     past_.erase(past_.begin(), past_.begin() + static_cast<std::ptrdiff_t>(first_));
@@ -66,11 +68,11 @@ void CausalVariables::take(double left, double right, double duration) {
   past_.push_back({row.kind, t_, row.t, travelled_, turned_, row.speed});
   kind_ = row.kind;
   t_ = row.t_end;
-  travelled_ += 0.5 * (left + right);
-  turned_ += (right - left) / wheelbase_;
+  travelled_ += 0.5 * (together.left + together.right);
+  turned_ += (together.right - together.left) / wheelbase_;
   distance_ = row.distance_end;
-  sense_left_ = sense_after(sense_left_, left);
-  sense_right_ = sense_after(sense_right_, right);
+  sense_left_ = sense_after(sense_left_, wheels.left);
+  sense_right_ = sense_after(sense_right_, wheels.right);
 }
 
 }  // namespace trussmap

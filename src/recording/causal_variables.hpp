@@ -35,14 +35,29 @@ struct CausalRow {
   double distance = 0.0, distance_end = 0.0;  ///< m
 };
 
+/// What a row moves by.
+struct RowWay {
+  double left = 0.0;      ///< m
+  double right = 0.0;     ///< m
+  double sideways = 0.0;  ///< m to the left
+};
+
 class CausalVariables {
  public:
   explicit CausalVariables(double wheelbase) : wheelbase_(wheelbase) {}
 
   /// What this row would be as the next one: travels in m, duration in s.
-  [[nodiscard]] CausalRow next(double left, double right, double duration) const;
+  [[nodiscard]] CausalRow next(double left, double right, double duration) const {
+    return next({left, right}, {left, right}, duration);
+  }
+  /// The kind of motion by the wheels alone, rates and distance by what wheels and gyro say
+  /// together.
+  [[nodiscard]] CausalRow next(const RowWay& wheels, const RowWay& together, double duration) const;
   /// Takes it in.
-  void take(double left, double right, double duration);
+  void take(double left, double right, double duration) {
+    take({left, right}, {left, right}, duration);
+  }
+  void take(const RowWay& wheels, const RowWay& together, double duration);
 
  private:
   struct Past {

@@ -94,7 +94,12 @@ std::vector<double> beginnings(const std::vector<MotionKind>& kinds, MotionKind 
 
 }  // namespace
 
-MotionKind motion_kind(double left, double right, double duration) {
+MotionKind motion_kind(double left, double right, double duration, double sideways) {
+  if (sideways != 0.0) {  // who moves to the side drives as who moves ahead
+    const double ahead = 0.5 * (left + right);
+    const double more = std::hypot(ahead, sideways) - ahead;
+    return motion_kind(left + more, right + more, duration);
+  }
   const double fastest = std::max(std::abs(left), std::abs(right));
   if (fastest < kStandingSpeed * duration) return MotionKind::standing;
   if (std::abs(left + right) < kSpinShare * std::abs(right - left)) return MotionKind::spinning;
@@ -105,14 +110,8 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
   std::vector<MotionKind> kinds;
   kinds.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const double left = drive.wheel_left(row);
-    const double right = drive.wheel_right(row);
-    // Who moves to the side drives as who moves ahead.
-    const double more =
-        drive.sideways.empty()
-            ? 0.0
-            : std::hypot(0.5 * (left + right), drive.wheel_slip(row)) - 0.5 * (left + right);
-    kinds.push_back(motion_kind(left + more, right + more, drive.duration(row)));
+    kinds.push_back(motion_kind(drive.wheel_left(row), drive.wheel_right(row), drive.duration(row),
+                                drive.wheel_slip(row)));
   }
   return kinds;
 }

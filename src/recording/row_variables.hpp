@@ -37,8 +37,9 @@ inline constexpr double kRateWindow = 1.0;
 
 enum class MotionKind { standing, spinning, driving };
 
-/// By a row's travels (m) and duration (s).
-[[nodiscard]] MotionKind motion_kind(double left, double right, double duration);
+/// By a row's travels (m), duration (s) and way to the left (m).
+[[nodiscard]] MotionKind motion_kind(double left, double right, double duration,
+                                     double sideways = 0.0);
 /// Kind of motion of each row.
 [[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
 

@@ -69,6 +69,32 @@ TEST(CheckCommand, SaysByItsStatusThatSomethingIsFound) {
   EXPECT_EQ(ran.output.find("trussmap:"), std::string::npos) << ran.output;  // no complaint
 }
 
+/// Angles in degrees lead a car nowhere: check says so, where the other commands cannot begin.
+TEST(CheckCommand, ReadsTheDriveFromTheModel) {
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path() / "car";
+  fs::create_directory(folder);
+  std::ofstream drive(folder / "drive.csv");
+  std::ofstream fixes(folder / "fixes.csv");
+  drive << "t,wheel,steer\n";
+  fixes << "t,x,y\n";
+  for (int k = 1; k <= 100; ++k) {
+    drive << 0.1 * k << ",0.5," << (k % 20 < 10 ? 12.0 : -17.0) << "\n";
+    fixes << 0.1 * k << "," << 0.5 * k << ",0\n";
+  }
+  drive.close();
+  fixes.close();
+  const std::string model = (scratch.path() / "model.toml").string();
+  std::ofstream(model) << "[robot]\ndrive = \"ackermann\"\nlength = 2.5\n";
+  const Ran ran = run_trussmap("check " + folder.string() + " --model " + model);
+  EXPECT_EQ(ran.status, 1) << ran.output;
+  EXPECT_NE(ran.output.find("drive.csv, steer: angle unit"), std::string::npos) << ran.output;
+  const Ran other = run_trussmap("apply " + folder.string() + " --model " + model + " --out " +
+                                 (scratch.path() / "path.csv").string());
+  EXPECT_EQ(other.status, 2) << other.output;
+  EXPECT_NE(other.output.find("no way ahead"), std::string::npos) << other.output;
+}
+
 TEST(CheckCommand, OtherCommandsWarn) {
   const ScratchFolder scratch;
   const std::string folder = with_wheels_exchanged(scratch);

@@ -393,6 +393,31 @@ TEST(Check, YawsThatAreWrongAreNamed) {
   }
 }
 
+/// A gyro of 0.01 rad/s white noise beside two wheels, as recorded and spoilt.
+TEST(Check, GyrosThatCountClockwiseOrInDegrees) {
+  std::normal_distribution<double> normal;
+  for (const bool compass : {false, true}) {
+    World world = world_of({compass, true, false, false}, 4);
+    Drive& drive = world.recording.drive;
+    for (std::size_t row = 0; row < drive.rows(); ++row) {
+      drive.yaw_rate.push_back((drive.right[row] - drive.left[row]) / (0.34 * drive.duration(row)) +
+                               0.01 * normal(world.random));
+    }
+    EXPECT_TRUE(check_recordings({world.recording}, &world.model).empty());
+    World clockwise = world;
+    scale(clockwise.recording.drive.yaw_rate, -1.0);
+    std::vector<CheckFinding> findings =
+        check_recordings({clockwise.recording}, &world.model, "model.toml");
+    ASSERT_EQ(findings.size(), 1U) << text_of(findings);
+    EXPECT_EQ(findings[0].kind, "gyro clockwise") << text_of(findings);
+    scale(drive.yaw_rate, kDegrees);
+    findings = check_recordings({world.recording}, &world.model, "model.toml");
+    ASSERT_EQ(findings.size(), 1U) << text_of(findings);
+    EXPECT_EQ(findings[0].kind, "angle unit");
+    EXPECT_EQ(findings[0].column, "yaw_rate");
+  }
+}
+
 TEST(Check, TheSameSessionTwice) {
   const World world = world_of({}, 1);
   Recording again = world.recording;

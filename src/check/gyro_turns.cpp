@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Turns of the gyro against the wheels', in stretches in which these have turned by a third of a
+// radian.
+#include "check/findings.hpp"
+#include "text/number_text.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace trussmap {
+namespace {
+
+constexpr double kStretch = 0.3;  // rad, by the wheels
+constexpr int kFewest = 12;       // stretches
+constexpr double kClear = 0.8;    // correlation
+constexpr double kFar = 3.0;      // factor beside degrees per radian
+
+}  // namespace
+
+TurnAgreement check_gyro(Checked& checked) {
+  const Drive& drive = checked.recording.drive;
+  TurnAgreement result;
+  if (!drive.has_gyro() || checked.wrong.contains("left")) return result;
+  double ww = 0.0;
+  double wg = 0.0;
+  double gg = 0.0;
+  double wheels = 0.0;
+  double gyro = 0.0;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    if (std::isnan(drive.yaw_rate[row])) continue;
+    wheels += (drive.right[row] - drive.left[row]) / checked.wheelbase;
+    gyro += drive.yaw_rate[row] * drive.duration(row);
+    if (std::abs(wheels) < kStretch) continue;
+    ww += wheels * wheels;
+    wg += wheels * gyro;
+    gg += gyro * gyro;
+    ++result.turns;
+    wheels = gyro = 0.0;
+  }
+  if (result.turns < kFewest || !(gg > 0.0)) return result;
+  result.correlation = wg / std::sqrt(ww * gg);
+  result.slope = wg / (ww * checked.wheelbase);
+  if (std::abs(result.correlation) < kClear) return result;
+  result.sign = result.correlation > 0.0 ? 1 : -1;
+  const double times = std::sqrt(gg / ww);
+  const double degrees = 180.0 / std::numbers::pi;
+  if (checked.wheelbase_known && std::abs(std::log(times / degrees)) < std::log(kFar)) {
+    checked.add("drive.csv", "yaw_rate", "angle unit",
+                joined("the gyro turns ", figure(times), " times as far as the wheels"),
+                "convert the yaw rates to rad/s");
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// How a robot's columns move its body, one row at a time (DriveKind, model.hpp); with_wheels does
+// so with a whole recording.
+#pragma once
+
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace trussmap {
+
+class WheelKinematics {
+ public:
+  /// Of any drive but `differential`. Throws std::invalid_argument where the robot has not as many
+  /// columns as its drive, or a length that has to be above 0 is not.
+  explicit WheelKinematics(const Robot& robot);
+
+  /// So many rows for each of the robot's columns, in their order, all of them 0.
+  void prepare(Drive& drive, std::size_t rows) const;
+
+  /// From the row's readings its `left`, `right`, `sideways` and `by_reading`, the wheel steered
+  /// `more` [rad] further to the left than it reads. False, and nothing done, where a steering
+  /// angle leaves the measured wheel no way ahead.
+  [[nodiscard]] bool move(Drive& drive, std::size_t row, double more = 0.0) const;
+
+ private:
+  Robot robot_;
+  bool steers_;
+  Eigen::MatrixXd matrix_;  ///< 3 x columns, where none steers
+};
+
+/// Whether a reading is one that a row may hold, m or rad: finite, and not beyond all measure.
+[[nodiscard]] bool is_possible_reading(double reading);
+
+}  // namespace trussmap
