@@ -133,7 +133,7 @@ TEST_P(CorrectedOdometryOfDrives, EffectsThatAreKnownLeaveTheTruePath) {
   Pose end;
   for (const testing::Twist& row : drive.rows) end = testing::after(end, row);
   for (const Channel channel : drive.constants) {
-    const double g = channel == Channel::steer ? 0.03 : -0.02;
+    const double g = channel == Channel::steer ? 0.2 : -0.02;
     const Recording recording = with_wheels(
         testing::recorded(drive, testing::with_effect(drive, channel, g)), drive.model.robot);
     Model model = drive.model;
