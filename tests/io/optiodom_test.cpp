@@ -136,7 +136,7 @@ TEST(OptiOdom, ATricyclesOtherPathsEndThreeTimesNearer) {
   model.noise.truth = 0.001;
   const WheelCalibration found = calibrate_wheels(circles, model);
   ASSERT_EQ(found.constants.size(), 3U);
-  // 830 mm and 95 mm when this was written.
+  // 830 mm and 98 mm when this was written.
   EXPECT_LT(rms_end(drive_errors(others, found.model, found.truth)),
             rms_end(drive_errors(others, model)) / 3.0);
 }
@@ -153,7 +153,7 @@ TEST(OptiOdom, TheOmnidirectionalRobotsOtherPathEndsThreeTimesNearer) {
   const Model model = read_optiodom(file).model;
   const WheelCalibration found = calibrate_wheels(circles, model);
   EXPECT_EQ(found.constants.size(), 6U);
-  // 81 mm and 17 mm when this was written.
+  // 81 mm and 16 mm when this was written.
   EXPECT_LT(rms_end(drive_errors(others, found.model, found.truth)),
             rms_end(drive_errors(others, model)) / 3.0);
 }
