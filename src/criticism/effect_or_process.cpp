@@ -20,9 +20,14 @@ constexpr double kStep = 1.4;  // from one s to the next
 
 /// 0, then from what is hardly seen to what swamps everything.
 Eigen::VectorXd sizes_for(double largest_mode) {
-  std::vector<double> sizes{0.0};
-  for (double s = kSmallest; s < kLargest; s *= kStep) sizes.push_back(s / largest_mode);
-  return Eigen::Map<const Eigen::VectorXd>(sizes.data(), static_cast<Eigen::Index>(sizes.size()));
+  const auto steps =
+      static_cast<Eigen::Index>(std::ceil(std::log(kLargest / kSmallest) / std::log(kStep)));
+  Eigen::VectorXd sizes(steps + 1);
+  sizes[0] = 0.0;
+  for (Eigen::Index k = 0; k < steps; ++k) {
+    sizes[k + 1] = kSmallest * std::pow(kStep, static_cast<double>(k)) / largest_mode;
+  }
+  return sizes;
 }
 
 Eigen::MatrixXd normals(Eigen::Index rows, Eigen::Index columns, std::mt19937_64& random) {
