@@ -104,11 +104,10 @@ class ShapeContext {
                                           std::size_t sessions, const std::vector<Effect>& effects,
                                           const Robot& robot, Channel delay = Channel::delay);
 
-/// Drives with the steering effects taken in; gyros are not yet. Shapes see the paths where there is
-/// one for every row, else a robot at (0, 0, 0).
+/// Drives with the steering effects taken in; gyros are not yet. Shapes see the paths where there
+/// is one for every row, else a robot at (0, 0, 0).
 [[nodiscard]] std::vector<Recording> steered(const std::vector<Recording>& recordings,
-                                             const std::vector<Effect>& effects,
-                                             const Robot& robot,
+                                             const std::vector<Effect>& effects, const Robot& robot,
                                              const std::vector<SessionPath>& paths);
 
 /// The channel that delays what a recording's legs end at: its fixes', where it has nothing else.

@@ -221,7 +221,7 @@ TEST(EffectPhysics, EveryCatalogueEffectIsTriedHere) {
     if (acts_on_fixes(entry.channel)) continue;             // tests of fixes
     // No landmark has an axis here: fit/landmark_yaw_test.cpp.
     if (entry.channel == Channel::sighting_yaw) continue;
-    if (!is_of_drive(entry.channel, Robot())) continue;     // fit/other_drives_test.cpp
+    if (!is_of_drive(entry.channel, Robot())) continue;  // fit/other_drives_test.cpp
     if (entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale) {
       continue;  // this robot has none: fit/gyro_test.cpp
     }
