@@ -78,6 +78,7 @@ double extent_of(const std::vector<Vector2>& places) {
 
 double extent_of(const LandmarkGraph& map) {
   std::vector<Vector2> places;
+  places.reserve(idx(map.landmarks()));
   for (int k = 0; k < map.landmarks(); ++k) places.push_back(map.landmark(k).position);
   return extent_of(places);
 }

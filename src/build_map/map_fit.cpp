@@ -130,9 +130,10 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
   }
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = fit.problem.measurements[idx(k)];
-    SessionGuide* guide = one.session < 0 ? nullptr : &guides[idx(one.session)];
-    if (is_sighting(one.kind)) guide->left_out[one.source] = true;
-    if (one.kind == MeasurementKind::sighting_yaw) guide->yaw_left_out[one.source] = true;
+    if (one.session < 0) continue;
+    SessionGuide& guide = guides[idx(one.session)];
+    if (is_sighting(one.kind)) guide.left_out[one.source] = true;
+    if (one.kind == MeasurementKind::sighting_yaw) guide.yaw_left_out[one.source] = true;
   }
   return guides;
 }

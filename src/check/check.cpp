@@ -151,12 +151,14 @@ Geometry geometry_of(const Robot& robot) {
 
 void check_wheelbase(Checked& checked, const Model& model, const std::string& model_file,
                      const TurnAgreement& turns, CheckFindings& findings) {
-  const auto [key, kind, stated, widest] = geometry_of(model.robot);
+  const Geometry geometry = geometry_of(model.robot);
+  const char* const key = geometry.key;
+  const double stated = geometry.stated;
   const bool wheelbase = std::string(key) == "wheelbase";
   const auto add = [&](const std::string& evidence, const std::string& remedy) {
-    findings.push_back({model_file, key, kind, evidence, remedy});
+    findings.push_back({model_file, key, geometry.kind, evidence, remedy});
   };
-  if (stated < kNarrowest || stated > widest) {
+  if (stated < kNarrowest || stated > geometry.widest) {
     add(joined("the ", wheelbase ? key : "distance of the wheels", " is ", figure(stated, "m")),
         joined("state ", wheelbase ? "it" : key, " in metres"));
     return;
