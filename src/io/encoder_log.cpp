@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kKind = "#kinematic_model:";
 constexpr double kTurnOfCounter = 4294967296.0;  // ticks, unsigned 32 bit
-constexpr int kJoined = 5;                       // samples in a row
+constexpr std::size_t kJoined = 5;               // samples in a row
 
 /// Finite numbers after a key, up to the next word; commas and brackets are passed over.
 std::optional<std::vector<double>> numbers_after(std::string_view line, std::string_view key) {
@@ -74,7 +74,7 @@ class LogReader {
         take_sample(line);
       }
     }
-    if (samples.size() <= static_cast<std::size_t>(2 * kJoined)) {
+    if (samples.size() <= 2 * kJoined) {
       fail(0, "has fewer than " + std::to_string(2 * kJoined + 1) + " samples, expected a drive");
     }
   }
