@@ -424,6 +424,7 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
   // A steering whose encoder is geared may turn many times as far as is believed: least squares
   // find that only from near by.
   std::optional<WheelCalibration> best;
+  std::optional<WheelCalibration> stated;  // from the stated gain: not settled, or far from it
   std::exception_ptr why;
   for (const double factor : {1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125}) {
     std::vector<double> start = g;
@@ -434,6 +435,8 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
       if (factor == 1.0 && nearby) return found;
       if (nearby && (!best || found.chi2 * best->dof < best->chi2 * found.dof)) {
         best = std::move(found);
+      } else if (factor == 1.0) {
+        stated = std::move(found);
       }
     } catch (const SolveError&) {
       if (!why) why = std::current_exception();
@@ -442,8 +445,8 @@ WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, cons
     }
   }
   if (best) return std::move(*best);
-  if (why) std::rethrow_exception(why);
-  return calibrated_from(g, recordings, model, options);
+  if (stated) return std::move(*stated);
+  std::rethrow_exception(why);  // the stated start's, which led to nothing
 }
 
 }  // namespace trussmap
