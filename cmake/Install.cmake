@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# Three sets of targets, so that find_package(trussmap COMPONENTS map) needs only what maps need.
+# Four sets of targets, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
@@ -11,6 +11,9 @@ install(TARGETS trussmap_map EXPORT trussmapMapTargets
 install(TARGETS trussmap_store EXPORT trussmapStoreTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS trussmap_logs EXPORT trussmapLogsTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS trussmap EXPORT trussmapTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
@@ -18,6 +21,7 @@ install(DIRECTORY include/trussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(EXPORT trussmapMapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 install(EXPORT trussmapStoreTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
+install(EXPORT trussmapLogsTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 install(EXPORT trussmapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 configure_package_config_file(cmake/trussmapConfig.cmake.in
                               ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
@@ -27,6 +31,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersi
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
               cmake/FindCholmod.cmake
+        cmake/FindLz4.cmake
         DESTINATION ${config_dir})
 if(TARGET trussmap_command)
   install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "io/logs/message_log.hpp"
+
+#include "trussmap/error.hpp"
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Format {
+  bool (*is)(const fs::path&);
+  LogEnd (*read)(const fs::path&, const LogVisit&);
+};
+
+constexpr Format kFormats[] = {{&is_mcap, &read_mcap},
+                               {&is_rosbag2, &read_rosbag2},
+                               {&is_wpilog, &read_wpilog},
+                               {&is_roadrunner_log, &read_roadrunner_log},
+                               {&is_csv_log, &read_csv_log}};
+
+}  // namespace
+
+bool is_message_log(const fs::path& path) {
+  for (const Format& one : kFormats) {
+    if (one.is(path)) return true;
+  }
+  return false;
+}
+
+LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
+  for (const Format& one : kFormats) {
+    if (one.is(path)) return one.read(path, visit);
+  }
+  throw InputError(path.string(), 0,
+                   "is no log that can be read, expected an MCAP file, a rosbag2 (.db3 or its "
+                   "folder), a .wpilog, a Road Runner .log or a table (.csv, .tsv, .txt)");
+}
+
+}  // namespace trussmap
