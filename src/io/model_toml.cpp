@@ -3,7 +3,7 @@
 #include "effects/channel_physics.hpp"
 #include "fit/noise_reml.hpp"
 #include "io/csv.hpp"
-#include "io/toml_parser.hpp"
+#include "io/model_tables.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
@@ -571,10 +571,14 @@ std::string process_text(const NoiseProcess& process) {
 
 }  // namespace
 
+Model model_of(const toml::table& root, const std::string& file) {
+  return ModelReader(file).read(root);
+}
+
 Model read_model(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   try {
-    return ModelReader(file.string()).read(toml::parse(text));
+    return model_of(toml::parse(text), file.string());
   } catch (const toml::parse_error& error) {
     throw InputError(file.string(), error.source().begin.line,
                      "no TOML: " + std::string(error.description()));
