@@ -56,6 +56,7 @@ struct LogFieldFacts {
   double last = kAbsent;
   std::string example;        ///< of texts, the first that is not empty
   std::size_t different = 0;  ///< values that differ from the one before
+  double total_step = 0.0;    ///< sum of the sizes of all steps from one value to the next
   std::size_t decreases = 0;  ///< values that are smaller than the one before
   bool is_whole = true;       ///< only whole numbers
 };
@@ -71,8 +72,17 @@ struct LogTopicFacts {
   std::vector<LogFieldFacts> fields;
 };
 
+/// A transform of /tf or /tf_static.
+struct LogFrameFacts {
+  std::string parent;
+  std::string child;
+  bool is_static = false;
+  std::size_t samples = 0;
+};
+
 struct LogInspection {
   std::vector<LogTopicFacts> topics;
+  std::vector<LogFrameFacts> frames;
   std::string cut_off;  ///< where the log ends too soon; empty: it is whole
   std::string map;      ///< a first map.toml, whose guesses are its comments
 };

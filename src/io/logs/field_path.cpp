@@ -70,6 +70,7 @@ FieldPath FieldPath::below_topic(std::string_view path, const LogTopic& topic) {
 }
 
 FieldPath::FieldPath(std::string_view below, bool table) {
+  if (below == ".") return;  // the message itself
   if (table) {
     if (!below.empty()) steps_.push_back({Step::Kind::member, std::string(below), "", 0});
     return;

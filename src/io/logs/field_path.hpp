@@ -8,6 +8,7 @@
 //   /joint_states/position[left_wheel]  the element whose fellow in the list `name` beside it is so
 //   /poses/markers[id=5].pose           the element whose member `id` is so
 //   /battery                            the message itself, where it is a number
+//   .                                   (below a topic) the message itself
 //   Left (mm)                           of a table: the column, with whatever characters
 #pragma once
 

@@ -34,6 +34,16 @@ class Below {
   FieldPath path_;
 };
 
+/// "marker_ids[3]" of "../marker_ids[#]": what goes with element 3 in another list of the message.
+std::optional<std::string> beside(const std::string& path, std::size_t number, bool table) {
+  if (table || !path.starts_with("../")) return std::nullopt;
+  std::string found = path.substr(3);
+  if (const std::size_t at = found.find('#'); at != std::string::npos) {
+    found.replace(at, 1, std::to_string(number));
+  }
+  return found;
+}
+
 class Gatherer {
  public:
   Gatherer(const LogMap& map, GatheredLog& to) : map_(map), to_(to), feeds_(map) {}
@@ -214,14 +224,17 @@ class Gatherer {
   }
 
   bool take_sighting(const SightingMap& map, const FedMessage& fed, FieldRef at,
-                     std::string& before) {
+                     std::string& before, std::size_t number = 0) {
     const bool table = fed.topic.table;
     SeenLandmark seen;
     seen.t = fed.t + nanoseconds(map.clock);
     seen.map = &map;
     std::string name = map.name;
     if (name.empty()) {
-      const auto field = FieldPath(map.landmark, table).find(at);
+      const auto field =
+          beside(map.landmark, number, table)
+              ? FieldPath(*beside(map.landmark, number, table), table).find(fed.field)
+              : FieldPath(map.landmark, table).find(at);
       if (!field) return false;
       name = as_text(*field);
     }
