@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap apply: where the robot was, by a model.
+#include "bag_output.hpp"
 #include "commands.hpp"
 #include "model_recordings.hpp"
 #include "option_checks.hpp"
@@ -26,6 +27,9 @@ struct ApplyCommand {
   ModelRecordingsOptions input;
   std::string out;
   std::string tum;
+  std::string kitti;
+  std::string mcap;
+  std::optional<double> epoch;
   bool adjusted = false;
 };
 
@@ -51,8 +55,8 @@ bool motion_noise_lasts(const Noise& noise) {
 }
 
 void run_apply(ApplyCommand options) {
-  if (options.out.empty() && options.tum.empty()) {
-    throw UsageError("apply: nothing to write, expected --out or --tum");
+  if (options.out.empty() && options.tum.empty() && options.kitti.empty() && options.mcap.empty()) {
+    throw UsageError("apply: nothing to write, expected --out, --tum, --kitti or --mcap");
   }
   options.input.recordings = {options.recording};
   const ModelRecordings input = read_model_recordings(options.input);
@@ -68,6 +72,15 @@ void run_apply(ApplyCommand options) {
   };
   add(options.out, format_poses(poses));
   add(options.tum, format_tum(poses));
+  add(options.kitti, format_kitti(poses));
+  std::int64_t epoch = 0;
+  if (!options.mcap.empty()) {
+    BagOptions how;
+    how.epoch = epoch_of(options.epoch);
+    Bag bag = format_odometry_bag(poses, options.adjusted, how);
+    add(options.mcap, std::move(bag.bytes));
+    epoch = bag.epoch;
+  }
   write_files(files);
   const PoseEstimate& end = poses.back().estimate;
   fmt::print("{} poses, {}; the last is known to {:.3f} m and {:.2f} deg (standard deviations)\n",
@@ -77,6 +90,7 @@ void run_apply(ApplyCommand options) {
              std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
              std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
   fmt::print("written: {}\n", fmt::join(names, ", "));
+  print_epoch(epoch);
   if (!options.adjusted && motion_noise_lasts(input.model.noise)) {
     fmt::print("{}", warning_text("of the wheels' noise the covariances know what is white: with "
                                   "motion noise that lasts, as the model has, they are too small"));
@@ -102,6 +116,16 @@ void setup_apply(const Command& app) {
   command.add_option("--out", options->out, "Write t,x,y,heading and covariances (CSV)")
       .type_name("FILE");
   command.add_option("--tum", options->tum, "Write the same as a TUM trajectory").type_name("FILE");
+  command
+      .add_option("--kitti", options->kitti,
+                  "Write the same as a KITTI trajectory: no times, axes as ours (x ahead, z up)")
+      .type_name("FILE");
+  command
+      .add_option("--mcap", options->mcap,
+                  "Write the same as a bag for ROS 2 and Foxglove: /odometry/corrected "
+                  "(nav_msgs/Odometry)")
+      .type_name("FILE");
+  add_epoch(command, options->epoch, "With --mcap: ");
   command.add_flag("--adjusted", options->adjusted,
                    "By everything that was measured, in the map's frame, instead of dead reckoned");
   command

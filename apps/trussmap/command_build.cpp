@@ -88,7 +88,8 @@ void check_usage(const BuildOptions& options) {
     }
   }
   if (!options.out.empty() && !is_map_file(options.out)) {
-    throw UsageError("cannot write " + options.out + ": expected .graphml, .g2o, .geojson or .dot");
+    throw UsageError("cannot write " + options.out +
+                     ": expected .graphml, .g2o, .geojson, .dot or .yaml");
   }
 }
 
@@ -186,7 +187,8 @@ void setup_build(const Command& app) {
                   "Add the recordings' legs to the map that is kept in this file (.db), which is "
                   "made if it is not there; each recording as a whole or not at all, none twice")
       .type_name("FILE");
-  command.add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson or .dot)")
+  command
+      .add_option("--out", options->out, "Write the map (.graphml, .g2o, .geojson, .dot or .yaml)")
       .type_name("FILE");
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
   command

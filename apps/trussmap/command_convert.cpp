@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// trussmap convert: maps between formats, and foreign recordings to recordings.
+// trussmap convert: maps between formats, foreign recordings to recordings, recordings to bags.
 #include "commands.hpp"
 #include "convert_log.hpp"
+#include "convert_recording.hpp"
+#include "map_yaml_output.hpp"
 #include "trussmap/log_files.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/map_store.hpp"
@@ -28,6 +30,8 @@ struct ConvertOptions {
   std::string out;
   std::string map;
   bool inspect = false;
+  ConvertRecordingOptions bag;
+  MapYamlOptions yaml;
 };
 
 void count(int number, const char* what) {
@@ -201,6 +205,10 @@ void run_convert(const ConvertOptions& options) {
     convert_log(in, out, options.map);
     return;
   }
+  if (is_recording_to_bag(in, out)) {
+    convert_recording(in, out, options.bag);
+    return;
+  }
   for (const Foreign& one : kForeign) {
     if (!one.is(in)) continue;
     check_folder(out);
@@ -232,6 +240,8 @@ void run_convert(const ConvertOptions& options) {
   const LandmarkGraph map = is_map_store(in) ? read_map_store(in).map : read_map(in);
   if (is_map_store(out)) {
     static_cast<void>(MapStore::create(out, map, {.method = Method::gauss_markov}));
+  } else if (is_yaml_file(out)) {
+    write_map_yaml(map, out, options.yaml);
   } else {
     write_file(out, format_map(map, out, ""));
   }
@@ -244,11 +254,13 @@ void run_convert(const ConvertOptions& options) {
 void setup_convert(const Command& app) {
   auto options = std::make_shared<ConvertOptions>();
   const Command command = app.add_subcommand(
-      "convert", "Convert maps between formats, and foreign recordings to recordings");
+      "convert",
+      "Convert maps between formats, foreign recordings to recordings, and recordings to bags");
   command
       .add_option(
           "IN", options->in,
-          "A map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, an OptiOdom run "
+          "A map (.graphml, .g2o, .db), a recording's folder, DIR/RobotN of an MRCLAM data set, an "
+          "OptiOdom run "
           "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
           "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), dataset1.csv of a "
           "robot on a line, a log of a tricycle's encoders, or DIR/trial_N of PHIL's Turtlebot "
@@ -257,7 +269,8 @@ void setup_convert(const Command& app) {
       .type_name("FILE");
   command
       .add_option("OUT", options->out,
-                  "A map (.graphml, .g2o, .geojson, .dot, .db), or the recording's folder (of a "
+                  "A map (.graphml, .g2o, .geojson, .dot, .yaml, .db), a bag of a recording "
+                  "(.mcap), or the recording's folder (of a "
                   "pose graph, too: a name without an ending)")
       .type_name("FILE|DIR");
   command
@@ -269,6 +282,8 @@ void setup_convert(const Command& app) {
   command.add_flag("--inspect", options->inspect,
                    "List topics, fields and columns of the log IN, and write a first map (--map, "
                    "else map.toml) with guesses");
+  add_map_yaml(command, options->yaml);
+  add_convert_recording(command, options->bag);
   command.callback([options] { run_convert(*options); });
 }
 

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Bags and logs of others: MCAP, rosbag2, WPILib, Road Runner, any table. Part of trussmap::logs.
+// Bags and logs of others: MCAP, rosbag2, WPILib, Road Runner, any table; and bags out of poses and
+// recordings. Link trussmap::logs for it.
 //
 //   log + map.toml --read_log_recording--> recording + model
 //   log ------------inspect_log----------> what is in it, and a first map.toml
@@ -9,11 +10,14 @@
 // docs/logs.md has the formats and the keys of map.toml.
 #pragma once
 
+#include "trussmap/fit_model.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -89,5 +93,70 @@ struct LogInspection {
 
 /// Throws InputError where the log is damaged.
 [[nodiscard]] LogInspection inspect_log(const std::filesystem::path& log);
+
+// ----------------------------------------
+// Bags of ROS 2 messages (MCAP, profile ros2) out of poses and recordings: for Foxglove,
+// `ros2 bag play` and whatever reads bags. Written from the specifications; no ROS is needed.
+//
+// A message's time is t + epoch in whole nanoseconds: recorded, published and in its header. Frames
+// are right-handed, x ahead, y to the left, z up. What a planar robot cannot know (z, roll, pitch
+// and their rates) is 0, with a variance of 1e6 where the message has a place for one.
+
+struct BagOptions {
+  /// ns, Unix time of t = 0. Absent: 0, or the first whole second that leaves no time before 1970.
+  std::optional<std::int64_t> epoch = {};
+  std::string map_frame = "map";
+  std::string odom_frame = "odom";
+  std::string robot_frame = "base_link";
+  double wheel_radius = 0.05;  ///< m: a wheel's angle is its travel over this
+};
+
+struct Bag {
+  struct Topic {
+    std::string name;
+    std::string type;  ///< nav_msgs/msg/Odometry
+    std::size_t messages = 0;
+  };
+  struct LeftOut {
+    std::size_t count = 0;
+    std::string what;  ///< in the plural: "loops"
+  };
+
+  std::string bytes;  ///< the file
+  std::vector<Topic> topics;
+  std::vector<LeftOut> left_out;  ///< what a bag has no message for
+  std::int64_t epoch = 0;         ///< ns, as it was taken
+};
+
+/// Poses as /odometry/corrected (nav_msgs/Odometry): each with the covariance of x, y and heading,
+/// and the mean velocity since the pose before, in the robot's axes, which the first has of the
+/// second. Of velocities no covariance is known: 1e6. In the map's frame, or in that of the
+/// odometry. Throws InputError where a time is none of ROS (1970 to 2038),
+/// std::invalid_argument where there are no poses or times do not increase.
+[[nodiscard]] Bag format_odometry_bag(const std::vector<TimedPose>& poses, bool in_map_frame,
+                                      const BagOptions& options = {});
+
+/// A recording, as its robot would have published it.
+///
+///   /joint_states     sensor_msgs/JointState: left_wheel, right_wheel, or the columns of another
+///                     drive; position = travel so far/wheel_radius [rad], of a steering its angle;
+///                     one at the drive's start, where wheels stand at 0, one at each row's end
+///   /odom             nav_msgs/Odometry: dead reckoned by the model without its effects, with
+///                     the covariance of its noise; the twist is the wheels', over the row
+///   /imu/data         sensor_msgs/Imu: compass as orientation, gyro as angular velocity about z;
+///                     covariance[0] = -1 of whichever a row has not
+///   /tf               tf2_msgs/TFMessage: robot -> landmark, of sightings by range and bearing,
+///                     turned by the yaw, 0 where none was read
+///   /landmark         std_msgs/String: the name of the landmark that the robot stands on
+///   /range/NAME       sensor_msgs/Range: ranges alone. NAME as ROS allows names; frame_id is the
+///                     landmark's own name
+///   /fix, /truth      geometry_msgs/PointStamped, PoseStamped: in the map's frame
+///   /covariates/NAME  std_msgs/Float64: at each row's end
+///
+/// Bearings alone, loops, the survey and stated standard deviations have no place and are counted
+/// in left_out. Ranges are single precision there. Throws InputError where a time is none of ROS
+/// and where the recording has not the columns of the model's drive.
+[[nodiscard]] Bag format_recording_bag(const Recording& recording, const Model& model,
+                                       const BagOptions& options = {});
 
 }  // namespace trussmap

@@ -7,6 +7,7 @@
 //   .g2o       a map as a pose graph of points, or any pose graph in the plane
 //   .geojson   a map for other people's programs, out only
 //   .dot       a map for Graphviz, out only
+//   .yaml      a map for ROS nodes that look for markers, out only; .yml, too
 //
 // GraphML: undirected; node id = landmark name; node data x, y [m] and, where known, c_xx c_xy c_yy
 // [m^2], heading (of the landmark's own axis) and its standard error sd_heading [rad]; edge data
@@ -44,14 +45,16 @@
 #include "trussmap/pose_graph.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace trussmap {
 
 // Maps, whatever the ending says.
 
-/// Whether the name ends like a map's: .graphml, .g2o, .geojson or .dot.
+/// Whether the name ends like a map's: .graphml, .g2o, .geojson, .dot, .yaml or .yml.
 [[nodiscard]] bool is_map_file(const std::filesystem::path& file);
 
 /// From .graphml or .g2o. Throws InputError on another ending and on what is no map in the file,
@@ -81,6 +84,37 @@ namespace trussmap {
 
 /// An undirected graph with pinned positions in metres: `neato -Tsvg` draws it as it lies.
 [[nodiscard]] std::string format_dot(const LandmarkGraph& map);
+
+// Landmarks as markers that lie on the floor, faces up: z = 0, turned about z by their heading,
+// or not at all where they have none. A marker's id is the number that the landmark's name ends in
+// (5 of tag36h11:5, tag_5 and 5), if no other's is the same.
+
+enum class YamlLayout {
+  /// frame_id, and markers with name, id, size, and pose and covariance as
+  /// geometry_msgs/PoseWithCovariance has them, with a variance of 1e6 of what is not known.
+  markers,
+  /// tags.yaml of apriltag_ros (ROS 1, version 3): one bundle of all tags.
+  apriltag,
+};
+
+struct YamlMapOptions {
+  YamlLayout layout = YamlLayout::markers;
+  std::optional<double> tag_size = {};  ///< m, edge of a marker's black square; apriltag needs it
+  std::string frame = "map";            ///< frame_id, or the bundle's name
+  std::string comment = {};             ///< stands at the top
+};
+
+struct YamlMap {
+  std::string text;
+  /// Names without a number, or with one that another has, too: markers without an id; in a bundle
+  /// they are left out.
+  std::vector<std::string> without_id;
+  std::vector<std::string> without_heading;  ///< not turned
+};
+
+/// Numbers read back exactly, in YAML 1.1 as in 1.2. Throws std::invalid_argument on a size that is
+/// not above 0 or that a bundle lacks, InputError where a bundle would have no tag.
+[[nodiscard]] YamlMap format_map_yaml(const LandmarkGraph& map, const YamlMapOptions& options = {});
 
 /// A table of the landmarks: landmark, x, y [m] and, where all are known, c_xx, c_xy, c_yy [m^2];
 /// where any has an orientation heading, sd_heading [rad].

@@ -289,9 +289,9 @@ struct PhilRecording {
 // ----------------------------------------
 // Poses over time as text, for other programs. Numbers read back to the same bits.
 //
-//   CSV   t,x,y,heading,c_xx,c_xy,c_xh,c_yy,c_yh,c_hh     s, m, rad; covariances in m^2, m rad,
-//   rad^2 TUM   timestamp tx ty tz qx qy qz qw                  s, m; tz = 0, the rotation about z
-//   alone
+//   CSV    t,x,y,heading,c_xx,c_xy,c_xh,c_yy,c_yh,c_hh   s, m, rad; covariances in their products
+//   TUM    timestamp tx ty tz qx qy qz qw                s, m; tz = 0, the rotation about z alone
+//   KITTI  r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz  m; a line per pose, without times
 
 /// The CSV, with a header row. Headings are not wrapped: they go on from row to row.
 [[nodiscard]] std::string format_poses(const std::vector<TimedPose>& poses);
@@ -299,6 +299,12 @@ struct PhilRecording {
 /// The trajectory format of the TUM RGB-D benchmark (Sturm et al., 2012), which evo and others
 /// read.
 [[nodiscard]] std::string format_tum(const std::vector<TimedPose>& poses);
+
+/// The trajectory format of the KITTI odometry benchmark (Geiger et al., 2012): the first three
+/// rows of the pose's 4 x 4 matrix, row by row. Axes stay ours: x ahead, y to the left, z up.
+/// KITTI's own files are a camera's, x to the right, y down, z ahead; programs that compare two
+/// trajectories (evo) take any axes, as long as both have the same.
+[[nodiscard]] std::string format_kitti(const std::vector<TimedPose>& poses);
 
 // ----------------------------------------
 // Runs of a calibration as tables, one row per run: end errors, absolute - calculated, in the frame

@@ -9,9 +9,18 @@
 
 namespace trussmap {
 
+namespace {
+
+bool is_yaml(const std::filesystem::path& file) {
+  return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+}  // namespace
+
 bool is_map_file(const std::filesystem::path& file) {
   const auto ending = file.extension();
-  return ending == ".graphml" || ending == ".g2o" || ending == ".geojson" || ending == ".dot";
+  return ending == ".graphml" || ending == ".g2o" || ending == ".geojson" || ending == ".dot" ||
+         is_yaml(file);
 }
 
 LandmarkGraph read_map(const std::filesystem::path& file) {
@@ -33,9 +42,10 @@ std::string format_map(const LandmarkGraph& map, const std::filesystem::path& fi
   if (ending == ".graphml") return format_map_graphml(map, comment);
   if (ending == ".geojson") return format_geojson(map);
   if (ending == ".dot") return format_dot(map);
+  if (is_yaml(file)) return format_map_yaml(map, {.comment = comment}).text;
   if (ending != ".g2o") {
     throw InputError(file.string(), 0,
-                     "is named like no map, expected .graphml, .g2o, .geojson or .dot");
+                     "is named like no map, expected .graphml, .g2o, .geojson, .dot or .yaml");
   }
   try {
     return format_g2o(to_pose_graph(map));

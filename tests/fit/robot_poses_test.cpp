@@ -12,6 +12,7 @@
 #include <complex>
 #include <sstream>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 namespace trussmap {
@@ -146,9 +147,44 @@ TEST(PoseText, ReadsBackToTheSameNumbers) {
     EXPECT_EQ(values[9], one.estimate.covariance(2, 2));
     double t = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 0.0;
     ASSERT_TRUE(static_cast<bool>(tum >> t >> x >> y >> z >> qx >> qy >> qz >> qw));
+    EXPECT_EQ(t, one.t);
+    EXPECT_EQ(x, one.estimate.pose.x);
     EXPECT_EQ(y, one.estimate.pose.y);
+    const double half = 0.5 * wrap_angle(one.estimate.pose.heading);
+    EXPECT_EQ(qz, std::sin(half));
+    EXPECT_EQ(qw, std::cos(half));
+    EXPECT_EQ(z, 0.0);
+    EXPECT_EQ(qx, 0.0);
+    EXPECT_EQ(qy, 0.0);
     EXPECT_NEAR(wrap_angle(2.0 * std::atan2(qz, qw) - one.estimate.pose.heading), 0.0, 1e-12);
   }
+}
+
+/// What the benchmark's own programs and evo read: twelve numbers a line, nothing else.
+TEST(PoseText, KittiLinesAreTheMatricesOfThePoses) {
+  const SimulatedRecording world = simulated(true, 6);
+  const std::vector<TimedPose> poses = dead_reckoned_poses(world.recording, world.model);
+  std::istringstream kitti(format_kitti(poses));
+  std::string line;
+  for (const TimedPose& one : poses) {
+    ASSERT_TRUE(std::getline(kitti, line));
+    std::istringstream numbers(line);
+    Eigen::Matrix<double, 3, 4> matrix;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 4; ++j) ASSERT_TRUE(static_cast<bool>(numbers >> matrix(i, j)));
+    }
+    EXPECT_TRUE(numbers.eof());
+    const Pose& pose = one.estimate.pose;
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(pose.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    EXPECT_LT((matrix.leftCols<3>() - rotation).norm(), 1e-14);
+    EXPECT_EQ(matrix(0, 0), std::cos(pose.heading));
+    EXPECT_EQ(matrix(1, 0), std::sin(pose.heading));
+    EXPECT_EQ(matrix(0, 3), pose.x);
+    EXPECT_EQ(matrix(1, 3), pose.y);
+    EXPECT_EQ(matrix(2, 3), 0.0);
+  }
+  EXPECT_FALSE(std::getline(kitti, line));
 }
 
 }  // namespace

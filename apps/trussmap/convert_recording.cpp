@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "convert_recording.hpp"
+
+#include "bag_output.hpp"
+#include "option_checks.hpp"
+#include "terminal.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <fmt/format.h>
+
+namespace trussmap::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The model that is given, else the one beside the recording.
+Model model_for(const fs::path& folder, const std::string& given) {
+  if (!given.empty()) return read_model(given);
+  const fs::path beside = folder / "model.toml";
+  if (fs::exists(beside)) return read_model(beside);
+  fmt::print("{}", warning_text("no model.toml in " + folder.string() +
+                                ": dead reckoned by a wheelbase of 0.34 m and default noise; "
+                                "--model says which"));
+  return {};
+}
+
+}  // namespace
+
+void add_convert_recording(const Command& command, ConvertRecordingOptions& options) {
+  command
+      .add_option("--model", options.model,
+                  "Of a recording to a bag: the robot and its noise (TOML), for /odom and "
+                  "covariances; the folder's model.toml if left out")
+      .type_name("FILE");
+  command
+      .add_option("--wheel-radius", options.wheel_radius,
+                  "Of a recording to a bag: radius of the wheels [m]; /joint_states has travel / "
+                  "radius")
+      .check(above_zero())
+      .capture_default_str();
+  add_epoch(command, options.epoch, "Of a recording to a bag: ");
+}
+
+bool is_recording_to_bag(const fs::path& in, const fs::path& out) {
+  return out.extension() == ".mcap" && fs::exists(in / "drive.csv");
+}
+
+void convert_recording(const fs::path& in, const fs::path& out,
+                       const ConvertRecordingOptions& options) {
+  const Recording recording = read_recording(in);
+  BagOptions how;
+  how.wheel_radius = options.wheel_radius;
+  how.epoch = epoch_of(options.epoch);
+  const Bag bag = format_recording_bag(recording, model_for(in, options.model), how);
+  write_file(out, bag.bytes);
+  fmt::print("converted: the recording {} to the bag {}\n\n", in.string(), out.string());
+  print_bag(bag);
+  fmt::print(
+      "\nRead it back: trussmap convert {} FOLDER, where a wheel's travel is its angle times {} m\n"
+      "Look at it: Foxglove, or ros2 bag play {}\n",
+      out.string(), options.wheel_radius, out.string());
+}
+
+}  // namespace trussmap::app
