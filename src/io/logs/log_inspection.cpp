@@ -187,6 +187,8 @@ LogSurvey survey_log(const std::filesystem::path& log) {
 
 LogInspection inspect_log(const std::filesystem::path& log) {
   LogSurvey survey = survey_log(log);
+  survey.wheels = wheel_topics(survey);
+  survey.wheels.constants = wheel_constants(log, survey.wheels);
   std::string map = guessed_map(survey, log.string());
   std::vector<LogFrameFacts> frames;
   for (const FrameFacts& one : survey.frames) {

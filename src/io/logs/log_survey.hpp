@@ -4,6 +4,7 @@
 // What is in a log, as far as a first map.toml needs it.
 #pragma once
 
+#include "io/logs/wheel_topics.hpp"
 #include "trussmap/log_files.hpp"
 
 #include <filesystem>
@@ -26,6 +27,7 @@ struct FrameFacts {
 struct LogSurvey {
   std::vector<LogTopicFacts> topics;
   std::vector<FrameFacts> frames;
+  WheelTopics wheels;  ///< with their constants
   bool table = false;
   std::string cut_off;
 

@@ -40,6 +40,11 @@ bool has_word(const std::string& name, const std::vector<std::string>& words) {
   });
 }
 
+bool is_called_truth(const std::string& name) {
+  return has_word(name,
+                  {"truth", "ground", "mocap", "vicon", "vrpn", "optitrack", "qualisys", "/gt"});
+}
+
 std::string covariate_name(const std::string& path) {
   std::string name;
   for (const char c : path) {

@@ -34,6 +34,8 @@ struct Guessed {
 
 /// Letters, digits and _ alone, beginning with a letter: what a covariate may be called.
 [[nodiscard]] std::string covariate_name(const std::string& path);
+/// Whether a topic's name says that it was measured apart from the robot.
+[[nodiscard]] bool is_called_truth(const std::string& name);
 /// Whether the name holds one of these words, whatever its case.
 [[nodiscard]] bool has_word(const std::string& name, const std::vector<std::string>& words);
 

@@ -143,10 +143,10 @@ class NameGuesser {
     return step >= 2.0 ? "ms" : "s";
   }
 
-  void wheel(const char* name, const NamedFacts& field) {
+  /// What both wheels have in common.
+  void wheel_constants(const NamedFacts& field) {
     text_.blank();
-    text_.table(std::string("wheels.") + name);
-    text_.text("field", field.path);
+    text_.table("wheels");
     std::optional<Unit> unit = unit_in(field.path);
     const bool speed = has_word(field.path, {"vel", "speed", "rate"}) ||
                        is_of(unit, {Quantity::speed, Quantity::turn_rate});
@@ -178,6 +178,12 @@ class NameGuesser {
         }
       }
     }
+  }
+
+  void wheel(const char* name, const NamedFacts& field) {
+    text_.blank();
+    text_.table(std::string("wheels.") + name);
+    text_.text("field", field.path);
     text_.number("sign", 1, "-1 where it counts down ahead");
   }
 
@@ -201,6 +207,7 @@ class NameGuesser {
       text_.table("robot");
       text_.number("wheelbase", Robot().wheelbase, std::string("m between the wheels; ") + kState);
       state();
+      wheel_constants(*left);
       wheel("left", *left);
       wheel("right", *right);
       found_.wheels = true;

@@ -8,8 +8,6 @@
 namespace trussmap {
 namespace {
 
-const std::vector<std::string> kTruthWords{"truth", "ground",    "mocap",    "vicon",
-                                           "vrpn",  "optitrack", "qualisys", "/gt"};
 const std::vector<std::string> kMarkWords{"tag",      "marker", "aruco",  "fiducial",
                                           "landmark", "april",  "beacon", "dock"};
 const std::vector<std::string> kPlaceWords{"landmark", "code",    "tag",   "rfid",
@@ -60,21 +58,7 @@ class TypeGuesser {
     return found;
   }
 
-  /// The two wheels among a JointState's joints.
-  [[nodiscard]] static std::pair<std::string, std::string> joints_of(const LogTopicFacts& topic) {
-    std::vector<std::string> left;
-    std::vector<std::string> right;
-    for (const LogFieldFacts& one : topic.fields) {
-      if (!one.path.starts_with("position[") || !(one.largest > one.least)) continue;
-      if (!has_word(one.path, {"wheel"})) continue;
-      if (has_word(one.path, {"left", "_l_", "l_wheel", "wheel_l"})) left.push_back(one.path);
-      if (has_word(one.path, {"right", "_r_", "r_wheel", "wheel_r"})) right.push_back(one.path);
-    }
-    if (left.size() != 1 || right.size() != 1) return {};
-    return {left.front(), right.front()};
-  }
-
-  void robot(bool radius) {
+  void robot(const WheelTopics& topics) {
     text_.blank();
     text_.table("robot");
     double base = 0.0;
@@ -83,70 +67,53 @@ class TypeGuesser {
         base = 2.0 * one.translation_y;
       }
     }
-    if (base > 0.01) {
+    if (topics.constants) {
+      text_.number("wheelbase", topics.constants->wheelbase,
+                   "m between the wheels, as " + topics.odometry + " has it");
+    } else if (base > 0.01) {
       text_.number("wheelbase", base, "m, twice how far to the left the left wheel's frame is");
     } else {
       text_.number("wheelbase", Robot().wheelbase, std::string("m between the wheels; ") + kState);
       ++found_.to_state;
     }
-    if (!radius) return;
   }
 
   void wheels() {
-    const std::vector<const LogTopicFacts*> odometries = odometry_topics();
-    for (const LogTopicFacts* topic : of_type("sensor_msgs/JointState")) {
-      const auto [left, right] = joints_of(*topic);
-      if (left.empty()) continue;
-      robot(true);
-      for (const auto& [name, path] : {std::pair{"left", left}, std::pair{"right", right}}) {
-        text_.blank();
-        text_.table(std::string("wheels.") + name);
-        text_.text("field", topic->name + '/' + path);
-        text_.text("unit", "rad", "turns of the wheel so far");
+    const WheelTopics& topics = survey_.wheels;
+    if (!topics.left.empty()) {
+      robot(topics);
+      text_.blank();
+      text_.table("wheels");
+      text_.text("unit", "rad", "turns of the wheel so far");
+      if (topics.constants) {
+        text_.number("radius", topics.constants->radius, "m, as " + topics.odometry + " has it");
+      } else {
         text_.number("radius", 0.05, std::string("m; ") + kState);
+        ++found_.to_state;
       }
-      found_.to_state += 2;
+      text_.line("left.field = " + toml_string(topics.left));
+      text_.line("right.field = " + toml_string(topics.right));
       found_.wheels = true;
-      if (!odometries.empty()) {
-        text_.blank();
-        text_.comment(
-            "In place of [wheels.left] and [wheels.right], as the robot's own odometry has it:");
-        text_.comment("[odometry]");
-        text_.comment("twist = " + toml_string(odometries.front()->name));
-      }
+      if (topics.odometry.empty()) return;
+      text_.blank();
+      text_.comment("In place of [wheels], as the robot's own odometry has it:");
+      text_.comment("[odometry]");
+      text_.comment("twist = " + toml_string(topics.odometry));
       return;
     }
-    if (odometries.empty()) return;
-    robot(false);
+    if (topics.odometry.empty()) return;
+    robot(topics);
     text_.blank();
-    const LogTopicFacts& topic = *odometries.front();
-    const bool twist =
-        varies(topic, "twist.twist.linear.x") && varies(topic, "twist.twist.angular.z");
     text_.table("odometry");
-    text_.text(twist ? "twist" : "pose", topic.name,
+    const auto topic = std::find_if(survey_.topics.begin(), survey_.topics.end(),
+                                    [&](const auto& one) { return one.name == topics.odometry; });
+    const bool twist =
+        varies(*topic, "twist.twist.linear.x") && varies(*topic, "twist.twist.angular.z");
+    text_.text(twist ? "twist" : "pose", topics.odometry,
                twist ? "velocities, held since the message before (pose: from its poses)"
                      : "from its poses: it has no velocities");
-    for (std::size_t k = 1; k < odometries.size(); ++k) {
-      text_.comment("another: " + odometries[k]->name);
-    }
+    for (const std::string& one : topics.others) text_.comment("another: " + one);
     found_.wheels = true;
-  }
-
-  /// Those that are the wheels' own first: no filter's, no truth.
-  [[nodiscard]] std::vector<const LogTopicFacts*> odometry_topics() const {
-    std::vector<const LogTopicFacts*> found = of_type("nav_msgs/Odometry");
-    std::erase_if(found, [](const LogTopicFacts* one) { return has_word(one->name, kTruthWords); });
-    std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
-      const auto rank = [](const LogTopicFacts* one) {
-        if (has_word(one->name, {"wheel", "raw", "controller"})) return 0;
-        return has_word(one->name, {"filter", "ekf", "fused", "laser", "visual", "global", "gps",
-                                    "map", "vio", "icp", "slam"})
-                   ? 2
-                   : 1;
-      };
-      return rank(a) < rank(b);
-    });
-    return found;
   }
 
   void imu() {
@@ -277,7 +244,7 @@ class TypeGuesser {
                         type == "geometry_msgs/PoseWithCovarianceStamped" ||
                         type == "nav_msgs/Odometry" || type == "geometry_msgs/TransformStamped";
       if (!pose || topic.messages < 2) continue;
-      const bool is_truth = has_word(topic.name, kTruthWords);
+      const bool is_truth = is_called_truth(topic.name);
       if (!is_truth && type == "nav_msgs/Odometry") continue;
       text_.blank();
       const std::string off = is_truth ? "" : "# ";
