@@ -8,12 +8,15 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace trussmap {
 namespace {
 
 constexpr std::size_t kHeader = 4;   // bytes
 constexpr std::size_t kPadding = 3;  // that may follow the last field
+
+constexpr std::uint32_t kLastCharacter = 0x10FFFFU;
 
 void add_utf8(std::string& text, std::uint32_t code) {
   const auto add = [&text](std::uint32_t byte) { text += static_cast<char>(byte); };
@@ -173,7 +176,12 @@ class Decoder {
     check_longest(field, count);
     need(std::uint64_t{count} * wide_, field.name);
     std::string found;
-    for (std::size_t k = 0; kept && k < count; ++k) found += character(k, count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t one = code(k);
+      const bool none = wide_ == 4 && (one > kLastCharacter || is_high(one) || is_low(one));
+      if (one == 0 || none) throw CdrError("has no text in " + field.name);
+      if (kept) found += character(k, count);
+    }
     if (kept) tree_->add_text(name, tree_->keep(std::move(found)));
     at_ += std::size_t{count} * wide_;
   }
@@ -192,8 +200,7 @@ class Decoder {
       one = 0x10000U + ((one - 0xD800U) << 10U) + (code(k + 1) - 0xDC00U);
     }
     std::string result;
-    const bool none = is_high(one) || is_low(one) || one > 0x10FFFFU;
-    add_utf8(result, none ? kUnknown : one);
+    add_utf8(result, is_high(one) || is_low(one) ? kUnknown : one);
     return result;
   }
 
@@ -247,6 +254,15 @@ class Decoder {
   std::size_t at_ = 0;
 };
 
+bool same(const FieldRef& a, const FieldRef& b) {
+  const std::vector<FieldRef> of_a = a.children();
+  const std::vector<FieldRef> of_b = b.children();
+  return a.kind() == b.kind() && a.field().text == b.field().text &&
+         a.field().length == b.field().length && a.field().integer == b.field().integer &&
+         std::bit_cast<std::uint64_t>(a.number()) == std::bit_cast<std::uint64_t>(b.number()) &&
+         std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), same);
+}
+
 bool big_endian(std::string_view message) {
   if (message.size() < kHeader) {
     throw CdrError("has " + std::to_string(message.size()) + " bytes, expected 4 or more");
@@ -271,10 +287,21 @@ void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t 
     Decoder(body, big, wide, layout, elements, tree).decode();
   };
   if (!layout.wide) return decode(2);
+  FieldTree other;
+  bool four = true;
+  try {
+    Decoder(body, big, 4, layout, elements, other).decode();
+  } catch (const CdrError&) {
+    four = false;
+  }
   try {
     decode(2);
   } catch (const CdrError&) {
-    decode(4);
+    if (!four) throw;
+    return decode(4);
+  }
+  if (four && !same(tree.root(), other.root())) {
+    throw CdrError("has wide texts whose characters may have 2 bytes or 4");
   }
 }
 

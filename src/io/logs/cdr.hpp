@@ -10,8 +10,8 @@
 //
 //   number             its bytes, at a multiple of its size (counted from after the first 4 bytes)
 //   string             length with the closing zero, uint32; characters; zero
-//   wstring            number of characters, uint32; characters of 2 bytes each (CDR of today) or 4
-//                      (Fast CDR of old): whichever fits the whole message
+//   wstring            number of characters, uint32; characters of 2 bytes each (as specified) or 4
+//                      (Fast CDR 1): whichever fits the whole message; an error where both do
 //   T[N]               elements
 //   T[], T[<=N]        their number, uint32; elements
 //   another message    its fields; of one without any, one byte
