@@ -59,7 +59,7 @@ std::int64_t BagBuilder::stamp(double t) const {
                          std::to_string(bag_.epoch / kSecond) +
                          " s as t = 0, is none of ROS, expected 1970 to 2038");
   };
-  if (!(std::abs(t) <= static_cast<double>(kLastSecond))) refuse();
+  if (!(std::abs(t) <= static_cast<double>(kLastSecond) + 1.0)) refuse();
   const std::int64_t ns = nanoseconds(t);
   const std::int64_t last = (kLastSecond + 1) * kSecond - 1;
   if (ns < -bag_.epoch || ns > last - bag_.epoch) refuse();
