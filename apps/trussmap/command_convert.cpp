@@ -163,10 +163,15 @@ void convert_encoder_log(const fs::path& in, const fs::path& out) {
   count(static_cast<int>(foreign.recording.drive.rows()), "drive rows, each with the truth");
 }
 
-/// A recording is a folder; a map's name for it is a mistake.
+/// A recording is a folder; a map's or bag's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
     throw UsageError(out.string() + " is named like a map, expected a folder for the recording");
+  }
+  if (out.extension() == ".mcap") {
+    throw UsageError(out.string() +
+                     " is named like a bag, expected a folder for the recording, "
+                     "which a second convert makes a bag of");
   }
 }
 
@@ -188,6 +193,7 @@ constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
+  check_map_yaml(out, options.yaml);
   if (is_recording_to_bag(in, out)) {
     convert_recording(in, out, options.bag);
     return;

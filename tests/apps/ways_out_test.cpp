@@ -73,6 +73,7 @@ TEST_F(WaysOut, PosesBecomeABagAndAKittiTrajectory) {
   const std::string first = lines.substr(0, lines.find('\n'));
   EXPECT_EQ(std::count(first.begin(), first.end(), ' '), 11);
   EXPECT_EQ(run_trussmap(apply).status, 2);
+  EXPECT_EQ(run_trussmap(apply + " --epoch 1 --tum " + at("t.txt")).status, 2);
 }
 
 TEST_F(WaysOut, AMapBecomesYaml) {
@@ -90,6 +91,8 @@ TEST_F(WaysOut, AMapBecomesYaml) {
   EXPECT_NE(sizeless.output.find("--tag-size"), std::string::npos) << sizeless.output;
   EXPECT_EQ(run_trussmap(convert + " --layout apriltag --tag-size 0.1").status, 2);
   EXPECT_EQ(run_trussmap(convert + " --layout other").status, 2);
+  EXPECT_EQ(run_trussmap("convert " + at("m.graphml") + " " + at("m.dot") + " --tag-size 1").status,
+            2);
 }
 
 }  // namespace
