@@ -3,8 +3,10 @@
 //
 // trussmap convert: maps between formats, foreign recordings to recordings, recordings to bags.
 #include "commands.hpp"
+#include "convert_log.hpp"
 #include "convert_recording.hpp"
 #include "map_yaml_output.hpp"
+#include "trussmap/log_files.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/map_store.hpp"
 #include "trussmap/model_file.hpp"
@@ -26,6 +28,8 @@ namespace fs = std::filesystem;
 struct ConvertOptions {
   std::string in;
   std::string out;
+  std::string map;
+  bool inspect = false;
   ConvertRecordingOptions bag;
   MapYamlOptions yaml;
 };
@@ -193,7 +197,20 @@ constexpr Foreign kForeign[] = {{&is_mrclam, &convert_mrclam},
 void run_convert(const ConvertOptions& options) {
   const fs::path in = options.in;
   const fs::path out = options.out;
+  if (options.inspect) {
+    if (!options.out.empty()) {
+      throw UsageError("convert --inspect writes a map.toml alone, expected no OUT (--map FILE)");
+    }
+    inspect_log_file(in, options.map.empty() ? fs::path("map.toml") : fs::path(options.map));
+    return;
+  }
+  if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
   check_map_yaml(out, options.yaml);
+  if (!options.map.empty()) {
+    check_folder(out);
+    convert_log(in, out, options.map);
+    return;
+  }
   if (is_recording_to_bag(in, out)) {
     convert_recording(in, out, options.bag);
     return;
@@ -210,6 +227,13 @@ void run_convert(const ConvertOptions& options) {
     return;
   }
   if (in.extension() != ".graphml" && in.extension() != ".g2o" && !is_map_store(in)) {
+    if (is_log(in)) {
+      throw UsageError(
+          in.string() +
+          " is a log, expected --map map.toml, which says what its fields are (a first "
+          "one: trussmap convert --inspect " +
+          in.string() + ")");
+    }
     throw UsageError("cannot tell what " + in.string() +
                      " is: expected a map (.graphml, .g2o, .db), DIR/RobotN of an MRCLAM data set, "
                      "an OptiOdom run (..._run-NN.csv, plain or .xz), DIR/NAME of ranges to radio "
@@ -254,8 +278,16 @@ void setup_convert(const Command& app) {
                   "A map (.graphml, .g2o, .geojson, .dot, .yaml, .db), a bag of a recording "
                   "(.mcap), or the recording's folder (of a "
                   "pose graph, too: a name without an ending)")
-      .required()
       .type_name("FILE|DIR");
+  command
+      .add_option(
+          "--map", options->map,
+          "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
+          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what")
+      .type_name("FILE");
+  command.add_flag("--inspect", options->inspect,
+                   "List topics, fields and columns of the log IN, and write a first map (--map, "
+                   "else map.toml) with guesses");
   add_map_yaml(command, options->yaml);
   add_convert_recording(command, options->bag);
   command.callback([options] { run_convert(*options); });

@@ -13,39 +13,6 @@
 #include <cstdint>
 
 namespace trussmap {
-namespace {
-
-/// Place of the first byte that is not part of valid UTF-8, or npos.
-std::size_t invalid_utf8(std::string_view text) {
-  for (std::size_t k = 0; k < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[k]);
-    if (byte < 0x80U) {
-      ++k;
-      continue;
-    }
-    const std::size_t length = byte >= 0xF0U ? 4 : byte >= 0xE0U ? 3 : 2;
-    if (byte < 0xC2U || byte > 0xF4U || k + length > text.size()) return k;
-    const auto second = static_cast<unsigned char>(text[k + 1]);
-    const bool overlong = (byte == 0xE0U && second < 0xA0U) || (byte == 0xF0U && second < 0x90U);
-    const bool beyond = (byte == 0xEDU && second > 0x9FU) || (byte == 0xF4U && second > 0x8FU);
-    if (overlong || beyond) return k;
-    for (std::size_t n = 1; n < length; ++n) {
-      if ((static_cast<unsigned char>(text[k + n]) & 0xC0U) != 0x80U) return k;
-    }
-    k += length;
-  }
-  return std::string_view::npos;
-}
-
-std::string shown(std::string_view field) {
-  constexpr std::size_t kLongest = 40;
-  std::string text(field.substr(0, kLongest));
-  for (char& c : text) c = static_cast<unsigned char>(c) < 0x20U ? ' ' : c;
-  return "\"" + text + (field.size() > kLongest ? "...\"" : "\"");
-}
-
-}  // namespace
-
 CsvReader::CsvReader(std::string_view text, std::string file)
     : text_(text), file_(std::move(file)) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -58,9 +25,9 @@ CsvReader::CsvReader(std::string_view text, std::string file)
   if (!read_record()) {
     throw InputError(file_, 1, "the file is empty, expected a header row");
   }
-  for (const std::string_view name : fields_) {
+  for (const std::string_view name : record_.fields()) {
     if (std::find(columns_.begin(), columns_.end(), name) != columns_.end()) {
-      fail("column " + shown(name) + " stands twice in the header, expected each name once");
+      fail("column " + shown_field(name) + " stands twice in the header, expected each name once");
     }
     columns_.emplace_back(name);
   }
@@ -93,15 +60,16 @@ int CsvReader::require(std::string_view column) const {
 
 bool CsvReader::next() {
   if (!read_record()) return false;
-  if (fields_.size() == columns_.size()) return true;
+  if (record_.fields().size() == columns_.size()) return true;
   const bool at_end = at_ >= text_.size();
   const bool line_open = text_.back() != '\n';
-  if (at_end && line_open && fields_.size() < columns_.size()) {
+  if (at_end && line_open && record_.fields().size() < columns_.size()) {
     fail("the file is cut off in the middle of a row, expected " + std::to_string(columns_.size()) +
          " fields");
   }
-  fail(std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields") +
-       ", expected " + std::to_string(columns_.size()) + " as in the header");
+  fail(std::to_string(record_.fields().size()) +
+       (record_.fields().size() == 1 ? " field" : " fields") + ", expected " +
+       std::to_string(columns_.size()) + " as in the header");
 }
 
 bool CsvReader::read_record() {
@@ -114,59 +82,14 @@ bool CsvReader::read_record() {
   }
   if (at_ >= text_.size()) return false;
   line_ = next_line_;
-  fields_.clear();
-  used_unquoted_ = 0;
-  for (bool end_of_record = false; !end_of_record;) read_field(end_of_record);
+  at_ = record_.read(text_, at_);
+  next_line_ += record_.line_ends();
+  if (record_.wrong() != nullptr) fail(record_.wrong());
   return true;
 }
 
-void CsvReader::read_field(bool& end_of_record) {
-  const auto ends_field = [this](std::size_t k) {
-    return k >= text_.size() || text_[k] == ',' || text_[k] == '\n' ||
-           (text_[k] == '\r' && (k + 1 >= text_.size() || text_[k + 1] == '\n'));
-  };
-  if (at_ < text_.size() && text_[at_] == '"') {
-    if (used_unquoted_ == unquoted_.size()) unquoted_.emplace_back();
-    std::string& value = unquoted_[used_unquoted_++];
-    value.clear();
-    std::size_t k = at_ + 1;
-    for (;; ++k) {
-      if (k >= text_.size()) fail("a quoted field is not closed, expected a second \"");
-      if (text_[k] == '\n') ++next_line_;
-      if (text_[k] != '"') {
-        value += text_[k];
-      } else if (k + 1 < text_.size() && text_[k + 1] == '"') {
-        value += text_[k++];
-      } else {
-        break;
-      }
-    }
-    at_ = k + 1;
-    if (!ends_field(at_)) fail("text after a closing quote, expected a comma or the line's end");
-    fields_.emplace_back(value);
-  } else {
-    std::size_t k = at_;
-    while (!ends_field(k)) {
-      if (text_[k] == '"') fail("a quote within an unquoted field, expected \"...\" around it");
-      ++k;
-    }
-    fields_.push_back(text_.substr(at_, k - at_));
-    at_ = k;
-  }
-  if (at_ < text_.size() && text_[at_] == ',') {
-    ++at_;
-    return;
-  }
-  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
-  if (at_ < text_.size()) {
-    ++at_;
-    ++next_line_;
-  }
-  end_of_record = true;
-}
-
 std::string_view CsvReader::field(int column) const {
-  return fields_[idx(column)];
+  return record_.fields()[idx(column)];
 }
 
 double CsvReader::number(int column) const {
@@ -179,13 +102,14 @@ double CsvReader::number(int column) const {
   const char* last = text.data() + text.size();
   const auto [end, status] = std::from_chars(first, last, value);
   if (status == std::errc::result_out_of_range) {
-    fail("column " + name + " is " + shown(text) + ", expected a number within double's range");
+    fail("column " + name + " is " + shown_field(text) +
+         ", expected a number within double's range");
   }
   if (status != std::errc() || end != last) {
-    fail("column " + name + " is " + shown(text) + ", expected a number");
+    fail("column " + name + " is " + shown_field(text) + ", expected a number");
   }
   if (!std::isfinite(value)) {
-    fail("column " + name + " is " + shown(text) + ", expected a finite number");
+    fail("column " + name + " is " + shown_field(text) + ", expected a finite number");
   }
   return value;
 }
@@ -193,7 +117,7 @@ double CsvReader::number(int column) const {
 double CsvReader::number(int column, double largest) const {
   const double value = number(column);
   if (std::abs(value) > largest) {
-    fail("column " + columns_[idx(column)] + " is " + shown(field(column)) +
+    fail("column " + columns_[idx(column)] + " is " + shown_field(field(column)) +
          ", expected a number of at most " + csv_number(largest) + " in size");
   }
   return value;

@@ -8,7 +8,8 @@
 // UTF-8, with or without a byte order mark. Every error names the file and the line, from 1.
 #pragma once
 
-#include <deque>
+#include "io/csv_record.hpp"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -53,7 +54,6 @@ class CsvReader {
 
  private:
   bool read_record();
-  void read_field(bool& end_of_record);
 
   std::string_view text_;
   std::string file_;
@@ -61,9 +61,7 @@ class CsvReader {
   std::size_t line_ = 0;       // of the present record's start
   std::size_t next_line_ = 1;  // of text_[at_]
   std::vector<std::string> columns_;
-  std::vector<std::string_view> fields_;
-  std::deque<std::string> unquoted_;  // fields whose text differs from the file's bytes
-  std::size_t used_unquoted_ = 0;
+  CsvRecord record_;
 };
 
 /// A field for a table: quoted where it must be.

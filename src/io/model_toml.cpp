@@ -3,7 +3,8 @@
 #include "effects/channel_physics.hpp"
 #include "fit/noise_reml.hpp"
 #include "io/csv.hpp"
-#include "io/toml_parser.hpp"
+#include "io/model_tables.hpp"
+#include "io/toml_text.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
@@ -488,26 +489,6 @@ class ModelReader {
   std::string file_;
 };
 
-/// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < 0x20U || byte == 0x7FU) {
-      constexpr const char* kHex = "0123456789ABCDEF";
-      result += "\\u00";
-      result += kHex[byte >> 4U];
-      result += kHex[byte & 15U];
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
-
 /// -0 would be read as a whole number, without its sign.
 std::string toml_number(double value) {
   return csv_number(value == 0.0 ? 0.0 : value);
@@ -524,7 +505,7 @@ std::string robot_text(const Robot& robot) {
   const DriveKeys& keys = keys_of(robot.drive);
   const auto has = [&keys](const char* name) { return keys.names.find(name) != keys.names.end(); };
   if (robot.drive != DriveKind::differential) {
-    text += "drive = " + quoted(std::string(name_of(robot.drive))) + "\n";
+    text += "drive = " + toml_string(std::string(name_of(robot.drive))) + "\n";
   }
   if (has("wheelbase")) text += "wheelbase = " + toml_number(robot.wheelbase) + "  # m\n";
   if (has("length")) text += "length = " + toml_number(robot.length) + "  # m\n";
@@ -534,7 +515,7 @@ std::string robot_text(const Robot& robot) {
   }
   if (!robot.columns.empty() && robot.places.empty()) {
     std::vector<std::string> names;
-    for (const std::string& one : robot.columns) names.push_back(quoted(one));
+    for (const std::string& one : robot.columns) names.push_back(toml_string(one));
     text += "columns = " + list_text(names) + "\n";
   }
   if (robot.drive == DriveKind::wheels && robot.places.empty()) {
@@ -548,7 +529,7 @@ std::string robot_text(const Robot& robot) {
   }
   for (std::size_t k = 0; k < robot.places.size(); ++k) {
     const WheelPlace& one = robot.places[k];
-    text += "[[robot.wheel]]\ncolumn = " + quoted(robot.columns[k]) +
+    text += "[[robot.wheel]]\ncolumn = " + toml_string(robot.columns[k]) +
             "\nx = " + toml_number(one.x) + "\ny = " + toml_number(one.y) +
             "\ndirection = " + toml_number(one.direction) + "\n";
     if (one.roller != 0.0) text += "roller = " + toml_number(one.roller) + "\n";
@@ -558,8 +539,8 @@ std::string robot_text(const Robot& robot) {
 
 std::string process_text(const NoiseProcess& process) {
   std::string text =
-      "\n[[noise.process]]\nchannel = " + quoted(std::string(name_of(process.channel))) +
-      "\nprocess = " + quoted(std::string(name_of(process.process))) +
+      "\n[[noise.process]]\nchannel = " + toml_string(std::string(name_of(process.channel))) +
+      "\nprocess = " + toml_string(std::string(name_of(process.process))) +
       "\nsd = " + toml_number(process.sd) + "\n";
   if (process.length > 0.0) {
     text += "length = " + toml_number(process.length) +
@@ -571,10 +552,14 @@ std::string process_text(const NoiseProcess& process) {
 
 }  // namespace
 
+Model model_of(const toml::table& root, const std::string& file) {
+  return ModelReader(file).read(root);
+}
+
 Model read_model(const std::filesystem::path& file) {
   const std::string text = read_file(file);
   try {
-    return ModelReader(file.string()).read(toml::parse(text));
+    return model_of(toml::parse(text), file.string());
   } catch (const toml::parse_error& error) {
     throw InputError(file.string(), error.source().begin.line,
                      "no TOML: " + std::string(error.description()));
@@ -604,10 +589,10 @@ std::string format_model(const Model& model) {
   }
   for (const NoiseProcess& process : model.noise.processes) text += process_text(process);
   for (const Effect& effect : model.effects) {
-    text += "\n[[effect]]\nname = " + quoted(effect.name) + "\n";
-    text += "channel = " + quoted(std::string(name_of(effect.channel))) + "\nshape = [";
+    text += "\n[[effect]]\nname = " + toml_string(effect.name) + "\n";
+    text += "channel = " + toml_string(std::string(name_of(effect.channel))) + "\nshape = [";
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
-      text += (k == 0 ? "" : ", ") + quoted(effect.shape[k].text());
+      text += (k == 0 ? "" : ", ") + toml_string(effect.shape[k].text());
     }
     text += "]\n";
     if (!effect.coefficients.empty()) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
+#include "io/survey_csv.hpp"
 #include "recording/row_variables.hpp"
 #include "recording/well_formed.hpp"
 #include "text/plain_text.hpp"
@@ -189,6 +190,8 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
   return sightings;
 }
 
+}  // namespace
+
 std::vector<SurveyPoint> read_survey(const fs::path& file) {
   const std::string text = read_file(file);
   CsvReader csv(text, file.string());
@@ -218,6 +221,8 @@ std::vector<SurveyPoint> read_survey(const fs::path& file) {
   }
   return survey;
 }
+
+namespace {
 
 std::vector<TruthRow> read_truth(const fs::path& file) {
   const std::string text = read_file(file);

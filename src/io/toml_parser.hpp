@@ -3,8 +3,8 @@
 //
 // toml++ for files that anybody may have written. What it asserts of itself a file can violate
 // ("[.a]"): that has to be an error, TomlAssertion, and nothing that the compiler may count on. Its
-// shared library has been built otherwise, and with NDEBUG it would take no macro. For one source
-// file alone: it changes macros.
+// shared library has been built otherwise, and with NDEBUG it would take no macro. For a source
+// file or a header of such: it changes macros.
 #pragma once
 
 namespace trussmap {

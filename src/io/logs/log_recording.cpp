@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "io/logs/gathered_log.hpp"
+#include "io/logs/seen_landmarks.hpp"
+#include "io/logs/tangent_plane.hpp"
+#include "io/logs/wheel_rows.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/log_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kSecond = 1000000000;  // ns
+
+/// Times of a recording: from a whole second on where they are those of a calendar.
+class Clock {
+ public:
+  explicit Clock(std::int64_t first) {
+    constexpr std::int64_t kDays = 1000000 * kSecond;  // no robot runs longer without a restart
+    if (std::abs(first) > kDays) epoch_ = first / kSecond * kSecond;
+  }
+  /// s; the nearest number to the decimal one.
+  [[nodiscard]] double seconds(std::int64_t t) const {
+    return static_cast<double>(t - epoch_) / static_cast<double>(kSecond);
+  }
+  [[nodiscard]] std::string text() const {
+    return epoch_ == 0 ? "t is the log's own time"
+                       : fmt::format("t = 0 is {} s of the log's time", epoch_ / kSecond);
+  }
+
+ private:
+  std::int64_t epoch_ = 0;
+};
+
+double wrapped(double angle) {
+  return std::abs(angle) <= std::numbers::pi ? angle : wrap_angle(angle);
+}
+
+void add_heading(Signal& heading, const std::vector<std::int64_t>& bounds, Drive& drive) {
+  for (std::size_t k = 1; k < bounds.size(); ++k) {
+    const bool read = heading.has_sample(bounds[k - 1], bounds[k]) &&
+                      bounds[k] <= heading.times().back() && bounds[k] >= heading.times().front();
+    drive.heading.push_back(read ? wrapped(heading.level(bounds[k])) : kAbsent);
+  }
+}
+
+void add_yaw_rate(Signal& rate, const std::vector<std::int64_t>& bounds, Drive& drive) {
+  const auto gap = static_cast<std::int64_t>(10.0 * rate.typical_step() * kSecond);
+  for (std::size_t k = 1; k < bounds.size(); ++k) {
+    const std::int64_t from = bounds[k - 1];
+    const std::int64_t to = bounds[k];
+    const bool read = from >= rate.times().front() && to <= rate.times().back() &&
+                      rate.has_sample(from - gap, to);
+    const double dt = static_cast<double>(to - from) / static_cast<double>(kSecond);
+    drive.yaw_rate.push_back(read ? rate.sum(from, to) / dt : kAbsent);
+  }
+}
+
+bool any_read(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double one) { return one == one; });
+}
+
+void add_fixes(const GatheredLog& log, const Clock& clock, Recording& recording,
+               std::size_t& outside) {
+  std::vector<TangentPlane> plane;
+  std::vector<SeenFix> fixes = log.fixes;
+  std::stable_sort(fixes.begin(), fixes.end(),
+                   [](const SeenFix& a, const SeenFix& b) { return a.t < b.t; });
+  const double start = recording.drive.start();
+  for (const SeenFix& one : fixes) {
+    Fix fix{clock.seconds(one.t), one.x, one.y, one.sd, one.quality};
+    if (one.geodetic) {
+      if (plane.empty()) plane.emplace_back(one.y, one.x, one.height);
+      // The height of the first: a receiver's own moves by metres.
+      const Vector2 at = plane.front().position(one.y, one.x, fixes.front().height);
+      fix.x = at.x();
+      fix.y = at.y();
+    }
+    if (!(fix.sd > 0.0)) fix.sd = kAbsent;
+    if (fix.t < start || fix.t > recording.drive.t.back()) {
+      ++outside;
+    } else {
+      recording.fixes.push_back(fix);
+    }
+  }
+}
+
+/// Poses of the truth, by messages or along frames.
+std::vector<TimedFieldPose> truth_of(const LogMap& map, const GatheredLog& log) {
+  if (!map.truth) return {};
+  std::vector<TimedFieldPose> truth = log.truth;
+  if (is_frame_path(map.truth->pose)) {
+    truth = poses_along(map.truth->pose, log.frames, map, map.truth->line);
+    for (TimedFieldPose& one : truth) {
+      one.t += static_cast<std::int64_t>(std::llround(map.truth->clock * kSecond));
+    }
+  }
+  std::stable_sort(truth.begin(), truth.end(),
+                   [](const TimedFieldPose& a, const TimedFieldPose& b) { return a.t < b.t; });
+  const auto twin = [](const TimedFieldPose& a, const TimedFieldPose& b) { return a.t == b.t; };
+  truth.erase(std::unique(truth.begin(), truth.end(), twin), truth.end());
+  return truth;
+}
+
+void count(std::size_t number, const char* what, LogRecording& result) {
+  if (number > 0) result.counts.push_back({number, what});
+}
+
+void warn_of_clock(const LogMap& map, const GatheredLog& log, LogRecording& result) {
+  if (!log.end.cut_off.empty()) {
+    result.warnings.push_back("the log is cut off " + log.end.cut_off + "; what is before is read");
+  }
+  if (map.model.robot.drive == DriveKind::differential && !map.model.robot.wheelbase_stated) {
+    result.warnings.push_back(fmt::format("[robot] of {} states no wheelbase: {} m is taken",
+                                          map.file.string(), map.model.robot.wheelbase));
+  }
+}
+
+}  // namespace
+
+bool is_log(const fs::path& path) {
+  return is_message_log(path);
+}
+
+LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
+  const LogMap map = read_log_map(map_file);
+  GatheredLog gathered = gather(log, map);
+  LogRecording result;
+  result.model = map.model;
+  WheelRows rows = wheel_rows(map, gathered);
+  const Clock clock(rows.bounds.front());
+  result.epoch = clock.text();
+
+  Recording& recording = result.recording;
+  recording.name = log.string();
+  recording.survey = map.survey;
+  Drive& drive = recording.drive;
+  drive.left = std::move(rows.left);
+  drive.right = std::move(rows.right);
+  drive.covariates = std::move(rows.columns);
+  for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
+    drive.t.push_back(clock.seconds(rows.bounds[k]));
+  }
+  for (Signal& one : gathered.heading) {
+    one.finish();
+    if (!one.empty()) add_heading(one, rows.bounds, drive);
+  }
+  for (Signal& one : gathered.yaw_rate) {
+    one.finish();
+    if (!one.empty()) add_yaw_rate(one, rows.bounds, drive);
+  }
+  if (!any_read(drive.heading)) drive.heading.clear();
+  if (!any_read(drive.yaw_rate)) drive.yaw_rate.clear();
+  for (auto& [name, signal] : gathered.covariates) {
+    signal.finish();
+    Covariate& covariate = drive.covariates.emplace_back(Covariate{name, {}});
+    for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
+      covariate.values.push_back(signal.held(rows.bounds[k]));
+    }
+  }
+
+  SightingCounts seen;
+  std::size_t outside_fixes = 0;
+  for (SeenSighting& one : seen_sightings(map, gathered, seen)) {
+    one.sighting.t = clock.seconds(one.t);
+    if (one.sighting.t < drive.start() || one.sighting.t > drive.t.back()) {
+      ++seen.outside;
+    } else {
+      recording.sightings.push_back(std::move(one.sighting));
+    }
+  }
+  add_fixes(gathered, clock, recording, outside_fixes);
+  for (const TimedFieldPose& one : truth_of(map, gathered)) {
+    recording.truth.push_back({clock.seconds(one.t), one.x, one.y, one.heading});
+  }
+
+  count(drive.rows(), "drive rows", result);
+  count(recording.sightings.size(), "sightings", result);
+  count(recording.fixes.size(), "fixes", result);
+  count(recording.truth.size(), "truth rows", result);
+  count(recording.survey.size(), "surveyed landmarks", result);
+  count(rows.unordered, "messages of the wheels were out of order in time: sorted", result);
+  count(rows.repeated, "messages of the wheels at the time of another: the later in the log counts",
+        result);
+  count(seen.outside, "sightings before or after the drive left out", result);
+  count(seen.no_frame,
+        "sightings without a way from their frame to the robot's at their time left "
+        "out",
+        result);
+  count(gathered.unnamed, "sightings without a landmark's name left out", result);
+  count(outside_fixes, "fixes before or after the drive left out", result);
+  count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
+  count(gathered.wrong_poses, "poses without a valid rotation left out", result);
+  result.warnings = std::move(rows.warnings);
+  warn_of_clock(map, gathered, result);
+  if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
+    throw InputError(map_file.string(), 0,
+                     "ties the drive to no place: no sighting, fix or truth is within it, expected "
+                     "[[sightings]], [fixes] or [truth]");
+  }
+  return result;
+}
+
+}  // namespace trussmap

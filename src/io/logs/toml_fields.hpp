@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A table of map.toml, key by key: each is asked for, and what was not asked for is an error.
+#pragma once
+
+#include "io/toml_parser.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace trussmap {
+
+class TomlFields {
+ public:
+  /// `where`: "[wheels.left]", for messages.
+  TomlFields(const toml::table& table, std::string file, std::string where)
+      : table_(&table), file_(std::move(file)), where_(std::move(where)) {}
+
+  [[nodiscard]] std::size_t line() const { return table_->source().begin.line; }
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+  [[nodiscard]] const toml::node* find(const char* key) {
+    asked_.emplace_back(key);
+    return table_->get(key);
+  }
+  [[nodiscard]] bool has(const char* key) { return find(key) != nullptr; }
+
+  /// `otherwise` where it is absent.
+  std::string text(const char* key, const std::string& otherwise = "") {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    if (!node->is_string()) fail(*node, std::string(key) + " is no text, expected \"...\"");
+    return *node->value<std::string>();
+  }
+  std::string needed_text(const char* key) {
+    if (!has(key)) fail(std::string("has no ") + key + ", expected one");
+    return text(key);
+  }
+  double number(const char* key, double otherwise) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    const auto value = node->value<double>();
+    constexpr double kLargest = 1e15;
+    if (!node->is_number() || !value || !(std::abs(*value) <= kLargest)) {
+      fail(*node, std::string(key) + " is no number, expected one of at most 1e15 in size");
+    }
+    return *value;
+  }
+  double positive(const char* key, double otherwise) {
+    const double value = number(key, otherwise);
+    if (has(key) && !(value > 0.0)) {
+      fail(*table_->get(key), std::string(key) + " is not positive, expected more than 0");
+    }
+    return value;
+  }
+  bool flag(const char* key, bool otherwise) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return otherwise;
+    if (!node->is_boolean()) fail(*node, std::string(key) + " is neither true nor false");
+    return *node->value<bool>();
+  }
+  /// 1 or -1.
+  double sign(const char* key) {
+    const double value = number(key, 1.0);
+    if (value != 1.0 && value != -1.0) {
+      fail(*table_->get(key), std::string(key) + " is neither 1 nor -1, expected one of them");
+    }
+    return value;
+  }
+  std::vector<std::string> texts(const char* key) {
+    const toml::node* node = find(key);
+    std::vector<std::string> found;
+    if (node == nullptr) return found;
+    if (node->is_string()) return {*node->value<std::string>()};
+    const toml::array* list = node->as_array();
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+      if (!(*list)[k].is_string()) break;
+      found.push_back(*(*list)[k].value<std::string>());
+    }
+    if (list == nullptr || found.size() != list->size()) {
+      fail(*node, std::string(key) + " is no list of texts, expected [\"...\", ...]");
+    }
+    return found;
+  }
+
+  /// Throws where the table has further keys.
+  void finish() const {
+    for (const auto& [key, node] : *table_) {
+      if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
+      std::string expected;
+      for (const std::string& one : asked_) {
+        if (expected.find(one) == std::string::npos) {
+          expected += (expected.empty() ? "" : ", ") + one;
+        }
+      }
+      throw InputError(file_, key.source().begin.line,
+                       "key \"" + std::string(key.str()) + "\" in " + where_ +
+                           " is unknown, expected one of " + expected);
+    }
+  }
+
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
+    throw InputError(file_, node.source().begin.line, where_ + ": " + what);
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(file_, line(), where_ + " " + what);
+  }
+
+ private:
+  const toml::table* table_;
+  std::string file_;
+  std::string where_;
+  std::vector<std::string> asked_;
+};
+
+}  // namespace trussmap

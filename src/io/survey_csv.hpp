@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "trussmap/recording.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace trussmap {
+
+/// landmark,x,y[,sd][,heading]. Throws InputError with file and line.
+[[nodiscard]] std::vector<SurveyPoint> read_survey(const std::filesystem::path& file);
+
+}  // namespace trussmap

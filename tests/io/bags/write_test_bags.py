@@ -1,0 +1,216 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+"""Writes one of the bags that the tests of the readers read: write_test_bags.py FOLDER VARIANT
+
+Into FOLDER go the bag and expected.txt, with all that a reader must find in it; the bag's path is
+printed. VARIANT "" lists them.
+"""
+
+import os
+import random
+import sys
+
+from bag_writer import BagWriter
+import messages as ros
+
+EVERYTHING = (
+    """# every kind of field
+uint8 ANSWER=42
+string WORDS = "a # b = c"
+bool flag true
+byte raw
+char letter
+int8 i8 -5
+uint8 u8
+int16 i16
+uint16 u16
+int32 i32
+uint32 u32
+int64 i64
+uint64 u64
+float32 f32 1.5
+float64 f64
+string words "a # b"
+string<=9 short_words
+bool[3] flags
+int16[] steps
+float64[<=4] few
+string<=5[<=3] names
+Part[2] parts
+Part[] more
+my_msgs/Nothing nothing
+uint8 last
+"""
+    + "=" * 80
+    + "\nMSG: my_msgs/Part\nint8 a\nfloat64 b\nstd_msgs/Header header\nmy_msgs/msg/Nothing[] none\n"
+    + "=" * 80
+    + "\nMSG: my_msgs/Nothing\n"
+    + "=" * 80
+    + "\nMSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\r\n"
+)
+WIDE = "wstring a\nuint8 mark\nwstring<=6 b\nstring after\n"
+START = 1_700_000_000_123_456_789  # ns
+NUMBERS = [0.0, -0.0, 1.5, 5e-324, 1.7976931348623157e308, float("inf"), float("-inf"), float("nan")]
+
+
+def everything(draw):
+    part = lambda: {  # noqa: E731
+        "a": draw.randrange(-128, 128), "b": draw.gauss(0, 1),
+        "header": ros.header(draw.randrange(2**60), "x" * draw.randrange(9)),
+        "none": [{}] * draw.randrange(4)}  # fmt: skip
+    return {
+        "flag": draw.random() < 0.5, "raw": draw.randrange(256), "letter": draw.randrange(256),
+        "i8": draw.randrange(-128, 128), "u8": draw.randrange(256),
+        "i16": draw.randrange(-(2**15), 2**15), "u16": draw.randrange(2**16),
+        "i32": draw.randrange(-(2**31), 2**31), "u32": draw.randrange(2**32),
+        "i64": draw.choice([-(2**63), 2**63 - 1, draw.randrange(2**62)]),
+        "u64": draw.choice([2**64 - 1, draw.randrange(2**63)]),
+        "f32": draw.choice([draw.gauss(0, 1), float("inf"), 1e-45, -0.0]),
+        "f64": draw.choice(NUMBERS), "words": "ä€𝄞"[: draw.randrange(4)],
+        "short_words": "123456789"[: draw.randrange(10)],
+        "flags": [draw.random() < 0.5 for _ in range(3)],
+        "steps": [draw.randrange(-9, 9) for _ in range(draw.randrange(5))],
+        "few": [draw.gauss(0, 1) for _ in range(draw.randrange(5))],
+        "names": ["abcde"[: draw.randrange(6)] for _ in range(draw.randrange(4))],
+        "parts": [part(), part()], "more": [part() for _ in range(draw.randrange(3))],
+        "last": 255}  # fmt: skip
+
+
+def test_bag(standard=False, count=60, wide_characters=2, **topic_options):
+    """Topics at different rates; every 13th message comes late."""
+    draw = random.Random(20261125)
+    bag = BagWriter()
+    kinds = {
+        "/odom": "nav_msgs/msg/Odometry", "/joint_states": "sensor_msgs/msg/JointState",
+        "/imu": "sensor_msgs/msg/Imu", "/tf": "tf2_msgs/msg/TFMessage",
+        "/pose": "geometry_msgs/msg/PoseStamped", "/gps": "sensor_msgs/msg/NavSatFix",
+        "/chatter": "std_msgs/msg/String", "/sonar": "sensor_msgs/msg/Range",
+        "/empty": "std_msgs/msg/Empty", "/tags": "apriltag_msgs/msg/AprilTagDetectionArray",
+        "/aruco": "ros2_aruco_interfaces/msg/ArucoMarkers",
+        "/image": "sensor_msgs/msg/Image"}  # fmt: skip
+    for name, kind in kinds.items():
+        bag.topic(name, kind, **topic_options)
+    if not standard:
+        bag.topic("/everything", "my_msgs/msg/Everything", EVERYTHING, **topic_options,
+                  wide_characters=wide_characters)  # fmt: skip
+        bag.topic("/wide", "my_msgs/msg/Wide", WIDE, **topic_options,
+                  wide_characters=wide_characters)  # fmt: skip
+    rows = []
+    for k in range(count):
+        time = START + k * 20_000_000 + draw.randrange(1000)
+        full = [draw.gauss(0, 1) for _ in range(36)]
+        odometry = ros.odometry(time, draw.gauss(0, 9), draw.gauss(0, 9), draw.gauss(0, 1))
+        odometry["pose"]["covariance"] = full
+        rows.append(("/odom", time, odometry))
+        if k % 2 == 0:
+            rows.append(("/imu", time + 1, ros.imu(time, draw.gauss(0, 1))))
+            rows.append(("/tf", time + 2, ros.tf(*[
+                ros.transform(time, "odom", f"link_{n}", draw.random(), n, draw.random())
+                for n in range(k % 3)])))  # fmt: skip
+        if k % 5 == 0:
+            names = ["left", "right"]
+            turns = [draw.gauss(0, 9), draw.gauss(0, 9)]
+            rows.append(("/joint_states", time + 3, ros.joint_state(time, names, turns, turns)))
+            rows.append(("/pose", time + 4, ros.pose_stamped(time, 1.0, draw.random(), 0.1)))
+            corners = [{"x": draw.random(), "y": n} for n in range(4)]
+            tag = {"family": "36h11", "id": k, "goodness": 0.1, "corners": corners}
+            rows.append(("/tags", time, {"header": ros.header(time), "detections": [tag] * (k % 3)}))
+            rows.append(("/aruco", time, {"header": ros.header(time), "marker_ids": [k, -k],
+                                          "poses": [ros.pose(1, 2, 3), {}]}))  # fmt: skip
+        if k % 10 == 0:
+            rows.append(("/gps", time + 5, ros.nav_sat_fix(time, 49 + draw.random(), 8.4)))
+            rows.append(("/chatter", time + 6, ros.string("Grüße " * (k % 7))))
+            rows.append(("/sonar", time + 7, ros.range_(time, draw.random())))
+            rows.append(("/empty", time + 8, {}))
+            rows.append(("/image", time + 9, {"height": 2, "width": 5, "data": bytes(range(10))}))
+        if not standard:
+            rows.append(("/everything", time + 10, everything(draw)))
+            wide = {"a": "", "mark": 7, "b": "aß€𝄞"[: 1 + k % 4], "after": "after"}
+            rows.append(("/wide", time + 11, wide))
+    for k in range(0, len(rows) - 9, 13):
+        rows.insert(k + 8, rows.pop(k))
+    for topic, time, message in rows:
+        bag.write(topic, time, message, time - draw.randrange(10**6))
+    return bag
+
+
+def mcap(folder, *, definitions=True, standard=False, topics=None, **options):
+    bag = test_bag(standard, **(topics or {}))
+    path = os.path.join(folder, "bag.mcap")
+    bag.write_mcap(path, definitions, **options)
+    return path, bag.flat()
+
+
+def small(folder, **options):
+    """Small enough to be cut off and changed everywhere."""
+    bag = BagWriter()
+    bag.topic("/odom", "nav_msgs/msg/Odometry")
+    bag.topic("/chatter", "std_msgs/msg/String")
+    for k in range(8):
+        bag.write("/odom", START + k, ros.odometry(START, 0.1 * k, 0.2 * k, 0.3 * k))
+        bag.write("/chatter", START + k, ros.string("word " * k))
+    path = os.path.join(folder, "bag.mcap")
+    bag.write_mcap(path, chunk_size=1600, **options)
+    return path, bag.flat()
+
+
+def db3(folder, schema, standard=False):
+    bag = test_bag(standard)
+    path = os.path.join(folder, "bag.db3")
+    bag.write_db3(path, schema)
+    return path, bag.flat(log_times_alone=True)
+
+
+def rosbag2(folder, storage="sqlite3", **options):
+    bag = test_bag()
+    path = os.path.join(folder, "drive")
+    bag.write_rosbag2(path, storage, **options)
+    return path, bag.flat(log_times_alone=storage == "sqlite3")
+
+
+VARIANTS = {
+    "mcap_plain": lambda f: mcap(f, chunk_size=5000),
+    "mcap_lz4": lambda f: mcap(f, compression="lz4", chunk_size=5000),
+    "mcap_zstd": lambda f: mcap(f, compression="zstd", chunk_size=5000),
+    "mcap_one_chunk": lambda f: mcap(f, compression="zstd", chunk_size=1 << 30),
+    "mcap_unchunked": lambda f: mcap(f, chunked=False),
+    "mcap_without_summary": lambda f: mcap(f, chunk_size=5000, summary=False, index=False),
+    "mcap_without_checksums": lambda f: mcap(f, compression="lz4", chunk_size=900, crc=False),
+    "mcap_without_definitions": lambda f: mcap(f, definitions=False, standard=True),
+    "mcap_idl": lambda f: mcap(f, standard=True, topics={"schema_encoding": "ros2idl"}),
+    "mcap_big_endian": lambda f: mcap(f, compression="lz4", topics={"big_endian": True}),
+    "mcap_wide_characters": lambda f: mcap(f, topics={"wide_characters": 4}),
+    "mcap_with_others": lambda f: mcap(f, others=True),
+    "small_plain": small,
+    "small_lz4": lambda f: small(f, compression="lz4"),
+    "small_zstd": lambda f: small(f, compression="zstd"),
+    "small_unchunked": lambda f: small(f, chunked=False),
+    "db3_of_galactic": lambda f: db3(f, 2, standard=True),
+    "db3_of_humble": lambda f: db3(f, 3, standard=True),
+    "db3_of_iron": lambda f: db3(f, 4),
+    "folder_sqlite3": rosbag2,
+    "folder_mcap": lambda f: rosbag2(f, "mcap", compression="zstd"),
+    "folder_three_files": lambda f: rosbag2(f, files=3),
+    "folder_twelve_mcap_files": lambda f: rosbag2(f, "mcap", files=12),
+    "folder_without_metadata": lambda f: rosbag2(f, files=12, metadata=False),
+    "folder_mcap_without_metadata": lambda f: rosbag2(f, "mcap", files=12, metadata=False),
+    "folder_file_compression": lambda f: rosbag2(f, files=2, mode="FILE"),
+    "folder_message_compression": lambda f: rosbag2(f, mode="MESSAGE"),
+    "folder_mcap_file_compression": lambda f: rosbag2(f, "mcap", mode="FILE"),
+    "folder_mcap_message_compression": lambda f: rosbag2(f, "mcap", mode="MESSAGE"),
+    "folder_compressed_without_metadata": lambda f: rosbag2(f, files=2, mode="FILE", metadata=False),
+}  # fmt: skip
+
+
+def main():
+    if sys.argv[1:] == [""]:
+        print("\n".join(VARIANTS))
+        return
+    folder, variant = sys.argv[1:]
+    path, lines = VARIANTS[variant](folder)
+    with open(os.path.join(folder, "expected.txt"), "w", encoding="utf-8") as file:
+        file.writelines(line + "\n" for line in lines)
+    print(path)
+
+
+main()
