@@ -206,13 +206,13 @@ void run_convert(const ConvertOptions& options) {
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
   check_map_yaml(out, options.yaml);
+  if (is_recording_to_bag(in, out)) {
+    convert_recording(in, out, options.map, options.bag);
+    return;
+  }
   if (!options.map.empty()) {
     check_folder(out);
     convert_log(in, out, options.map);
-    return;
-  }
-  if (is_recording_to_bag(in, out)) {
-    convert_recording(in, out, options.bag);
     return;
   }
   for (const Foreign& one : kForeign) {
@@ -283,7 +283,8 @@ void setup_convert(const Command& app) {
       .add_option(
           "--map", options->map,
           "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
-          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what")
+          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what. Of a "
+          "recording to a bag: FILE is written, and reads the bag back")
       .type_name("FILE");
   command.add_flag("--inspect", options->inspect,
                    "List topics, fields and columns of the log IN, and write a first map (--map, "

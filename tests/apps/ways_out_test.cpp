@@ -16,6 +16,10 @@ using testing::Ran;
 using testing::run_trussmap;
 using testing::ScratchFolder;
 
+std::ptrdiff_t count_lines(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
 class WaysOut : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -41,13 +45,20 @@ TEST_F(WaysOut, ARecordingBecomesABag) {
   ASSERT_EQ(ran.status, 0) << ran.output;
   for (const char* part : {"/joint_states (sensor_msgs/msg/JointState)", "/odom (nav_msgs",
                            "/imu/data (", "/tf (tf2_msgs/msg/TFMessage)", "/landmark (std_msgs",
-                           "9 surveyed landmarks left out", "Read it back"}) {
+                           "9 surveyed landmarks left out", "--map FILE"}) {
     EXPECT_NE(ran.output.find(part), std::string::npos) << part << "\n" << ran.output;
   }
   const std::string bag = content("a.mcap");
   EXPECT_EQ(bag.substr(0, 8), "\x89MCAP0\r\n");
   EXPECT_EQ(run_trussmap("convert " + at("rec") + " " + at("b.mcap")).status, 0);
   EXPECT_EQ(content("b.mcap"), bag);
+  const std::string to_map = " --map " + at("map.toml");
+  const Ran mapped = run_trussmap("convert " + at("rec") + " " + at("b.mcap") + to_map);
+  EXPECT_NE(mapped.output.find("Read it back"), std::string::npos) << mapped.output;
+  const Ran back = run_trussmap("convert " + at("b.mcap") + " " + at("again") + to_map);
+  EXPECT_EQ(back.status, 0) << back.output;
+  EXPECT_EQ(count_lines(content("again/drive.csv")), count_lines(content("rec/drive.csv")) + 1);
+  EXPECT_EQ(count_lines(content("again/sightings.csv")), count_lines(content("rec/sightings.csv")));
   // Told where its recording began, it is another one; without a model it says so.
   std::filesystem::remove(at("rec") + "/model.toml");
   const Ran later =
