@@ -115,7 +115,8 @@ def tag_in_camera(time, sighting):
                  product((-x, -y, -z, w), upright))
 
 
-def bag_of(recording, style):
+def bag_of(recording, style, every=1):
+    """`every`: a covariate's message in so many rows."""
     bag = BagWriter()
     bag.topic("/joint_states", "sensor_msgs/msg/JointState")
     bag.topic("/odom", "nav_msgs/msg/Odometry")
@@ -154,7 +155,7 @@ def bag_of(recording, style):
                 message = imu(now, rate or 0.0, heading=compass or 0.0)
                 message["orientation_covariance"] = [-1.0 if compass is None else 1e-3] + [0.0] * 8
                 bag.write("/imu/data", now + 300_000, message)
-        for name in recording.covariates:
+        for name in recording.covariates if k % every == 0 else []:
             value = recording.rows[max(k - 1, 0)][name]
             bag.write("/status/" + name, now, {"data": float(value)})
     tags = any(one.get("range") and one.get("bearing") for one in recording.sightings)
