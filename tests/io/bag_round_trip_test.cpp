@@ -29,13 +29,15 @@ void expect_same_columns(const std::vector<double>& a, const std::vector<double>
   ASSERT_EQ(a.size(), b.size()) << what;
   for (std::size_t row = 0; row < a.size(); ++row) {
     EXPECT_EQ(std::isnan(a[row]), std::isnan(b[row])) << what << ' ' << row;
-    if (!std::isnan(a[row])) EXPECT_NEAR(a[row], b[row], within) << what << ' ' << row;
+    if (std::isnan(a[row])) continue;
+    EXPECT_NEAR(a[row], b[row], within) << what << ' ' << row;
   }
 }
 
 void expect_near_or_absent(double a, double b, double within) {
   EXPECT_EQ(std::isnan(a), std::isnan(b));
-  if (!std::isnan(a)) EXPECT_NEAR(a, b, within);
+  if (std::isnan(a)) return;
+  EXPECT_NEAR(a, b, within);
 }
 
 /// What a bag holds of both. Angles of wheels are differences of sums, ranges alone single
@@ -56,7 +58,8 @@ void expect_same(const Recording& a, const Recording& b) {
     const bool alone = std::isnan(one.bearing);
     expect_near_or_absent(one.range, same->range, alone ? 1e-6 : 1e-12);
     expect_near_or_absent(one.bearing, same->bearing, 1e-12);
-    if (!one.standing()) expect_near_or_absent(one.yaw, same->yaw, 1e-12);
+    if (one.standing()) continue;
+    expect_near_or_absent(one.yaw, same->yaw, 1e-12);
   }
   ASSERT_EQ(a.truth.size(), b.truth.size());
   for (std::size_t k = 0; k < a.truth.size(); ++k) {
