@@ -58,6 +58,7 @@ void run_apply(ApplyCommand options) {
   if (options.out.empty() && options.tum.empty() && options.kitti.empty() && options.mcap.empty()) {
     throw UsageError("apply: nothing to write, expected --out, --tum, --kitti or --mcap");
   }
+  if (options.epoch && options.mcap.empty()) throw UsageError("apply: --epoch goes with --mcap");
   options.input.recordings = {options.recording};
   const ModelRecordings input = read_model_recordings(options.input);
   const std::vector<TimedPose> poses =

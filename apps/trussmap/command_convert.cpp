@@ -167,10 +167,15 @@ void convert_encoder_log(const fs::path& in, const fs::path& out) {
   count(static_cast<int>(foreign.recording.drive.rows()), "drive rows, each with the truth");
 }
 
-/// A recording is a folder; a map's name for it is a mistake.
+/// A recording is a folder; a map's or bag's name for it is a mistake.
 void check_folder(const fs::path& out) {
   if (is_map_file(out)) {
     throw UsageError(out.string() + " is named like a map, expected a folder for the recording");
+  }
+  if (out.extension() == ".mcap") {
+    throw UsageError(out.string() +
+                     " is named like a bag, expected a folder for the recording, "
+                     "which a second convert makes a bag of");
   }
 }
 
@@ -200,13 +205,14 @@ void run_convert(const ConvertOptions& options) {
     return;
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
+  check_map_yaml(out, options.yaml);
+  if (is_recording_to_bag(in, out)) {
+    convert_recording(in, out, options.map, options.bag);
+    return;
+  }
   if (!options.map.empty()) {
     check_folder(out);
     convert_log(in, out, options.map);
-    return;
-  }
-  if (is_recording_to_bag(in, out)) {
-    convert_recording(in, out, options.bag);
     return;
   }
   for (const Foreign& one : kForeign) {
@@ -277,7 +283,8 @@ void setup_convert(const Command& app) {
       .add_option(
           "--map", options->map,
           "IN is a log: MCAP, a rosbag2 (.db3 or its folder), .wpilog, Road Runner's .log, "
-          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what")
+          "or a table (.csv, .tsv, .txt); FILE (map.toml) says which of its fields are what. Of a "
+          "recording to a bag: FILE is written, and reads the bag back")
       .type_name("FILE");
   command.add_flag("--inspect", options->inspect,
                    "List topics, fields and columns of the log IN, and write a first map (--map, "

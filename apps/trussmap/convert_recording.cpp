@@ -48,20 +48,26 @@ bool is_recording_to_bag(const fs::path& in, const fs::path& out) {
   return out.extension() == ".mcap" && fs::exists(in / "drive.csv");
 }
 
-void convert_recording(const fs::path& in, const fs::path& out,
+void convert_recording(const fs::path& in, const fs::path& out, const fs::path& map,
                        const ConvertRecordingOptions& options) {
   const Recording recording = read_recording(in);
   BagOptions how;
   how.wheel_radius = options.wheel_radius;
   how.epoch = epoch_of(options.epoch);
   const Bag bag = format_recording_bag(recording, model_for(in, options.model), how);
-  write_file(out, bag.bytes);
+  NamedContents files{{out, bag.bytes}};
+  if (!map.empty()) {
+    files.emplace_back(map, "# Reads " + out.filename().string() + " back.\n\n" + bag.map);
+  }
+  write_files(files);
   fmt::print("converted: the recording {} to the bag {}\n\n", in.string(), out.string());
   print_bag(bag);
-  fmt::print(
-      "\nRead it back: trussmap convert {} FOLDER, where a wheel's travel is its angle times {} m\n"
-      "Look at it: Foxglove, or ros2 bag play {}\n",
-      out.string(), options.wheel_radius, out.string());
+  if (map.empty()) {
+    fmt::print("\nTo read it back, write its map.toml as well: --map FILE\n");
+  } else {
+    fmt::print("\nRead it back: trussmap convert {} FOLDER --map {}\n", out.string(), map.string());
+  }
+  fmt::print("Look at it: Foxglove, or ros2 bag play {}\n", out.string());
 }
 
 }  // namespace trussmap::app

@@ -25,7 +25,8 @@ void add_convert_recording(const Command& command, ConvertRecordingOptions& opti
 [[nodiscard]] bool is_recording_to_bag(const std::filesystem::path& in,
                                        const std::filesystem::path& out);
 
+/// `map`: where the map.toml goes that reads it back, if anywhere.
 void convert_recording(const std::filesystem::path& in, const std::filesystem::path& out,
-                       const ConvertRecordingOptions& options);
+                       const std::filesystem::path& map, const ConvertRecordingOptions& options);
 
 }  // namespace trussmap::app

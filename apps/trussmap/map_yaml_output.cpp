@@ -28,13 +28,18 @@ void add_map_yaml(const Command& command, MapYamlOptions& options) {
   command
       .add_option("--layout", options.layout,
                   "Of a map to .yaml: markers with frame_id, id, pose and covariance (nav2), or "
-                  "the tag bundle of apriltag_ros (apriltag)")
-      .check(one_of({"nav2", "apriltag"}))
-      .capture_default_str();
+                  "the tag bundle of apriltag_ros (apriltag); nav2 if left out")
+      .check(one_of({"nav2", "apriltag"}));
   command
       .add_option("--tag-size", options.tag_size,
                   "Of a map to .yaml: edge of the tags' black square [m]; apriltag needs it")
       .check(above_zero());
+}
+
+void check_map_yaml(const std::filesystem::path& out, const MapYamlOptions& options) {
+  if (is_yaml_file(out) || (!options.layout && !options.tag_size)) return;
+  throw UsageError(std::string(options.layout ? "--layout" : "--tag-size") +
+                   " goes with a map to .yaml, and " + out.string() + " is none");
 }
 
 bool is_yaml_file(const std::filesystem::path& file) {
@@ -43,7 +48,7 @@ bool is_yaml_file(const std::filesystem::path& file) {
 
 void write_map_yaml(const LandmarkGraph& map, const std::filesystem::path& out,
                     const MapYamlOptions& options) {
-  const bool bundle = options.layout == "apriltag";
+  const bool bundle = options.layout.value_or("nav2") == "apriltag";
   if (bundle && !options.tag_size) {
     throw UsageError("--layout apriltag: each tag has a size there, expected --tag-size");
   }

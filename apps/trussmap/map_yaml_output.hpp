@@ -14,12 +14,15 @@
 namespace trussmap::app {
 
 struct MapYamlOptions {
-  std::string layout = "nav2";
+  std::optional<std::string> layout;  ///< nav2 if left out
   std::optional<double> tag_size;
 };
 
 /// --layout, --tag-size.
 void add_map_yaml(const Command& command, MapYamlOptions& options);
+
+/// Throws UsageError where options are given and `out` is no YAML.
+void check_map_yaml(const std::filesystem::path& out, const MapYamlOptions& options);
 
 [[nodiscard]] bool is_yaml_file(const std::filesystem::path& file);
 

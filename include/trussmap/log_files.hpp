@@ -126,6 +126,8 @@ struct Bag {
   std::vector<Topic> topics;
   std::vector<LeftOut> left_out;  ///< what a bag has no message for
   std::int64_t epoch = 0;         ///< ns, as it was taken
+  /// Of a recording's bag: the map.toml by which read_log_recording makes a recording of it again.
+  std::string map;
 };
 
 /// Poses as /odometry/corrected (nav_msgs/Odometry): each with the covariance of x, y and heading,
@@ -154,8 +156,8 @@ struct Bag {
 ///   /covariates/NAME  std_msgs/Float64: at each row's end
 ///
 /// Bearings alone, loops, the survey and stated standard deviations have no place and are counted
-/// in left_out. Ranges are single precision there. Throws InputError where a time is none of ROS
-/// and where the recording has not the columns of the model's drive.
+/// in left_out; the survey stands in Bag::map. Ranges are single precision there. Throws InputError
+/// where a time is none of ROS and where the recording has not the columns of the model's drive.
 [[nodiscard]] Bag format_recording_bag(const Recording& recording, const Model& model,
                                        const BagOptions& options = {});
 

@@ -59,7 +59,7 @@ std::int64_t BagBuilder::stamp(double t) const {
                          std::to_string(bag_.epoch / kSecond) +
                          " s as t = 0, is none of ROS, expected 1970 to 2038");
   };
-  if (!(std::abs(t) <= static_cast<double>(kLastSecond))) refuse();
+  if (!(std::abs(t) <= static_cast<double>(kLastSecond) + 1.0)) refuse();
   const std::int64_t ns = nanoseconds(t);
   const std::int64_t last = (kLastSecond + 1) * kSecond - 1;
   if (ns < -bag_.epoch || ns > last - bag_.epoch) refuse();
@@ -67,12 +67,15 @@ std::int64_t BagBuilder::stamp(double t) const {
 }
 
 void BagBuilder::add(const std::string& topic, const char* type, double t, std::string data) {
-  const auto found = std::find_if(bag_.topics.begin(), bag_.topics.end(),
-                                  [&](const Bag::Topic& one) { return one.name == topic; });
-  const auto number = static_cast<std::size_t>(found - bag_.topics.begin());
-  if (found == bag_.topics.end()) bag_.topics.push_back({topic, type});
-  ++bag_.topics[number].messages;
-  messages_.push_back({stamp(t), number, std::move(data)});
+  const auto [at, added] = numbers_.try_emplace(topic, bag_.topics.size());
+  if (added) {
+    if (at->second > std::numeric_limits<std::uint16_t>::max()) {
+      throw InputError(name_, 0, "has more than 65536 topics for a bag, such as " + topic);
+    }
+    bag_.topics.push_back({topic, type});
+  }
+  ++bag_.topics[at->second].messages;
+  messages_.push_back({stamp(t), at->second, std::move(data)});
 }
 
 std::string BagBuilder::topic_below(const std::string& folder, const std::string& name) {

@@ -30,6 +30,7 @@ class BagBuilder {
     return {stamp(t), std::move(frame)};
   }
 
+  /// Throws InputError where there are more topics than a bag can number.
   void add(const std::string& topic, const char* type, double t, std::string data);
   /// A topic below `folder` of its own, told from others that ROS would call the same.
   [[nodiscard]] std::string topic_below(const std::string& folder, const std::string& name);
@@ -46,7 +47,8 @@ class BagBuilder {
 
   std::string name_;
   std::vector<Message> messages_;
-  std::map<std::string, std::string> below_;  // topic: what it was made of
+  std::map<std::string, std::size_t> numbers_;  // of topics
+  std::map<std::string, std::string> below_;    // topic: what it was made of
   Bag bag_;
 };
 

@@ -44,6 +44,26 @@ std::optional<std::string> beside(const std::string& path, std::size_t number, b
   return found;
 }
 
+/// REP 145: an Imu that does not read its orientation, or its angular velocity, says so by a -1 at
+/// the start of that one's covariance.
+class ImuReading {
+ public:
+  explicit ImuReading(const std::string& path) {
+    for (const char* part : {"orientation", "angular_velocity"}) {
+      if (path.find(std::string("/") + part) == std::string::npos) continue;
+      covariance_ = FieldPath(std::string(part) + "_covariance[0]", false);
+    }
+  }
+  [[nodiscard]] bool is_absent(const FedMessage& fed) const {
+    if (covariance_.is_empty() || !fed.topic.type.ends_with("/Imu")) return false;
+    const std::optional<FieldRef> first = covariance_.find(fed.message);
+    return first && first->number() == -1.0;
+  }
+
+ private:
+  FieldPath covariance_;
+};
+
 class Gatherer {
  public:
   Gatherer(const LogMap& map, GatheredLog& to) : map_(map), to_(to), feeds_(map) {}
@@ -84,7 +104,9 @@ class Gatherer {
 
  private:
   void feed(const SignalMap& signal, Signal& into) {
-    feeds_.add(signal.field, signal.line, [&signal, &into](const FedMessage& fed) {
+    const ImuReading imu(signal.field);
+    feeds_.add(signal.field, signal.line, [&signal, &into, imu](const FedMessage& fed) {
+      if (imu.is_absent(fed)) return false;
       if (signal.quaternion) {
         const auto yaw = yaw_of_quaternion(fed.field);
         if (yaw) into.add(fed.t, *yaw);

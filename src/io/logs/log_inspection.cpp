@@ -91,7 +91,6 @@ class Surveyor {
       result.topics.push_back(std::move(state.facts));
     }
     for (auto& [child, facts] : frames_) {
-      facts.upright_z /= static_cast<double>(std::max<std::size_t>(facts.samples, 1));
       result.frames.push_back(facts);
     }
     result.cut_off = end.cut_off;
@@ -149,21 +148,24 @@ class Surveyor {
       FrameFacts& facts = frames_[name];
       const Eigen::Vector3d z = pose->rotation * Eigen::Vector3d::UnitZ();
       if (facts.samples == 0) {
-        first_[name] = pose->position;
+        first_[name] = *pose;
         facts.translation_y = pose->position.y();
       }
       facts.parent = frame_of(one);
       facts.child = name;
       facts.is_static = message.topic.name.ends_with("_static");
-      facts.moves = facts.moves || !pose->position.isApprox(first_[name], 1e-9);
-      facts.upright_z += std::abs(z.z());
+      const FieldPose& first = first_[name];
+      facts.moves = facts.moves || !pose->position.isApprox(first.position, 1e-9);
+      facts.turns = facts.turns || pose->rotation.angularDistance(first.rotation) > 1e-9;
+      facts.z_axes += z * z.transpose();
+      facts.last = pose->rotation;
       ++facts.samples;
     }
   }
 
   std::map<std::size_t, TopicState> states_;
   std::map<std::string, FrameFacts> frames_;
-  std::map<std::string, Eigen::Vector3d> first_;
+  std::map<std::string, FieldPose> first_;
 };
 
 }  // namespace
@@ -174,11 +176,19 @@ std::string short_type(std::string_view type) {
   return text;
 }
 
-const LogTopicFacts* LogSurvey::find_type(std::string_view type) const {
-  for (const LogTopicFacts& one : topics) {
-    if (short_type(one.type) == type && one.messages > 0) return &one;
+double LogSurvey::upright_share(const FrameFacts& frame, const std::string& base) const {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // of the parent in the base
+  std::string at = frame.parent;
+  for (std::size_t links = 0; links < frames.size() && at != base; ++links) {
+    const auto link = std::find_if(frames.begin(), frames.end(),
+                                   [&](const FrameFacts& one) { return one.child == at; });
+    if (link == frames.end()) break;
+    rotation = link->last * rotation;
+    at = link->parent;
   }
-  return nullptr;
+  const Eigen::RowVector3d up = rotation.toRotationMatrix().row(2);
+  const double samples = static_cast<double>(std::max<std::size_t>(frame.samples, 1));
+  return std::sqrt((up * frame.z_axes * up.transpose()).value() / samples);
 }
 
 LogSurvey survey_log(const std::filesystem::path& log) {

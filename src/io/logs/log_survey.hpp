@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 namespace trussmap {
 
 struct FrameFacts {
@@ -19,9 +21,11 @@ struct FrameFacts {
   std::string child;
   bool is_static = false;
   std::size_t samples = 0;
-  bool moves = false;          ///< in its parent
-  double upright_z = 0.0;      ///< mean share of the child's z axis that stands up in its parent
-  double translation_y = 0.0;  ///< m, of the first sample
+  bool moves = false;                                ///< in its parent
+  bool turns = false;                                ///< in its parent
+  Eigen::Matrix3d z_axes = Eigen::Matrix3d::Zero();  ///< sum of z z', its z axis in its parent
+  Eigen::Quaterniond last = Eigen::Quaterniond::Identity();  ///< its rotation in its parent
+  double translation_y = 0.0;                                ///< m, of the first sample
 };
 
 struct LogSurvey {
@@ -31,7 +35,9 @@ struct LogSurvey {
   bool table = false;
   std::string cut_off;
 
-  [[nodiscard]] const LogTopicFacts* find_type(std::string_view type) const;
+  /// How much of the frame's z axis stands up in `base`, 0 to 1 (root mean square), if the frames
+  /// between them are turned as at the end.
+  [[nodiscard]] double upright_share(const FrameFacts& frame, const std::string& base) const;
 };
 
 [[nodiscard]] LogSurvey survey_log(const std::filesystem::path& log);

@@ -83,6 +83,8 @@ std::string guessed_map(const LogSurvey& survey, const std::string& log) {
   if (!guessed.places) {
     text.comment("NOTHING TIES THE DRIVE TO A PLACE: state [[sightings]], [fixes] or [truth].");
   }
+  text.blank();
+  text.comment("survey.file = \"survey.csv\"   # landmarks measured apart: landmark,x,y [m]");
   return text.str() + "\n" + body.str();
 }
 

@@ -172,7 +172,12 @@ class TypeGuesser {
       text_.list("sightings", "each transform to such a frame is a sighting");
       text_.text("frames", pattern);
       text_.text("base", base_frame(), "the robot's frame: between its wheels, x ahead");
-      const bool flat = one->upright_z > 0.7;
+      if (!one->turns) {
+        text_.line("use_yaw = false", "it never turns: whoever sees it does not see its direction");
+        found_.places = true;
+        continue;
+      }
+      const bool flat = survey_.upright_share(*one, base_frame()) > 0.7;
       text_.text("axis", flat ? "x" : "z",
                  flat ? "whose direction in the plane is the tag's own: its z stands up"
                       : "whose direction in the plane is the tag's own: it hangs on a wall");

@@ -34,7 +34,7 @@ class McapWriter {
   McapWriter();
 
   /// A topic whose messages are CDR of this type; `definition` is the type's message definition
-  /// with all that it depends on. Returns the channel. Precondition: at most 65535 of them.
+  /// with all that it depends on. Returns the channel. Precondition: at most 65536 of them.
   std::uint16_t add_channel(const std::string& topic, const std::string& type,
                             const std::string& definition);
 

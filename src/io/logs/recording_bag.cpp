@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 
 #include "io/logs/bag_builder.hpp"
+#include "io/logs/recording_bag_map.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/log_files.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -51,13 +53,16 @@ class RecordingBag {
     add_covariates();
     bag_.leave_out(recording_.loops.size(), "loops");
     bag_.leave_out(recording_.survey.size(), "surveyed landmarks");
-    return bag_.finish();
+    Bag bag = bag_.finish();
+    bag.map = bag_map(bag, parts_, recording_, model_, options_);
+    return bag;
   }
 
  private:
   /// Each wheel's readings, and what turns a reading into an angle.
   struct Wheel {
-    std::string name;
+    std::string column;
+    std::string joint;
     const std::vector<double>* readings;
     bool steers;
   };
@@ -65,13 +70,16 @@ class RecordingBag {
   [[nodiscard]] std::vector<Wheel> wheels() const {
     const std::vector<std::string>& columns = model_.robot.columns;
     if (drive_.wheels.empty()) {
-      const bool named = columns.size() == 2;
-      return {{named ? columns[0] : "left_wheel", &drive_.left, false},
-              {named ? columns[1] : "right_wheel", &drive_.right, false}};
+      if (columns.size() == 2) {
+        return {{columns[0], columns[0], &drive_.left, false},
+                {columns[1], columns[1], &drive_.right, false}};
+      }
+      return {{"left", "left_wheel", &drive_.left, false},
+              {"right", "right_wheel", &drive_.right, false}};
     }
     std::vector<Wheel> found;
     for (const WheelColumn& one : drive_.wheels) {
-      found.push_back({one.name, &one.reading, one.steers});
+      found.push_back({one.name, one.name, &one.reading, one.steers});
     }
     return found;
   }
@@ -82,7 +90,8 @@ class RecordingBag {
     std::vector<double> travels(wheels.size(), 0.0);  // m so far
     std::vector<double> positions;
     for (const Wheel& one : wheels) {
-      names.push_back(one.name);
+      names.push_back(one.joint);
+      parts_.wheels.push_back({one.column, one.joint, one.steers});
       // The first row's steering holds from its start.
       positions.push_back(one.steers ? one.readings->front() : 0.0);
     }
@@ -143,6 +152,7 @@ class RecordingBag {
   void add_sightings() {
     std::size_t bearings = 0;
     std::size_t yaws = 0;
+    parts_.yaws = true;
     std::vector<TransformMessage> transforms;  // of one time
     double t = 0.0;
     const auto close_transforms = [&] {
@@ -159,6 +169,7 @@ class RecordingBag {
                               one.landmark,
                               {one.range * std::cos(one.bearing), one.range * std::sin(one.bearing),
                                std::isnan(one.yaw) ? 0.0 : one.yaw}});
+        parts_.yaws = parts_.yaws && !std::isnan(one.yaw);
         continue;
       }
       if (!std::isnan(one.yaw)) ++yaws;
@@ -178,7 +189,9 @@ class RecordingBag {
   void add_range(const Sighting& one) {
     const double sd =
         std::hypot(model_.noise.range, model_.noise.range_relative * std::abs(one.range));
-    bag_.add(bag_.topic_below("/range", one.landmark), kRangeType, one.t,
+    const std::string topic = bag_.topic_below("/range", one.landmark);
+    if (ranges_.insert(topic).second) parts_.ranges.emplace_back(topic, one.landmark);
+    bag_.add(topic, kRangeType, one.t,
              to_cdr(RangeMessage{bag_.header(one.t, one.landmark), one.range, sd * sd}));
   }
 
@@ -202,6 +215,7 @@ class RecordingBag {
       // The wheels of another drive stand in /joint_states.
       if (std::find(columns.begin(), columns.end(), one.name) != columns.end()) continue;
       const std::string topic = bag_.topic_below("/covariates", one.name);
+      parts_.covariates.emplace_back(one.name, topic);
       for (std::size_t row = 0; row < drive_.rows(); ++row) {
         bag_.add(topic, kNumberType, drive_.t[row], number_to_cdr(one.values[row]));
       }
@@ -213,6 +227,8 @@ class RecordingBag {
   Model model_;
   const BagOptions& options_;
   BagBuilder bag_;
+  BagMapParts parts_;
+  std::set<std::string> ranges_;  // topics
 };
 
 }  // namespace

@@ -148,6 +148,9 @@ class Parser {
   std::size_t group(const std::string& type, std::size_t depth) {
     const std::string package = package_.empty() ? type.substr(0, type.find('/')) : package_.back();
     const auto found = find(type, package);
+    if (!found && package_.empty()) {
+      throw DefinitionError("the bag has no definition of " + type);
+    }
     if (!found) fail("type " + type + " is not defined");
     const auto& [name, section] = *found;
     if (const auto known = done_.find(name); known != done_.end()) {

@@ -66,7 +66,7 @@ struct TransformMessage {
 struct RangeMessage {
   RosHeader header;
   double range = 0.0;     ///< m
-  double variance = 0.0;  ///< m^2; since ROS 2 Iron
+  double variance = 0.0;  ///< m^2; older releases of ROS 2 have no place for it, and pass over it
 };
 
 // Names as schemas have them (PACKAGE/msg/NAME).

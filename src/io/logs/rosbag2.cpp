@@ -118,10 +118,11 @@ std::vector<fs::path> files_of(const fs::path& folder, const YAML::Node& root,
   const auto fail = [&metadata](const std::string& what) {
     throw InputError(metadata.string(), 0, what);
   };
-  if (!root.IsMap() || !root["rosbag2_bagfile_information"].IsMap()) {
+  const YAML::Node information =
+      root.IsMap() ? root["rosbag2_bagfile_information"] : YAML::Node(YAML::NodeType::Undefined);
+  if (!information.IsDefined() || !information.IsMap()) {
     fail("has no rosbag2_bagfile_information, expected the metadata of a rosbag2");
   }
-  const YAML::Node information = root["rosbag2_bagfile_information"];
   const std::string storage = text_of(information, "storage_identifier");
   if (storage != "sqlite3" && storage != "mcap") {
     fail("storage_identifier is \"" + storage + "\", expected sqlite3 or mcap");
@@ -167,7 +168,11 @@ std::string read_bag_file(const fs::path& file, BagTopics& topics) {
   if (file.extension() == ".zstd") {
     DecompressedFile plain(file);
     std::string cut_off;
-    if (file.stem().extension() == ".db3") {
+    const bool sqlite = file.stem().extension() == ".db3";
+    if (!plain.cut_off().empty() && (sqlite || fs::file_size(plain.path()) == 0)) {
+      throw InputError(file.string(), 0, plain.cut_off());
+    }
+    if (sqlite) {
       cut_off =
           read_rosbag2_sqlite(plain.path(), file.string(), topics, [&plain] { plain.remove(); });
     } else {

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/rosbag2_sqlite.hpp"
 
+#include "io/logs/byte_reader.hpp"
 #include "trussmap/error.hpp"
 
+#include <array>
 #include <cstdint>
+#include <fstream>
 #include <map>
 #include <sqlite3.h>
 #include <system_error>
@@ -34,6 +37,20 @@ std::string uri_of(const fs::path& file) {
     }
   }
   return uri + "?mode=ro&immutable=1";
+}
+
+/// SQLite takes what a last page lacks for zeros.
+void check_pages(const fs::path& file, const std::string& shown) {
+  constexpr std::size_t kHeader = 18;  // bytes: a name, and the size of pages, big-endian
+  const std::uintmax_t size = fs::file_size(file);
+  if (size == 0) throw InputError(shown, 0, "is empty, expected the SQLite file of a rosbag2");
+  std::ifstream stream(file, std::ios::binary);
+  std::array<unsigned char, kHeader> header{};
+  stream.read(reinterpret_cast<char*>(header.data()), header.size());
+  std::uintmax_t page = header[16] * 256U + header[17];
+  if (page == 1) page = 65536;
+  if (page == 0 || size % page == 0) return;
+  fail_at(shown, size, "ends in the middle of a page of " + std::to_string(page) + " bytes");
 }
 
 class Database {
@@ -235,9 +252,7 @@ std::string read_rosbag2_sqlite(const fs::path& file, const std::string& shown, 
   if (!fs::is_regular_file(file, ignored)) {
     throw InputError(shown, 0, "cannot be opened, expected a readable file");
   }
-  if (fs::file_size(file, ignored) == 0) {
-    throw InputError(shown, 0, "is empty, expected the SQLite file of a rosbag2");
-  }
+  check_pages(file, shown);
   const Database database(file, shown);
   Rosbag2Reader reader(database, topics);
   opened();
