@@ -201,7 +201,7 @@ StructSchemas::Found StructSchemas::made(const std::string& name, int depth) {
     text.remove_prefix(std::min(text.find(';'), text.size() - 1) + 1);
     if (declared.empty()) continue;
     if (std::string problem = add_member(*type, declared, depth); !problem.empty()) {
-      if (!problem.starts_with("its ")) problem = "its schema struct:" + name + " " + problem;
+      if (!problem.starts_with("its ")) problem.insert(0, "its schema struct:" + name + " ");
       return {nullptr, problem};
     }
   }
