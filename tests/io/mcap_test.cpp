@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(Mcap, McapVariants,
                          ::testing::Values("mcap_plain", "mcap_lz4", "mcap_zstd", "mcap_one_chunk",
                                            "mcap_unchunked", "mcap_without_summary",
                                            "mcap_without_checksums", "mcap_without_definitions",
-                                           "mcap_idl", "mcap_big_endian", "mcap_wide_characters",
-                                           "mcap_with_others"),
+                                           "mcap_idl", "mcap_as_rosbag2", "mcap_big_endian",
+                                           "mcap_wide_characters", "mcap_with_others"),
                          [](const auto& one) { return std::string(one.param); });
 
 /// Whether all of it is a beginning of `expected` that ends with a whole message.

@@ -50,7 +50,7 @@ std::string_view SequentialFile::read(std::uint64_t count) {
   const std::string_view found =
       std::string_view(buffer_).substr(0, static_cast<std::size_t>(there));
   crc_before_ = crc_;
-  crc_ = crc32(found, crc_);
+  if (checked_) crc_ = crc32(found, crc_);
   at_ += there;
   return found;
 }
@@ -74,13 +74,13 @@ bool SequentialFile::zeros_to_end() {
   }
 }
 
-bool SequentialFile::ends_with(std::string_view bytes) const {
-  if (!size_ || *size_ < bytes.size()) return false;
+std::string SequentialFile::look(std::uint64_t at, std::size_t count) const {
   std::ifstream again(path_, std::ios::binary);
-  again.seekg(static_cast<std::streamoff>(*size_ - bytes.size()));
-  std::string found(bytes.size(), '\0');
+  again.seekg(static_cast<std::streamoff>(at));
+  std::string found(count, '\0');
   again.read(found.data(), static_cast<std::streamsize>(found.size()));
-  return again && found == bytes;
+  found.resize(static_cast<std::size_t>(again.gcount()));
+  return found;
 }
 
 }  // namespace trussmap

@@ -31,8 +31,12 @@ class SequentialFile {
   [[nodiscard]] std::uint64_t skip(std::uint64_t count);
   /// Whether all from here to the end is zero; what is read is read.
   [[nodiscard]] bool zeros_to_end();
-  /// Whether the file is known to end with these bytes: of a pipe nothing is.
-  [[nodiscard]] bool ends_with(std::string_view bytes) const;
+  /// None of a pipe.
+  [[nodiscard]] std::optional<std::uint64_t> size() const { return size_; }
+  /// Bytes anywhere in the file, less where it ends; what is read next is the same as without.
+  [[nodiscard]] std::string look(std::uint64_t at, std::size_t count) const;
+  /// From here on no checksum is made: crc_before() means nothing.
+  void without_checksum() { checked_ = false; }
 
  private:
   std::filesystem::path path_;
@@ -41,6 +45,7 @@ class SequentialFile {
   std::optional<std::uint64_t> size_;
   std::string buffer_;  // as large as it ever was
   std::uint64_t at_ = 0;
+  bool checked_ = true;
   std::uint32_t crc_ = 0;
   std::uint32_t crc_before_ = 0;
 };

@@ -44,16 +44,18 @@ def compressed(data, compression):
 class McapFile:
     """`compression` is "", lz4 or zstd; without `chunked` messages stand in the file one by one.
 
-    `crc` says whether checksums are stated, `summary` whether the file has one, `index` whether
-    chunks are indexed. `end` False leaves the file as a power cut does, after the last chunk.
+    `crc` says whether checksums are stated, `data_crc` whether that of all data is, too (rosbag2
+    states none), `summary` whether the file has one, `index` whether chunks are indexed. `end` False
+    leaves the file as a power cut does, after the last chunk.
     """
 
     def __init__(self, path, compression="", chunk_size=1 << 20, chunked=True, crc=True,
-                 summary=True, index=True, end=True, others=False):  # fmt: skip
+                 data_crc=True, summary=True, index=True, end=True, others=False):  # fmt: skip
         self.file = open(path, "wb")
         self.at = 0
         self.crc_so_far = 0
         self.compression, self.chunk_size, self.chunked = compression, chunk_size, chunked
+        self.data_crc = crc and data_crc
         self.crc, self.summary, self.index, self.end = crc, summary, index, end
         self.described = []  # schemas and channels, again in the summary
         self.schemas = 0
@@ -146,7 +148,7 @@ class McapFile:
     def close(self):
         self.flush()
         if self.end:
-            self._put(record(DATA_END, struct.pack("<I", self.crc_so_far if self.crc else 0)))
+            self._put(record(DATA_END, struct.pack("<I", self.crc_so_far if self.data_crc else 0)))
             self._end()
         self.file.close()
 
