@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/targets.hpp"
 
+#include "fuzz/log_targets.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_files.hpp"
@@ -275,15 +276,19 @@ void fuzz_store(std::string_view bytes) {
 }  // namespace
 
 const std::map<std::string, Target>& targets() {
-  static const std::map<std::string, Target> kTargets = {
-      {"recording", &fuzz_recording}, {"model", &fuzz_model},
-      {"graphml", &fuzz_graphml},     {"g2o", &fuzz_g2o},
-      {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
-      {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
-      {"phil", &fuzz_phil},           {"truck", &fuzz_truck},
-      {"line", &fuzz_line},           {"encoders", &fuzz_encoders},
-      {"runs", &fuzz_runs},           {"store", &fuzz_store},
-      {"words", &fuzz_words},         {"xz", &fuzz_xz}};
+  static const std::map<std::string, Target> kTargets = [] {
+    std::map<std::string, Target> all = {
+        {"recording", &fuzz_recording}, {"model", &fuzz_model},
+        {"graphml", &fuzz_graphml},     {"g2o", &fuzz_g2o},
+        {"mrclam", &fuzz_mrclam},       {"optiodom", &fuzz_optiodom},
+        {"ranges", &fuzz_ranges},       {"loops", &fuzz_loops},
+        {"phil", &fuzz_phil},           {"truck", &fuzz_truck},
+        {"line", &fuzz_line},           {"encoders", &fuzz_encoders},
+        {"runs", &fuzz_runs},           {"store", &fuzz_store},
+        {"words", &fuzz_words},         {"xz", &fuzz_xz}};
+    all.merge(log_targets());
+    return all;
+  }();
   return kTargets;
 }
 
