@@ -99,6 +99,20 @@ TEST(Rosbag2, ACompressedFileThatIsCutOffOrDamagedIsSaidToBe) {
             "a.mcap.zstd: at byte 0: the zstd data are damaged (Unknown frame descriptor)");
 }
 
+/// As a power cut leaves a bag: its last file without an end, and no metadata.
+TEST(Rosbag2, ItsLastFileMayBeCutOff) {
+  const ScratchFolder scratch;
+  const TestBag bag = testing::write_test_bag(scratch.path(), "folder_mcap_without_metadata");
+  ASSERT_FALSE(bag.path.empty());
+  const fs::path last = bag.path / "drive_11.mcap";
+  fs::resize_file(last, 40);
+  const ReadLog log = testing::read_lines(bag.path);
+  EXPECT_EQ(log.error, "");
+  EXPECT_EQ(log.end.cut_off, "drive_11.mcap: at byte 8: ends in the middle of a header");
+  EXPECT_GT(log.lines.size(), bag.expected.size() / 2);
+  EXPECT_TRUE(bag.expected.starts_with(log.lines));
+}
+
 TEST(Rosbag2, ABagOfRos1IsToBeConvertedFirst) {
   const ScratchFolder scratch;
   for (const char* const name : {"a.bag", "a.db3"}) {
