@@ -286,6 +286,7 @@ const std::map<std::string, Target>& targets() {
         {"runs", &fuzz_runs},           {"store", &fuzz_store},
         {"words", &fuzz_words},         {"xz", &fuzz_xz}};
     all.insert(log_targets().begin(), log_targets().end());
+    all.merge(bag_targets());
     return all;
   }();
   return kTargets;

@@ -16,6 +16,9 @@ using Target = void (*)(std::string_view bytes);
 /// By the name of their folders in tests/fuzz/corpus.
 [[nodiscard]] const std::map<std::string, Target>& targets();
 
+/// Those of ROS bags.
+[[nodiscard]] std::map<std::string, Target> bag_targets();
+
 /// Those of them that read logs of others.
 [[nodiscard]] const std::map<std::string, Target>& log_targets();
 

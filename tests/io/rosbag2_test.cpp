@@ -3,6 +3,7 @@
 #include "io/bag_lines.hpp"
 #include "io/logs/message_log.hpp"
 #include "scratch_folder.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <cstdlib>
 #include <sqlite3.h>
@@ -97,6 +98,37 @@ TEST(Rosbag2, ACompressedFileThatIsCutOffOrDamagedIsSaidToBe) {
             "cut.db3.zstd: the zstd data end too soon");
   EXPECT_EQ(complaint(scratch, scratch.write("a.mcap.zstd", std::string(100, 'x'))),
             "a.mcap.zstd: at byte 0: the zstd data are damaged (Unknown frame descriptor)");
+}
+
+/// As a power cut leaves a bag: its last file without an end, and no metadata.
+TEST(Rosbag2, ItsLastFileMayBeCutOff) {
+  const ScratchFolder scratch;
+  const TestBag bag = testing::write_test_bag(scratch.path(), "folder_mcap_without_metadata");
+  ASSERT_FALSE(bag.path.empty());
+  const fs::path last = bag.path / "drive_11.mcap";
+  fs::resize_file(last, 40);
+  const ReadLog log = testing::read_lines(bag.path);
+  EXPECT_EQ(log.error, "");
+  EXPECT_EQ(log.end.cut_off, "drive_11.mcap: at byte 8: ends in the middle of a header");
+  EXPECT_GT(log.lines.size(), bag.expected.size() / 2);
+  EXPECT_TRUE(bag.expected.starts_with(log.lines));
+}
+
+TEST(Rosbag2, WhatACompressedFileBecomesIsLimited) {
+  const ScratchFolder scratch;
+  const TestBag bag = testing::write_test_bag(scratch.path(), "folder_mcap_file_compression");
+  ASSERT_FALSE(bag.path.empty());
+  const fs::path temporary = scratch.path() / "temporary";
+  fs::create_directories(temporary);
+  ::setenv("TMPDIR", temporary.c_str(), 1);
+  set_read_limits({1000});
+  const std::string said = complaint(scratch, bag.path / "drive_0.mcap.zstd");
+  set_read_limits({});
+  ::unsetenv("TMPDIR");
+  EXPECT_EQ(said,
+            "drive/drive_0.mcap.zstd: the zstd data grow to more than 1000 bytes; allow more with "
+            "--max-input-mib");
+  EXPECT_TRUE(fs::is_empty(temporary));
 }
 
 TEST(Rosbag2, ABagOfRos1IsToBeConvertedFirst) {

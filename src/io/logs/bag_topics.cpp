@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/bag_topics.hpp"
 
+#include "io/logs/byte_reader.hpp"
 #include "io/logs/cdr.hpp"
 
 #include <limits>
@@ -37,6 +38,7 @@ BagTopics::Definition BagTopics::definition_of(const BagChannel& channel) {
 std::size_t BagTopics::add(const BagChannel& channel) {
   const auto [place, is_new] = numbers_.try_emplace(channel.topic, topics_.size());
   Definition definition = definition_of(channel);
+  definition.unread = in_a_line(definition.unread);
   if (is_new) {
     LogTopic& topic = topics_.emplace_back();
     topic.name = channel.topic;

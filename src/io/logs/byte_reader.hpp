@@ -17,10 +17,21 @@
 
 namespace trussmap {
 
+/// What a file says of itself, as it can stand in a line of ours: without control characters, and
+/// not endless.
+[[nodiscard]] inline std::string in_a_line(std::string_view text) {
+  constexpr std::size_t kLongest = 500;  // bytes
+  std::string line(text.substr(0, kLongest));
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) c = '?';
+  }
+  return line;
+}
+
 /// Throws InputError "FILE: at byte N: what".
 [[noreturn]] inline void fail_at(const std::string& file, std::uint64_t byte,
                                  const std::string& what) {
-  throw InputError(file, 0, "at byte " + std::to_string(byte) + ": " + what);
+  throw InputError(file, 0, "at byte " + std::to_string(byte) + ": " + in_a_line(what));
 }
 
 /// Bytes of a file or of what was decompressed from it. Throws InputError where they end too soon,

@@ -131,10 +131,13 @@ class Parser {
   /// The section of a type, as written within `package`.
   std::optional<std::pair<std::string, Section>> find(const std::string& type,
                                                       const std::string& package) const {
-    const bool alone = type.find('/') == std::string::npos;
-    for (const std::string& name :
-         alone ? std::vector<std::string>{package + "/" + type, type, "std_msgs/" + type}
-               : std::vector<std::string>{type}) {
+    std::vector<std::string> names{type};
+    if (type.find('/') == std::string::npos) {
+      std::string near = package;
+      near.append("/").append(type);
+      names = {std::move(near), type, std::string("std_msgs/").append(type)};
+    }
+    for (const std::string& name : names) {
       if (const auto known = sections_.find(name); known != sections_.end()) {
         return {{name, known->second}};
       }

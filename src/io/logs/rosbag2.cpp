@@ -14,6 +14,7 @@
 // numbers. A file may be given alone as well.
 //
 // Source: rosbag2_storage of ROS 2.
+#include "io/logs/byte_reader.hpp"
 #include "io/logs/mcap.hpp"
 #include "io/logs/rosbag2_sqlite.hpp"
 #include "trussmap/error.hpp"
@@ -97,7 +98,7 @@ fs::path named_file(const fs::path& folder, const fs::path& metadata, const std:
       path.empty() || path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end();
   if (leaves) {
     throw InputError(metadata.string(), 0,
-                     "names the file \"" + name + "\", expected one within the folder");
+                     "names the file \"" + in_a_line(name) + "\", expected one within the folder");
   }
   std::error_code ignored;
   // Before version 4 paths began with the folder's name.
@@ -105,7 +106,7 @@ fs::path named_file(const fs::path& folder, const fs::path& metadata, const std:
     if (fs::is_regular_file(one, ignored)) return one;
   }
   throw InputError(metadata.string(), 0,
-                   "names the file \"" + name + "\", which is not in the folder");
+                   "names the file \"" + in_a_line(name) + "\", which is not in the folder");
 }
 
 std::string text_of(const YAML::Node& node, const char* name) {
@@ -116,7 +117,7 @@ std::string text_of(const YAML::Node& node, const char* name) {
 std::vector<fs::path> files_of(const fs::path& folder, const YAML::Node& root,
                                const fs::path& metadata) {
   const auto fail = [&metadata](const std::string& what) {
-    throw InputError(metadata.string(), 0, what);
+    throw InputError(metadata.string(), 0, in_a_line(what));
   };
   const YAML::Node information =
       root.IsMap() ? root["rosbag2_bagfile_information"] : YAML::Node(YAML::NodeType::Undefined);
@@ -154,7 +155,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   } catch (const YAML::Exception& error) {
     const std::size_t line =
         error.mark.is_null() ? 0 : static_cast<std::size_t>(error.mark.line) + 1;
-    throw InputError(metadata.string(), line, error.msg + ", expected YAML");
+    throw InputError(metadata.string(), line, in_a_line(error.msg) + ", expected YAML");
   }
 }
 

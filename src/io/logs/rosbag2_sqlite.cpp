@@ -76,7 +76,9 @@ class Database {
 
   [[nodiscard]] sqlite3* base() const { return base_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(name_, 0, what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(name_, 0, in_a_line(what));
+  }
   [[noreturn]] void fail_by_sqlite() const {
     fail(std::string("cannot be read as a rosbag2 (") + sqlite3_errmsg(base_) + ")");
   }
