@@ -95,7 +95,7 @@ TEST(CheckCommand, ReadsTheDriveFromTheModel) {
   EXPECT_NE(other.output.find("no way ahead"), std::string::npos) << other.output;
 }
 
-TEST(CheckCommand, OtherCommandsWarn) {
+TEST(SlowCheckCommand, OtherCommandsWarn) {
   const ScratchFolder scratch;
   const std::string folder = with_wheels_exchanged(scratch);
   for (const std::string command : {"compare", "fit", "build", "calibrate"}) {

@@ -49,7 +49,7 @@ WheelCalibrationOptions without_noise() {
 }
 
 /// Wheels explain the twist of a, not the compass of b, which pulls the estimates to and fro.
-TEST(WheelCalibration, SaysWhereItHasNotSettled) {
+TEST(SlowWheelCalibration, SaysWhereItHasNotSettled) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   for (const auto& [name, settled] : {std::pair{"a", true}, std::pair{"b", false}}) {
     const std::filesystem::path folder = testing::shared("data/hidden") / name;

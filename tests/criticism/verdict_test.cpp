@@ -51,7 +51,7 @@ void expect_agreement(const std::vector<Recording>& recordings, const ModelFit& 
   }
 }
 
-TEST(Verdict, OnThePracticeRecordingsNoneContradictsAnother) {
+TEST(SlowVerdict, OnThePracticeRecordingsNoneContradictsAnother) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"}) {
     const std::filesystem::path folder = testing::shared("data/hidden") / name;
@@ -60,7 +60,7 @@ TEST(Verdict, OnThePracticeRecordingsNoneContradictsAnother) {
   }
 }
 
-TEST(Verdict, OnSimulatedRecordingsNoneContradictsAnother) {
+TEST(SlowVerdict, OnSimulatedRecordingsNoneContradictsAnother) {
   // Wrong by less and less, from what anybody sees to what nobody can.
   int seen = 0;
   int unseen = 0;

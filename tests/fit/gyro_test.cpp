@@ -323,19 +323,19 @@ int named(const std::vector<Effect>& effects, double walk, std::uint64_t first,
 
 /// Three times what is detectable, where a bias that walks would explain the readings almost as
 /// well. Seeds 600 to 607.
-TEST(Gyro, ABiasIsNamedWhereAWalkCouldStandForIt) {
+TEST(SlowGyro, ABiasIsNamedWhereAWalkCouldStandForIt) {
   EXPECT_GE(named({catalogue_effect("gyro bias", {0.00023})}, 0.0, 600, 8), 6);
 }
 
 /// The same of a drift with temperature.
-TEST(Gyro, ADriftIsNamedWhereAWalkCouldStandForIt) {
+TEST(SlowGyro, ADriftIsNamedWhereAWalkCouldStandForIt) {
   const Effect drift = catalogue_effect("gyro temperature drift (temperature_C)", {1.2e-5});
   EXPECT_GE(named({drift}, 0.0, 600, 8), 6);
 }
 
 /// A bias that does walk, from 0: so little that chi^2 does not show it, and more. At 5 %, three of
 /// eight have p = 0.006. Seeds 700 to 707.
-TEST(Gyro, AWalkIsNotOftenCalledADrift) {
+TEST(SlowGyro, AWalkIsNotOftenCalledADrift) {
   for (const double walk : {3e-6, 1e-5}) EXPECT_LE(named({}, walk, 700, 8), 2) << walk;
 }
 

@@ -129,7 +129,7 @@ TEST(Page, AnswersStandUnderTheirQuestions) {
   EXPECT_LT(html.find("<dt>How sure?"), html.find("<h2>"));
 }
 
-TEST(Page, TenThousandLegsStaySmall) {
+TEST(SlowPage, TenThousandLegsStaySmall) {
   for (const auto& [name, page] : {std::pair{"compare", testing::large_comparison_page(10000)},
                                    std::pair{"diagnose", testing::large_diagnosis_page(10000)},
                                    std::pair{"discover", testing::large_discovery_page(10000)},

@@ -123,7 +123,9 @@ class MapStoreTest : public ::testing::Test {
 };
 
 /// Whatever a builder knows: its chain, gate, what it carries on, its bars.
-TEST_F(MapStoreTest, OneThatIsOpenedBeforeEveryLegIsAsABuilderThatNeverStopped) {
+using SlowMapStoreTest = MapStoreTest;
+
+TEST_F(SlowMapStoreTest, OneThatIsOpenedBeforeEveryLegIsAsABuilderThatNeverStopped) {
   const std::vector<Step> steps = walk(12, 160, 5);
   for (const MapBuilderOptions& options : many_options()) {
     SCOPED_TRACE(name_of(options.method));
