@@ -41,7 +41,10 @@ void collect(FieldRef field, const std::string& path, std::size_t elements,
   if (kind == FieldKind::group) {
     for (const FieldRef& one : field.children()) {
       const std::string name(one.name());
-      collect(one, path.empty() ? name : path + '.' + name, elements, found);
+      std::string below = path;
+      if (!below.empty()) below += '.';
+      below += name;
+      collect(one, below, elements, found);
     }
   } else if (kind == FieldKind::list) {
     for (std::size_t k = 0; k < elements; ++k) {

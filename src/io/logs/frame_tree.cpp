@@ -176,9 +176,11 @@ void FrameTree::prune() {
   prune_at_ = 2 * samples_;
   if (wanted_.empty()) return;
   std::set<std::string> needed;
-  for (const auto& [child, link] : links_) {
-    const bool asked = std::any_of(wanted_.begin(), wanted_.end(),
-                                   [&](const std::string& one) { return is_like(child, one); });
+  for (const auto& link : links_) {
+    const std::string& child = link.first;
+    const bool asked =
+        std::any_of(wanted_.begin(), wanted_.end(),
+                    [&child](const std::string& one) { return is_like(child, one); });
     if (!asked) continue;
     for (const std::string& frame : ancestors(child)) needed.insert(frame);
   }

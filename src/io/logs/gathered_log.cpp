@@ -229,8 +229,7 @@ class Gatherer {
     if (!one.position.empty()) {
       want_frames("/tf");
       to_.frames.wants(one.base);
-      to_.frames.wants(one.sensor.empty() ? "*" : one.sensor);
-      optional_tf_ = true;
+      if (!one.sensor.empty()) to_.frames.wants(one.sensor);
     }
     feeds_.add(one.topic, one.line,
                [this, &one, before = std::string()](const FedMessage& fed) mutable {
@@ -288,6 +287,7 @@ class Gatherer {
       seen.positioned = true;
       seen.pose = *pose;
       seen.frame = map.sensor.empty() ? frame_of(fed.message) : map.sensor;
+      to_.frames.wants(seen.frame);
     }
     to_.seen.push_back(std::move(seen));
     return true;
@@ -318,7 +318,6 @@ class Gatherer {
   GatheredLog& to_;
   MessageFeeds feeds_;
   std::set<std::string> tf_topics_;
-  bool optional_tf_ = false;
 };
 
 }  // namespace
@@ -335,7 +334,7 @@ FramePath frame_path(const std::string& path, const FrameTree& frames) {
   const std::string both = path.substr(colon + 1);
   FramePath first;
   for (std::size_t dot = both.find('.'); dot != std::string::npos; dot = both.find('.', dot + 1)) {
-    const FramePath split{topic, both.substr(0, dot), both.substr(dot + 1)};
+    FramePath split{topic, both.substr(0, dot), both.substr(dot + 1)};
     if (first.topic.empty()) first = split;
     if (frames.knows(split.parent) && frames.knows(split.child)) return split;
   }

@@ -61,8 +61,8 @@ double FieldPose::yaw() const {
 }
 
 std::optional<FieldPose> pose_of(FieldRef field) {
-  if (const auto found = pose_by(field, "position", "orientation")) return found;
-  if (const auto found = pose_by(field, "translation", "rotation")) return found;
+  if (auto found = pose_by(field, "position", "orientation")) return found;
+  if (auto found = pose_by(field, "translation", "rotation")) return found;
   for (const char* below : {"pose", "transform"}) {
     if (const auto group = field.member(below)) return pose_of(*group);
   }
