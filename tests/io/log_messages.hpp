@@ -93,7 +93,10 @@ inline std::filesystem::path written_by(const ScratchFolder& scratch, const std:
       scratch.write("write.py", "import sys\nsys.dont_write_bytecode = True\nsys.path.insert(0, '" +
                                     std::string(TRUSSMAP_SOURCE_DIR) +
                                     "/tests/io/bags')\npath = '" + log.string() + "'\n" + script);
-  EXPECT_EQ(std::system(("python3 " + file.string()).c_str()), 0) << script;
+  // Where Debian's packages for Python are; another Python may come first in the search path.
+  const std::string python =
+      std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+  EXPECT_EQ(std::system((python + " " + file.string()).c_str()), 0) << script;
   return log;
 }
 

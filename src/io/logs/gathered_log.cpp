@@ -99,6 +99,7 @@ class Gatherer {
     };
     to_.end = read_message_log(log, visit);
     feeds_.check(log, to_.end);
+    to_.refused = feeds_.refused();
     to_.frames.sort();
   }
 
@@ -236,9 +237,10 @@ class Gatherer {
                  if (one.each.empty()) return take_sighting(one, fed, fed.field, before);
                  const auto list = FieldPath(one.each, fed.topic.table).find(fed.field);
                  if (!list) return false;
-                 for (const FieldRef& each : list->children()) {
+                 const std::vector<FieldRef> elements = list->children();
+                 for (std::size_t k = 0; k < elements.size(); ++k) {
                    std::string none;
-                   if (!take_sighting(one, fed, each, none)) return false;
+                   if (!take_sighting(one, fed, elements[k], none, k)) return false;
                  }
                  return true;
                });

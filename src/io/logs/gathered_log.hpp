@@ -67,6 +67,7 @@ struct GatheredLog {
   std::vector<TimedFieldPose> truth;
   FrameTree frames;
   std::size_t wrong_poses = 0;  ///< poses and transforms whose quaternions are none
+  std::size_t refused = 0;      ///< fields that are not what was expected: texts for numbers
   std::size_t lost_fixes = 0;   ///< of a receiver that had no fix
   std::size_t unnamed = 0;      ///< sightings without a landmark's name
 };

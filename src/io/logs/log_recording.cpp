@@ -195,6 +195,7 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
         "out",
         result);
   count(gathered.unnamed, "sightings without a landmark's name left out", result);
+  count(gathered.refused, "messages whose field is no number, pose or velocity left out", result);
   count(outside_fixes, "fixes before or after the drive left out", result);
   count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);

@@ -23,6 +23,40 @@ std::vector<NamedFacts> all_fields(const LogSurvey& survey) {
   return fields;
 }
 
+std::string lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// left, ticks and leftticks of leftTicks: parted at other characters, and at humps, too.
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words;
+  std::string whole;
+  std::string hump;
+  const auto end = [&words](std::string& word) {
+    if (!word.empty()) words.push_back(lowered(word));
+    word.clear();
+  };
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const auto c = static_cast<unsigned char>(name[k]);
+    if (std::isalnum(c) == 0) {
+      end(whole);
+      end(hump);
+      continue;
+    }
+    const auto before = static_cast<unsigned char>(k > 0 ? name[k - 1] : ' ');
+    const bool new_hump = (std::isupper(c) != 0 && std::islower(before) != 0) ||
+                          (std::isdigit(c) != 0) != (std::isdigit(before) != 0);
+    if (new_hump) end(hump);
+    whole += name[k];
+    hump += name[k];
+  }
+  end(whole);
+  end(hump);
+  return words;
+}
+
 bool has_ros_types(const LogSurvey& survey) {
   return std::any_of(survey.topics.begin(), survey.topics.end(), [](const LogTopicFacts& one) {
     return one.type.find("_msgs/") != std::string::npos;
@@ -32,11 +66,15 @@ bool has_ros_types(const LogSurvey& survey) {
 }  // namespace
 
 bool has_word(const std::string& name, const std::vector<std::string>& words) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string lower = lowered(name);
+  const std::vector<std::string> own = words_of(name);
   return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-    return lower.find(word) != std::string::npos;
+    // "l_", "/gt": as they stand; "enc" begins a word: encoder, not presence.
+    if (std::any_of(word.begin(), word.end(), [](unsigned char c) { return !std::isalnum(c); })) {
+      return lower.find(word) != std::string::npos;
+    }
+    return std::any_of(own.begin(), own.end(),
+                       [&](const std::string& one) { return one.starts_with(word); });
   });
 }
 

@@ -36,7 +36,8 @@ struct Guessed {
 [[nodiscard]] std::string covariate_name(const std::string& path);
 /// Whether a topic's name says that it was measured apart from the robot.
 [[nodiscard]] bool is_called_truth(const std::string& name);
-/// Whether the name holds one of these words, whatever its case.
+/// Whether a word of the name begins with one of these, whatever its case; what has other
+/// characters in it than letters and digits may stand anywhere.
 [[nodiscard]] bool has_word(const std::string& name, const std::vector<std::string>& words);
 
 }  // namespace trussmap

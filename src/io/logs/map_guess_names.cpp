@@ -18,7 +18,10 @@ std::optional<Unit> unit_in(const std::string& name) {
   static const std::regex kSuffix(R"([_ ]([A-Za-z]+(?:[_/](?:s|sec))?)$)");
   std::smatch found;
   if (std::regex_search(name, found, kBrackets)) return unit_named(found[1].str());
-  if (!std::regex_search(name, found, kSuffix)) return std::nullopt;
+  static const std::regex kHump(R"([a-z0-9]([A-Z][a-z]+)$)");
+  if (!std::regex_search(name, found, kSuffix) && !std::regex_search(name, found, kHump)) {
+    return std::nullopt;
+  }
   std::string unit = found[1].str();
   std::replace(unit.begin(), unit.end(), '_', '/');
   return unit_named(unit);
@@ -34,7 +37,9 @@ bool is_cumulative(const LogFieldFacts& facts) {
   if (facts.values < 3) return true;
   const double mean_step = facts.total_step / static_cast<double>(facts.values - 1);
   constexpr double kMany = 12.0;
-  return facts.largest - facts.least > kMany * mean_step;
+  const double range = facts.largest - facts.least;
+  const bool grows = facts.decreases == 0 || facts.decreases + 1 == facts.values;
+  return range > kMany * mean_step || (grows && range > 2.0 * mean_step);
 }
 
 class NameGuesser {

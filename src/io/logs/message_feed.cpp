@@ -113,6 +113,12 @@ void MessageFeeds::take(const LogMessage& message) {
   }
 }
 
+std::size_t MessageFeeds::refused() const {
+  std::size_t count = 0;
+  for (const Feed& feed : feeds_) count += feed.refused;
+  return count;
+}
+
 void MessageFeeds::check(const std::filesystem::path& log, const LogEnd& end) const {
   for (const Feed& feed : feeds_) {
     if (feed.taken == 0) fail(feed, log, end);
@@ -133,8 +139,8 @@ void MessageFeeds::fail(const Feed& feed, const std::filesystem::path& log,
   }
   if (feed.refused > 0) {
     throw InputError(file, feed.line,
-                     fmt::format("{} of {} is not what it is used for (of that kind are {} "
-                                 "messages), expected a number, a pose or a velocity as it needs",
+                     fmt::format("{} of {} holds nothing that can be used so (in {} messages), "
+                                 "expected a number, or the pose or velocity that is asked for",
                                  feed.path, name, feed.refused));
   }
   if (!feed.fields.empty()) {

@@ -41,6 +41,9 @@ class MessageFeeds {
   /// ns; `timed` is what has the header: the message, or one of its transforms.
   [[nodiscard]] std::int64_t time_of(const LogMessage& message, FieldRef timed);
 
+  /// Messages whose field was not what was expected: a text where a number belongs.
+  [[nodiscard]] std::size_t refused() const;
+
   /// After the last message: throws InputError with the map's line where a path led to nothing.
   void check(const std::filesystem::path& log, const LogEnd& end) const;
 
