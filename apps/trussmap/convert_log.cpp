@@ -60,19 +60,27 @@ void print_frames(const LogInspection& log) {
   fmt::print("{}\n", table_text(table));
 }
 
+/// Fields that change, and texts; the others are counted.
 void print_fields(const LogInspection& log) {
   TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right},
                   {{"field", "values", "from", "to", "changes"}},
                   true,
                   2};
+  std::size_t constant = 0;
   for (const LogTopicFacts& topic : log.topics) {
     constexpr std::size_t kMost = 60;  // fields of a topic that are shown
     std::size_t shown = 0;
+    std::size_t more = 0;
     for (const LogFieldFacts& one : topic.fields) {
+      const bool is_stamp = one.path.find("stamp.sec") != std::string::npos ||
+                            one.path.find("stamp.nanosec") != std::string::npos;
+      if (one.different == 0 || is_stamp) {
+        ++constant;
+        continue;
+      }
       if (++shown > kMost) {
-        table.rows.push_back({fmt::format("... and {} more of {}", topic.fields.size() - kMost,
-                                          name_text(topic.name))});
-        break;
+        ++more;
+        continue;
       }
       const std::string path = topic.name.empty() ? one.path
                                : one.path.empty() ? topic.name
@@ -88,8 +96,14 @@ void print_fields(const LogInspection& log) {
       row.push_back(std::to_string(one.different));
       table.rows.push_back(std::move(row));
     }
+    if (more > 0) {
+      table.rows.push_back({fmt::format("... and {} more of {}", more, name_text(topic.name))});
+    }
   }
   fmt::print("{}", table_text(table));
+  if (constant > 0) {
+    fmt::print("\n  {} further fields never change, or are time stamps\n", constant);
+  }
 }
 
 }  // namespace

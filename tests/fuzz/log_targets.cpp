@@ -3,6 +3,7 @@
 #include "fuzz/targets.hpp"
 #include "io/logs/message_log.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/log_files.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -84,11 +85,39 @@ void fuzz_table(std::string_view bytes) {
   fuzz_log(read_csv_log, ".csv", bytes);
 }
 
+/// A map.toml, a line of "====", and a table.
+void fuzz_logmap(std::string_view bytes) {
+  constexpr std::string_view kBetween = "====\n";
+  const std::size_t end = bytes.find(kBetween);
+  const bool both = end != std::string_view::npos;
+  const LogFile map(".toml", bytes.substr(0, end));
+  const LogFile table(".csv", both ? bytes.substr(end + kBetween.size()) : "");
+  try {
+    static_cast<void>(read_log_recording(table.path(), map.path()));
+  } catch (const InputError& error) {
+    if (std::string(error.what()).find('\n') != std::string::npos) {
+      throw std::logic_error("two lines");
+    }
+  }
+  try {
+    const LogInspection inspection = inspect_log(table.path());
+    // Whatever columns are called, the map is one: what it lacks is said of the log.
+    const LogFile first("_first.toml", inspection.map);
+    static_cast<void>(read_log_recording(table.path(), first.path()));
+  } catch (const InputError& error) {
+    if (std::string(error.what()).find("no TOML") != std::string::npos) {
+      throw std::logic_error("the first map is no TOML");
+    }
+  }
+}
+
 }  // namespace
 
 const std::map<std::string, Target>& log_targets() {
-  static const std::map<std::string, Target> kTargets = {
-      {"roadrunner", &fuzz_roadrunner}, {"table", &fuzz_table}, {"wpilog", &fuzz_wpilog}};
+  static const std::map<std::string, Target> kTargets = {{"logmap", &fuzz_logmap},
+                                                         {"roadrunner", &fuzz_roadrunner},
+                                                         {"table", &fuzz_table},
+                                                         {"wpilog", &fuzz_wpilog}};
   return kTargets;
 }
 

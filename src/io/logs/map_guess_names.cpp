@@ -6,26 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <regex>
 #include <set>
 
 namespace trussmap {
 namespace {
-
-/// The unit that a name ends in: "Left (mm)", "left [mm]", "left_mm", "left mm".
-std::optional<Unit> unit_in(const std::string& name) {
-  static const std::regex kBrackets(R"([(\[]\s*([^)\]]+?)\s*[)\]]\s*$)");
-  static const std::regex kSuffix(R"([_ ]([A-Za-z]+(?:[_/](?:s|sec))?)$)");
-  std::smatch found;
-  if (std::regex_search(name, found, kBrackets)) return unit_named(found[1].str());
-  static const std::regex kHump(R"([a-z0-9]([A-Z][a-z]+)$)");
-  if (!std::regex_search(name, found, kSuffix) && !std::regex_search(name, found, kHump)) {
-    return std::nullopt;
-  }
-  std::string unit = found[1].str();
-  std::replace(unit.begin(), unit.end(), '_', '/');
-  return unit_named(unit);
-}
 
 bool is_of(const std::optional<Unit>& unit, std::initializer_list<Quantity> quantities) {
   return unit &&

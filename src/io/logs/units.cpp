@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numbers>
+#include <regex>
 #include <vector>
 
 namespace trussmap {
@@ -81,6 +82,20 @@ std::optional<Unit> unit_named(std::string_view name) {
     if (one.name == wanted) return one;
   }
   return std::nullopt;
+}
+
+std::optional<Unit> unit_in(const std::string& name) {
+  static const std::regex kBrackets(R"([(\[]\s*([^)\]]+?)\s*[)\]]\s*$)");
+  static const std::regex kSuffix(R"([_ ]([A-Za-z]+(?:[_/](?:s|sec))?)$)");
+  std::smatch found;
+  if (std::regex_search(name, found, kBrackets)) return unit_named(found[1].str());
+  static const std::regex kHump(R"([a-z0-9]([A-Z][a-z]+)$)");
+  if (!std::regex_search(name, found, kSuffix) && !std::regex_search(name, found, kHump)) {
+    return std::nullopt;
+  }
+  std::string unit = found[1].str();
+  std::replace(unit.begin(), unit.end(), '_', '/');
+  return unit_named(unit);
 }
 
 std::string unit_names(Quantity quantity) {

@@ -21,6 +21,9 @@ struct Unit {
 /// By its name or another spelling ("degrees", "mm/s", "µs"); none where it is unknown.
 [[nodiscard]] std::optional<Unit> unit_named(std::string_view name);
 
+/// The unit that a name ends in: "Left (mm)", "left [mm]", "left_mm", "left mm", "leftMm".
+[[nodiscard]] std::optional<Unit> unit_in(const std::string& name);
+
 /// Names of the units of this quantity, with commas between.
 [[nodiscard]] std::string unit_names(Quantity quantity);
 
