@@ -20,6 +20,9 @@ std::optional<std::int64_t> calendar_time(const std::string& text) {
                                          std::chrono::day(static_cast<unsigned>(number(3)))};
   constexpr int kHours = 24;
   constexpr int kSixty = 60;
+  constexpr int kFirstYear = 1900;  // ns since 1970 must fit in 64 bits
+  constexpr int kLastYear = 2200;
+  if (number(1) < kFirstYear || number(1) > kLastYear) return std::nullopt;
   if (!date.ok() || number(4) >= kHours || number(5) >= kSixty || number(6) > kSixty) {
     return std::nullopt;
   }

@@ -68,7 +68,8 @@ bool is_of_topic(std::string_view path, const LogTopic& topic) {
 
 FieldPath FieldPath::below_topic(std::string_view path, const LogTopic& topic) {
   path.remove_prefix(topic.name.size());
-  if (path.starts_with('/')) path.remove_prefix(1);
+  // A table's column may begin with a slash of its own.
+  if (!topic.table && path.starts_with('/')) path.remove_prefix(1);
   return {path, topic.table};
 }
 
@@ -146,8 +147,9 @@ std::string as_text(FieldRef field) {
   if (field.kind() == FieldKind::integer) return std::to_string(field.field().integer);
   constexpr double kWhole = 1e15;
   const double number = field.number();
-  if (field.kind() == FieldKind::number && number == static_cast<double>(static_cast<std::int64_t>(
-                                                         std::clamp(number, -kWhole, kWhole)))) {
+  if (field.kind() == FieldKind::number && number == number &&
+      number ==
+          static_cast<double>(static_cast<std::int64_t>(std::clamp(number, -kWhole, kWhole)))) {
     return std::to_string(static_cast<std::int64_t>(number));
   }
   return {};

@@ -70,11 +70,16 @@ PlanarAxis planar_axis(const Eigen::Matrix3d& rotation, char axis) {
   return {std::atan2(direction.y(), direction.x()), std::hypot(direction.x(), direction.y())};
 }
 
+void FrameTree::wants(const std::string& frame) {
+  wanted_.insert(plain(frame));
+}
+
 bool FrameTree::add(std::string_view parent, std::string_view child, const FrameSample& sample,
                     bool is_static) {
   constexpr double kUnit = 0.1;  // how far off 1 a quaternion's length may be: floats, rounding
   const double norm = sample.rotation.norm();
-  if (!(std::abs(norm - 1.0) < kUnit) || !sample.translation.allFinite() || parent == child) {
+  if (!(std::abs(norm - 1.0) < kUnit) || !sample.translation.allFinite() ||
+      plain(parent) == plain(child)) {
     return false;
   }
   FrameLink& link = links_[plain(child)];
@@ -109,7 +114,7 @@ bool FrameTree::knows(const std::string& frame) const {
 std::vector<std::string> FrameTree::children_like(std::string_view pattern) const {
   std::vector<std::string> found;
   for (const auto& [child, link] : links_) {
-    if (is_like(child, pattern)) found.push_back(child);
+    if (is_like(child, plain(pattern))) found.push_back(child);
   }
   return found;
 }

@@ -40,7 +40,7 @@ class FrameTree {
  public:
   /// Frames whose chains will be asked for, with * for anything in a name: of the others no more
   /// than needed is kept. None: all.
-  void wants(const std::string& frame) { wanted_.insert(frame); }
+  void wants(const std::string& frame);
 
   /// A child that changes its parent keeps the last one. A rotation that is none is refused: false.
   bool add(std::string_view parent, std::string_view child, const FrameSample& sample,

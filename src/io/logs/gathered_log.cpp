@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <set>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -97,7 +98,11 @@ class Gatherer {
       if (tf_topics_.contains(message.topic.name)) take_frames(message);
       feeds_.take(message);
     };
-    to_.end = read_message_log(log, visit);
+    try {
+      to_.end = read_message_log(log, visit);
+    } catch (const std::invalid_argument& error) {  // of a path below a message
+      throw InputError(map_.file.string(), 0, error.what());
+    }
     feeds_.check(log, to_.end);
     to_.refused = feeds_.refused();
     to_.frames.sort();
@@ -160,6 +165,10 @@ class Gatherer {
     // Its three fields are of one message: those of the topic of x.
     feeds_.add_message(truth.x, truth.line, [this, &truth](const FedMessage& fed) {
       const auto number = [&](const std::string& path) {
+        if (!is_of_topic(path, fed.topic)) {
+          throw InputError(map_.file.string(), truth.line,
+                           "[truth]: " + path + " is of another topic than x, expected the same");
+        }
         const auto field = FieldPath::below_topic(path, fed.topic).find(fed.field);
         return field && field->is_number() ? field->number() : kAbsent;
       };

@@ -12,7 +12,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kElements = 4;      // of a list of numbers that are looked at
+constexpr std::size_t kElements = 4;  // of a list of numbers that are looked at
+constexpr std::size_t kJoints = 256;  // of a list of numbers that are kept: beside joints' names
 constexpr std::size_t kMostFields = 400;  // of a topic
 constexpr std::size_t kMostSteps = 4096;  // of which the median is taken
 constexpr std::uint64_t kAllOf = 50000;   // messages of a topic; of more every so many'th
@@ -35,7 +36,13 @@ std::vector<NamedField> fields_of(FieldRef message) {
   for (const FieldRef& joint : names->children()) {
     for (const char* list : {"position", "velocity"}) {
       const std::string path = std::string(list) + '[' + std::string(joint.field().text) + ']';
-      if (const auto field = FieldPath(path, false).find(message)) found.push_back({path, *field});
+      try {
+        if (const auto field = FieldPath(path, false).find(message)) {
+          found.push_back({path, *field});
+        }
+      } catch (const std::invalid_argument&) {  // a joint whose name no path can have
+        continue;
+      }
     }
   }
   return found;
@@ -70,7 +77,7 @@ class Surveyor {
  public:
   LogSurvey survey(const std::filesystem::path& log) {
     LogVisit visit;
-    visit.elements = kElements;
+    visit.elements = kJoints;
     visit.wanted = [](const LogTopic&) { return true; };
     visit.message = [this](const LogMessage& message) { take(message); };
     const LogEnd end = read_message_log(log, visit);

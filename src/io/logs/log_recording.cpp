@@ -160,6 +160,12 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
   if (!any_read(drive.yaw_rate)) drive.yaw_rate.clear();
   for (auto& [name, signal] : gathered.covariates) {
     signal.finish();
+    if (signal.empty()) {
+      const auto line = std::find_if(map.covariates.begin(), map.covariates.end(),
+                                     [&](const auto& one) { return one.first == name; });
+      throw InputError(map_file.string(), line->second.line,
+                       "covariate " + name + " has no value in the log, expected one or more");
+    }
     Covariate& covariate = drive.covariates.emplace_back(Covariate{name, {}});
     for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
       covariate.values.push_back(signal.held(rows.bounds[k]));

@@ -266,6 +266,7 @@ class TypeGuesser {
 
   void covariates() {
     bool any = false;
+    std::set<std::string> names;
     for (const LogTopicFacts& topic : survey_.topics) {
       const std::string type = short_type(topic.type);
       std::string path;
@@ -278,8 +279,9 @@ class TypeGuesser {
         text_.table("covariates", "what else may matter; a row has the last value before its end");
       }
       any = true;
-      const std::string name = covariate_name(
+      std::string name = covariate_name(
           path == "data" ? topic.name.substr(topic.name.rfind('/') + 1) : topic.name + '_' + path);
+      while (!names.insert(name).second) name += "_2";
       text_.text(name, topic.name + '/' + path);
     }
   }

@@ -14,7 +14,7 @@ namespace trussmap {
 
 class MapText {
  public:
-  void comment(const std::string& text) { text_ += "# " + text + "\n"; }
+  void comment(const std::string& text) { text_ += "# " + one_line(text) + "\n"; }
   void blank() { text_ += "\n"; }
   void table(const std::string& name, const std::string& why = "") { line("[" + name + "]", why); }
   void list(const std::string& name, const std::string& why = "") { line("[[" + name + "]]", why); }
@@ -26,12 +26,21 @@ class MapText {
   }
   void line(const std::string& text, const std::string& why = "") {
     text_ += text;
-    if (!why.empty()) text_ += "   # " + why;
+    if (!why.empty()) text_ += "   # " + one_line(why);
     text_ += '\n';
   }
   [[nodiscard]] const std::string& str() const { return text_; }
 
  private:
+  /// A comment that names a topic or a file ends with its line, whatever they are called.
+  static std::string one_line(std::string text) {
+    for (char& c : text) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte < 0x20U || byte == 0x7FU) c = '?';
+    }
+    return text;
+  }
+
   std::string text_;
 };
 

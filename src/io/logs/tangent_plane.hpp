@@ -4,7 +4,7 @@
 // Latitude and longitude (WGS 84) as metres to the east and to the north of a first one.
 //
 // Exact in the plane that touches the ellipsoid there; a kilometre away the ground is 8 cm below
-// it, which shortens nothing by more than a micrometre.
+// it, which shortens nothing by more than 5 micrometres.
 #pragma once
 
 #include "trussmap/planar.hpp"

@@ -133,7 +133,15 @@ std::vector<std::int64_t> bounds_of(const LogMap& map, const std::vector<NamedSi
   std::vector<std::int64_t> bounds;
   if (map.period > 0.0) {
     const auto period = static_cast<std::int64_t>(std::llround(map.period * kSecond));
-    for (std::int64_t t = from; t <= to && period > 0; t += period) bounds.push_back(t);
+    constexpr std::int64_t kMostRows = 20000000;
+    if (period <= 0 || (to > from && (to - from) / period > kMostRows)) {
+      throw InputError(
+          map.file.string(), 0,
+          fmt::format("[rows] period = {} s gives more than {} rows, expected a longer "
+                      "one",
+                      map.period, kMostRows));
+    }
+    for (std::int64_t t = from; t <= to; t += period) bounds.push_back(t);
   } else {
     for (const std::int64_t t : slowest->times()) {
       if (t >= from && t <= to) bounds.push_back(t);
