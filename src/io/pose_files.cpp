@@ -38,8 +38,8 @@ std::string format_kitti(const std::vector<TimedPose>& poses) {
     const Pose& pose = one.estimate.pose;
     const std::string cosine = csv_number(std::cos(pose.heading));
     const double sine = std::sin(pose.heading);
-    text += cosine + ' ' + csv_number(0.0 - sine) + " 0 " + csv_number(pose.x) + ' ' + csv_number(sine) +
-            ' ' + cosine + " 0 " + csv_number(pose.y) + " 0 0 1 0\n";
+    text += cosine + ' ' + csv_number(0.0 - sine) + " 0 " + csv_number(pose.x) + ' ' +
+            csv_number(sine) + ' ' + cosine + " 0 " + csv_number(pose.y) + " 0 0 1 0\n";
   }
   return text;
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
-#include "io/survey_csv.hpp"
+#include "io/recording_streams.hpp"
 #include "recording/row_variables.hpp"
 #include "recording/well_formed.hpp"
 #include "text/plain_text.hpp"
@@ -191,6 +191,10 @@ std::vector<Sighting> read_sightings(const fs::path& file, const Drive& drive, b
 }
 
 }  // namespace
+
+bool is_covariate_name(std::string_view name) {
+  return is_name(name) && !is_reserved(name);
+}
 
 std::vector<SurveyPoint> read_survey(const fs::path& file) {
   const std::string text = read_file(file);

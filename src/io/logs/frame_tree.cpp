@@ -176,10 +176,8 @@ std::vector<std::int64_t> FrameTree::times(const std::string& parent,
   return {};
 }
 
-/// A robot's joints move a hundred times a second: what is on no chain that is asked for goes.
-void FrameTree::prune() {
-  prune_at_ = 2 * samples_;
-  if (wanted_.empty()) return;
+/// Links on chains from the frames that are wanted.
+std::set<std::string> FrameTree::needed() const {
   std::set<std::string> needed;
   for (const auto& link : links_) {
     const std::string& child = link.first;
@@ -189,9 +187,27 @@ void FrameTree::prune() {
     if (!asked) continue;
     for (const std::string& frame : ancestors(child)) needed.insert(frame);
   }
+  return needed;
+}
+
+std::vector<std::string> FrameTree::lost() const {
+  std::vector<std::string> found;
+  if (pruned_.empty()) return found;
+  for (const std::string& frame : needed()) {
+    if (pruned_.contains(frame)) found.push_back(frame);
+  }
+  return found;
+}
+
+/// A robot's joints move a hundred times a second: what is on no chain that is asked for goes.
+void FrameTree::prune() {
+  prune_at_ = 2 * samples_;
+  if (wanted_.empty()) return;
+  const std::set<std::string> needed = this->needed();
   samples_ = 0;
   for (auto& [child, link] : links_) {
     if (!needed.contains(child) && !link.samples.empty()) {
+      if (!link.is_static && link.samples.size() > 1) pruned_.insert(child);
       link.samples.erase(link.samples.begin(), link.samples.end() - 1);
       link.samples.shrink_to_fit();
     }

@@ -46,6 +46,9 @@ class FrameTree {
   bool add(std::string_view parent, std::string_view child, const FrameSample& sample,
            bool is_static);
 
+  /// Frames that are needed after all, of which samples went before anybody could know.
+  [[nodiscard]] std::vector<std::string> lost() const;
+
   /// After the last add: samples in order of time, of equal times the last.
   void sort();
 
@@ -69,10 +72,12 @@ class FrameTree {
 
  private:
   [[nodiscard]] std::vector<std::string> ancestors(const std::string& frame) const;
+  [[nodiscard]] std::set<std::string> needed() const;
   void prune();
 
   std::map<std::string, FrameLink, std::less<>> links_;  ///< by child
   std::set<std::string> wanted_;
+  std::set<std::string> pruned_;
   std::size_t samples_ = 0;
   std::size_t prune_at_ = 200000;
 };

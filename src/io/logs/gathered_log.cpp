@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/gathered_log.hpp"
 
-#include "io/logs/calendar.hpp"
+#include "io/logs/asked_paths.hpp"
 #include "io/logs/field_path.hpp"
 #include "io/logs/message_feed.hpp"
+#include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <cmath>
@@ -16,24 +17,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Numbers below a message by their paths, NaN where one is absent or none is asked for.
-class Below {
- public:
-  Below(const std::string& path, bool table) : asked_(!path.empty()), path_(path, table) {}
-  [[nodiscard]] double number(FieldRef message) const {
-    if (!asked_) return kAbsent;
-    const std::optional<FieldRef> field = path_.find(message);
-    return field && std::isfinite(field->number()) ? field->number() : kAbsent;
-  }
-  [[nodiscard]] std::optional<FieldRef> field(FieldRef message) const {
-    return asked_ ? path_.find(message) : std::nullopt;
-  }
-
- private:
-  bool asked_;
-  FieldPath path_;
-};
 
 /// "marker_ids[3]" of "../marker_ids[#]": what goes with element 3 in another list of the message.
 std::optional<std::string> beside(const std::string& path, std::size_t number, bool table) {
@@ -67,7 +50,7 @@ class ImuReading {
 
 class Gatherer {
  public:
-  Gatherer(const LogMap& map, GatheredLog& to) : map_(map), to_(to), feeds_(map) {}
+  Gatherer(const LogMap& map, GatheredLog& to) : map_(map), to_(to), feeds_(map), paths_(map) {}
 
   void set_up() {
     for (const auto& [name, signal] : map_.wheels) to_.wheels.emplace_back(name, Signal(signal));
@@ -104,6 +87,7 @@ class Gatherer {
       throw InputError(map_.file.string(), 0, error.what());
     }
     feeds_.check(log, to_.end);
+    paths_.check(log);
     to_.refused = feeds_.refused();
     to_.frames.sort();
   }
@@ -169,8 +153,9 @@ class Gatherer {
           throw InputError(map_.file.string(), truth.line,
                            "[truth]: " + path + " is of another topic than x, expected the same");
         }
-        const auto field = FieldPath::below_topic(path, fed.topic).find(fed.field);
-        return field && field->is_number() ? field->number() : kAbsent;
+        std::string below = path;
+        if (!fed.topic.table) below.erase(0, std::min(fed.topic.name.size() + 1, below.size()));
+        return paths_.number(below, truth.line, fed.topic.table, fed.field);
       };
       const TimedFieldPose pose{fed.t + nanoseconds(truth.clock), truth.unit * number(truth.x),
                                 truth.unit * number(truth.y),
@@ -184,21 +169,23 @@ class Gatherer {
 
   void feed_fixes(const FixMap& fixes) {
     feeds_.add(fixes.topic, fixes.line, [this, &fixes](const FedMessage& fed) {
-      const bool table = fed.topic.table;
+      const auto number = [&](const std::string& path) {
+        return paths_.number(path, fixes.line, fed.topic.table, fed.field);
+      };
       SeenFix fix;
       fix.t = fed.t + nanoseconds(fixes.clock);
-      fix.sd = fixes.sd_unit * Below(fixes.sd, table).number(fed.field);
-      fix.quality = Below(fixes.quality, table).number(fed.field);
+      fix.sd = fixes.sd_unit * number(fixes.sd);
+      fix.quality = number(fixes.quality);
       if (!fixes.x.empty()) {
-        fix.x = fixes.unit * Below(fixes.x, table).number(fed.field);
-        fix.y = fixes.unit * Below(fixes.y, table).number(fed.field);
+        fix.x = fixes.unit * number(fixes.x);
+        fix.y = fixes.unit * number(fixes.y);
       } else if (!fixes.latitude.empty() || fed.field.member("latitude")) {
         const bool named = !fixes.latitude.empty();
         fix.geodetic = true;
-        fix.y = Below(named ? fixes.latitude : "latitude", table).number(fed.field);
-        fix.x = Below(named ? fixes.longitude : "longitude", table).number(fed.field);
-        const double height = Below("altitude", table).number(fed.field);
-        fix.height = std::isfinite(height) ? height : 0.0;
+        fix.y = number(named ? fixes.latitude : "latitude");
+        fix.x = number(named ? fixes.longitude : "longitude");
+        const auto height = fed.field.member("altitude");
+        if (height && std::isfinite(height->number())) fix.height = height->number();
         if (!status_of(fed.field, fix)) return true;
       } else if (const auto pose = pose_of(fed.field)) {
         fix.x = pose->position.x();
@@ -214,7 +201,8 @@ class Gatherer {
   /// NavSatFix: whether it has a fix, how good, and how certain.
   bool status_of(FieldRef message, SeenFix& fix) {
     const auto status = FieldPath("status.status", false).find(message);
-    if (status && status->field().integer < 0) {
+    // Receivers without a fix say 0, 0, which is in the sea.
+    if ((status && status->field().integer < 0) || (fix.x == 0.0 && fix.y == 0.0)) {
       ++to_.lost_fixes;
       return false;
     }
@@ -231,20 +219,20 @@ class Gatherer {
 
   void feed_sightings(const SightingMap& one) {
     if (!one.frames.empty()) {
-      want_frames("/tf");
+      want_frames(one.tf);
       to_.frames.wants(one.frames);
       to_.frames.wants(one.base);
       return;
     }
     if (!one.position.empty()) {
-      want_frames("/tf");
+      want_frames(one.tf);
       to_.frames.wants(one.base);
       if (!one.sensor.empty()) to_.frames.wants(one.sensor);
     }
     feeds_.add(one.topic, one.line,
                [this, &one, before = std::string()](const FedMessage& fed) mutable {
                  if (one.each.empty()) return take_sighting(one, fed, fed.field, before);
-                 const auto list = FieldPath(one.each, fed.topic.table).find(fed.field);
+                 const auto list = paths_.find(one.each, one.line, fed.topic.table, fed.field);
                  if (!list) return false;
                  const std::vector<FieldRef> elements = list->children();
                  for (std::size_t k = 0; k < elements.size(); ++k) {
@@ -263,18 +251,17 @@ class Gatherer {
     seen.map = &map;
     std::string name = map.name;
     if (name.empty()) {
-      const auto field =
-          beside(map.landmark, number, table)
-              ? FieldPath(*beside(map.landmark, number, table), table).find(fed.field)
-              : FieldPath(map.landmark, table).find(at);
+      const auto other = beside(map.landmark, number, table);
+      const auto field = other ? FieldPath(*other, table).find(fed.field)
+                               : paths_.find(map.landmark, map.line, table, at);
       if (!field) return false;
       name = as_text(*field);
     }
-    seen.range = map.range_unit * Below(map.range, table).number(at);
-    seen.bearing = map.bearing_unit * Below(map.bearing, table).number(at);
-    seen.yaw = map.yaw_unit * Below(map.yaw, table).number(at);
+    seen.range = map.range_unit * paths_.number(map.range, map.line, table, at);
+    seen.bearing = map.bearing_unit * paths_.number(map.bearing, map.line, table, at);
+    seen.yaw = map.yaw_unit * paths_.number(map.yaw, map.line, table, at);
     if (map.changes) {
-      const std::string now = fmt::format("{} {} {}", name, seen.range, seen.bearing);
+      const std::string now = fmt::format("{} {} {} {}", name, seen.range, seen.bearing, seen.yaw);
       if (now == before) return true;
       before = now;
     }
@@ -283,7 +270,16 @@ class Gatherer {
       to_.unnamed += name.empty() && !table ? 1U : 0U;
       return true;
     }
+    if (!is_plain_text(name)) {
+      ++to_.unnamed;
+      return true;
+    }
     seen.landmark = map.prefix + name;
+    // A range below 0 is how drivers say that there is none.
+    if (seen.range < 0.0) {
+      ++to_.negative_ranges;
+      return true;
+    }
     // An empty field beside a name: nothing was measured there.
     if (!map.range.empty() && map.bearing.empty() && !std::isfinite(seen.range)) return true;
     if (!map.bearing.empty() && map.range.empty() && !std::isfinite(seen.bearing)) return true;
@@ -292,7 +288,7 @@ class Gatherer {
       return true;
     }
     if (!map.position.empty()) {
-      const auto field = FieldPath(map.position, table).find(at);
+      const auto field = paths_.find(map.position, map.line, table, at);
       const auto pose = field ? pose_of(*field) : std::nullopt;
       if (!pose) return false;
       seen.positioned = true;
@@ -328,6 +324,7 @@ class Gatherer {
   const LogMap& map_;
   GatheredLog& to_;
   MessageFeeds feeds_;
+  AskedPaths paths_;
   std::set<std::string> tf_topics_;
 };
 
@@ -353,11 +350,17 @@ FramePath frame_path(const std::string& path, const FrameTree& frames) {
 }
 
 GatheredLog gather(const std::filesystem::path& log, const LogMap& map) {
-  GatheredLog result;
-  Gatherer gatherer(map, result);
-  gatherer.set_up();
-  gatherer.read(log);
-  return result;
+  std::vector<std::string> lost;
+  for (int pass = 0;; ++pass) {
+    GatheredLog result;
+    for (const std::string& frame : lost) result.frames.wants(frame);
+    Gatherer gatherer(map, result);
+    gatherer.set_up();
+    gatherer.read(log);
+    lost = result.frames.lost();
+    // A frame that turned out to be needed when it had gone: again, and now it is kept.
+    if (lost.empty() || pass > 0) return result;
+  }
 }
 
 }  // namespace trussmap

@@ -68,8 +68,9 @@ struct GatheredLog {
   FrameTree frames;
   std::size_t wrong_poses = 0;  ///< poses and transforms whose quaternions are none
   std::size_t refused = 0;      ///< fields that are not what was expected: texts for numbers
-  std::size_t lost_fixes = 0;   ///< of a receiver that had no fix
-  std::size_t unnamed = 0;      ///< sightings without a landmark's name
+  std::size_t negative_ranges = 0;
+  std::size_t lost_fixes = 0;  ///< of a receiver that had no fix
+  std::size_t unnamed = 0;     ///< sightings without a landmark's name
 };
 
 /// Throws InputError where the log is damaged, and with the map's line where it asks for what the

@@ -160,6 +160,7 @@ class Surveyor {
       }
       facts.parent = frame_of(one);
       facts.child = name;
+      facts.topic = message.topic.name;
       facts.is_static = message.topic.name.ends_with("_static");
       const FieldPose& first = first_[name];
       facts.moves = facts.moves || !pose->position.isApprox(first.position, 1e-9);

@@ -5,7 +5,7 @@
 #include "io/logs/signal_map.hpp"
 #include "io/logs/toml_fields.hpp"
 #include "io/model_tables.hpp"
-#include "io/survey_csv.hpp"
+#include "io/recording_streams.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
@@ -46,9 +46,10 @@ SightingMap sighting_of(const toml::table& node, const std::string& file) {
   one.line = table.line();
   one.frames = table.text("frames");
   one.base = table.text("base", "base_link");
+  one.tf = table.text("tf", "/tf");
   one.prefix = table.text("prefix");
   one.none = table.texts("none");
-  one.clock = table.number("clock", 0.0);
+  one.clock = table.clock();
   one.with_yaw = table.flag("use_yaw", true);
   const std::string axis = table.text("axis", "x");
   if (axis != "x" && axis != "y" && axis != "z") {
@@ -94,7 +95,7 @@ FixMap fixes_of(const toml::table& node, const std::string& file) {
   fixes.quality = table.text("quality");
   fixes.unit = unit_of(table, "unit", "m", {Quantity::length}).si;
   fixes.sd_unit = unit_of(table, "sd_unit", "m", {Quantity::length}).si;
-  fixes.clock = table.number("clock", 0.0);
+  fixes.clock = table.clock();
   if (fixes.x.empty() != fixes.y.empty() || fixes.latitude.empty() != fixes.longitude.empty()) {
     table.fail("has one of two coordinates, expected x and y, or latitude and longitude");
   }
@@ -113,7 +114,7 @@ TruthMap truth_of(const toml::table& node, const std::string& file) {
   truth.unit = unit_of(table, "unit", "m", {Quantity::length}).si;
   truth.heading_unit =
       unit_of(table, "heading_unit", "rad", {Quantity::angle}).si * table.sign("heading_sign");
-  truth.clock = table.number("clock", 0.0);
+  truth.clock = table.clock();
   const bool columns = !truth.x.empty() && !truth.y.empty() && !truth.heading.empty();
   if (truth.pose.empty() != columns) {
     table.fail("needs either a pose, or x, y and heading, expected one of them");
@@ -145,6 +146,13 @@ std::vector<SurveyPoint> survey_of(const toml::table& node, const std::string& f
                         found.size() == 3 ? found[2] : kAbsent});
     }
   }
+  for (std::size_t k = 0; k < survey.size(); ++k) {
+    for (std::size_t other = 0; other < k; ++other) {
+      if (survey[other].landmark == survey[k].landmark) {
+        table.fail("has landmark " + survey[k].landmark + " twice, expected each once");
+      }
+    }
+  }
   table.finish();
   return survey;
 }
@@ -162,8 +170,7 @@ void read_part(const std::string& key, const toml::node& node, const std::string
     map.time = time_of(table(), file);
   } else if (key == "odometry") {
     TomlFields fields(table(), file, "[odometry]");
-    map.odometry = {fields.text("twist"), fields.text("pose"), fields.number("clock", 0.0),
-                    fields.line()};
+    map.odometry = {fields.text("twist"), fields.text("pose"), fields.clock(), fields.line()};
     if (map.odometry.twist.empty() == map.odometry.pose.empty()) {
       fields.fail("needs either a twist or a pose, expected the path of one");
     }
@@ -182,6 +189,12 @@ void read_part(const std::string& key, const toml::node& node, const std::string
     map.yaw_rate = yaw_rate_of(table(), file);
   } else if (key == "covariates") {
     for (const auto& [name, one] : table()) {
+      if (!is_covariate_name(name.str())) {
+        throw InputError(file, name.source().begin.line,
+                         "\"" + std::string(name.str()) +
+                             "\" cannot be a covariate's name, expected a letter, then letters, "
+                             "digits or _, and no variable's name");
+      }
       map.covariates.emplace_back(name.str(), covariate_of(one, file, std::string(name.str())));
     }
   } else if (key == "sightings") {
@@ -212,11 +225,12 @@ void read_part(const std::string& key, const toml::node& node, const std::string
 }
 
 /// What [wheels] states for all, each wheel gets that does not state it itself.
-void share_constants(toml::table& wheels) {
+void share_constants(toml::table& wheels, const Robot& robot) {
   for (auto&& [key, value] : wheels) {
     if (value.is_table()) continue;
     for (auto&& [name, wheel] : wheels) {
-      if (wheel.is_table()) wheel.as_table()->insert(key, value);
+      if (!wheel.is_table() || is_steering_column(robot, std::string(name.str()))) continue;
+      wheel.as_table()->insert(key, value);
     }
   }
 }
@@ -233,8 +247,15 @@ LogMap map_of(toml::table root, const fs::path& path) {
     }
   }
   map.model = model_of(model, file);
-  if (toml::table* wheels = root["wheels"].as_table()) share_constants(*wheels);
+  if (toml::table* wheels = root["wheels"].as_table()) share_constants(*wheels, map.model.robot);
   for (const auto& [key, node] : root) read_part(std::string(key.str()), node, file, map);
+  for (const auto& [name, signal] : map.covariates) {
+    for (const std::string& column : map.model.robot.columns) {
+      if (column != name) continue;
+      throw InputError(file, signal.line,
+                       "covariate " + name + " is called like a wheel, expected another name");
+    }
+  }
   if (map.wheels.empty() == (map.odometry.line == 0)) {
     throw InputError(file, 0,
                      "needs either [odometry] or [wheels.left] and [wheels.right], "

@@ -75,6 +75,7 @@ struct SightingMap {
   double yaw_unit = 1.0;            ///< rad, with the sign
   bool changes = false;             ///< only messages that differ from the one before
 
+  std::string tf = "/tf";         ///< topic of the frames
   std::string prefix;             ///< put before names
   std::vector<std::string> none;  ///< names that mean that nothing is seen
   std::string base = "base_link";

@@ -84,6 +84,10 @@ void add_fixes(const GatheredLog& log, const Clock& clock, Recording& recording,
       fix.y = at.y();
     }
     if (!(fix.sd > 0.0)) fix.sd = kAbsent;
+    if (!recording.fixes.empty() && recording.fixes.back().t == fix.t) {
+      recording.fixes.back() = fix;  // of two at a time the later in the log
+      continue;
+    }
     if (fix.t < start || fix.t > recording.drive.t.back()) {
       ++outside;
     } else {
@@ -120,6 +124,20 @@ void warn_of_clock(const LogMap& map, const GatheredLog& log, LogRecording& resu
   if (map.model.robot.drive == DriveKind::differential && !map.model.robot.wheelbase_stated) {
     result.warnings.push_back(fmt::format("[robot] of {} states no wheelbase: {} m is taken",
                                           map.file.string(), map.model.robot.wheelbase));
+  }
+}
+
+void warn_of_far_fixes(const Recording& recording, LogRecording& result) {
+  constexpr double kFar = 1e5;  // m
+  for (const Fix& one : recording.fixes) {
+    const Fix& first = recording.fixes.front();
+    const double away = std::hypot(one.x - first.x, one.y - first.y);
+    if (away < kFar) continue;
+    result.warnings.push_back(
+        fmt::format("fixes are up to {:.0f} km apart or more: the first or "
+                    "others are wrong",
+                    away / 1000.0));
+    return;
   }
 }
 
@@ -202,11 +220,13 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
         result);
   count(gathered.unnamed, "sightings without a landmark's name left out", result);
   count(gathered.refused, "messages whose field is no number, pose or velocity left out", result);
+  count(gathered.negative_ranges, "ranges below 0 left out", result);
   count(outside_fixes, "fixes before or after the drive left out", result);
   count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
   count(gathered.wrong_poses, "poses without a valid rotation left out", result);
   result.warnings = std::move(rows.warnings);
   warn_of_clock(map, gathered, result);
+  warn_of_far_fixes(recording, result);
   if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
     throw InputError(map_file.string(), 0,
                      "ties the drive to no place: no sighting, fix or truth is within it, expected "

@@ -19,6 +19,7 @@ namespace trussmap {
 struct FrameFacts {
   std::string parent;
   std::string child;
+  std::string topic;
   bool is_static = false;
   std::size_t samples = 0;
   bool moves = false;                                ///< in its parent

@@ -171,6 +171,7 @@ class TypeGuesser {
       text_.blank();
       text_.list("sightings", "each transform to such a frame is a sighting");
       text_.text("frames", pattern);
+      if (one->topic != "/tf") text_.text("tf", one->topic);
       text_.text("base", base_frame(), "the robot's frame: between its wheels, x ahead");
       if (!one->turns) {
         text_.line("use_yaw = false", "it never turns: whoever sees it does not see its direction");

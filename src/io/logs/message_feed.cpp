@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/message_feed.hpp"
 
+#include "io/logs/asked_paths.hpp"
 #include "io/logs/calendar.hpp"
 #include "io/logs/pose_fields.hpp"
 #include "trussmap/error.hpp"
@@ -14,19 +15,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kSecond = 1e9;        // ns
-constexpr double kLargestTime = 9e18;  // ns
-
-/// Paths of its fields, those of the message's first ones.
-std::string listed(FieldRef message) {
-  constexpr std::size_t kMost = 24;
-  std::string text;
-  std::size_t count = 0;
-  for (const NamedField& one : leaves_of(message, 1)) {
-    if (++count > kMost) return text + ", ...";
-    text += (text.empty() ? "" : ", ") + one.path;
-  }
-  return text;
-}
+constexpr double kLargestTime = 4e18;  // ns
 
 }  // namespace
 
@@ -100,12 +89,13 @@ void MessageFeeds::take(const LogMessage& message) {
     }
   }
   if (known->second.empty()) return;
-  const std::int64_t t = time_of(message, message.fields);
+  std::optional<std::int64_t> t;  // of whoever shares the beginning of a path it need not be there
   for (Feed* feed : known->second) {
     const auto field = feed->by_topic.at(message.number).find(message.fields);
-    if (feed->fields.empty()) feed->fields = listed(message.fields);
+    if (feed->fields.empty()) feed->fields = listed_fields(message.fields);
     if (!field) continue;
-    if (feed->take({message.topic, message.fields, *field, t})) {
+    if (!t) t = time_of(message, message.fields);
+    if (feed->take({message.topic, message.fields, *field, *t})) {
       ++feed->taken;
     } else {
       ++feed->refused;
@@ -130,12 +120,14 @@ void MessageFeeds::fail(const Feed& feed, const std::filesystem::path& log,
   const std::string& file = map_->file.string();
   const std::string name = log.string();
   std::string topics;
+  std::size_t named = 0;
   for (const LogTopic& topic : end.topics) {
     if (is_of_topic(feed.path, topic) && !topic.unread.empty()) {
       throw InputError(file, feed.line,
                        fmt::format("{} cannot be read from {}: {}", feed.path, name, topic.unread));
     }
-    topics += (topics.empty() ? "" : ", ") + topic.name;
+    constexpr std::size_t kMost = 24;
+    if (++named <= kMost) topics += (topics.empty() ? "" : ", ") + topic.name;
   }
   if (feed.refused > 0) {
     throw InputError(file, feed.line,

@@ -110,6 +110,9 @@ std::optional<std::int64_t> stamp_of(FieldRef message) {
   const std::optional<FieldRef> nanosec = stamp->member("nanosec");
   if (!sec || !nanosec) return std::nullopt;
   constexpr std::int64_t kSecond = 1000000000;
+  constexpr std::int64_t kLargest = 4000000000;  // s: beyond, nanoseconds overflow
+  if (std::abs(sec->field().integer) > kLargest) return std::nullopt;
+  if (std::abs(nanosec->field().integer) > kLargest) return std::nullopt;
   const std::int64_t t = sec->field().integer * kSecond + nanosec->field().integer;
   if (t == 0) return std::nullopt;
   return t;

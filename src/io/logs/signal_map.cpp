@@ -49,7 +49,7 @@ SignalMap signal_of(TomlFields& table) {
   SignalMap signal;
   signal.line = table.line();
   signal.field = table.needed_text("field");
-  signal.clock = table.number("clock", 0.0);
+  signal.clock = table.clock();
   signal.on_change = table.positive("on_change", 0.0);
   return signal;
 }

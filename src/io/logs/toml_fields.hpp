@@ -58,6 +58,15 @@ class TomlFields {
     }
     return value;
   }
+  /// s that are added to times.
+  double clock() {
+    const double value = number("clock", 0.0);
+    constexpr double kYears = 1e8;
+    if (std::abs(value) > kYears) {
+      fail(*table_->get("clock"), "clock is more than 1e8 s, expected less");
+    }
+    return value;
+  }
   bool flag(const char* key, bool otherwise) {
     const toml::node* node = find(key);
     if (node == nullptr) return otherwise;

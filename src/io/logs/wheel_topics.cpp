@@ -5,6 +5,7 @@
 #include "io/logs/gathered_log.hpp"
 #include "io/logs/log_survey.hpp"
 #include "io/logs/map_guess.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +93,12 @@ std::optional<WheelConstants> wheel_constants(const std::filesystem::path& log,
     map.wheels.emplace_back("", wheel);
   }
   map.odometry.twist = topics.odometry;
-  GatheredLog gathered = gather(log, map);
+  GatheredLog gathered;
+  try {
+    gathered = gather(log, map);
+  } catch (const InputError&) {  // what it lacks a conversion will say
+    return std::nullopt;
+  }
   Signal& left = gathered.wheels[0].second;
   Signal& right = gathered.wheels[1].second;
   left.finish();
