@@ -201,7 +201,7 @@ void run_convert(const ConvertOptions& options) {
     if (!options.out.empty()) {
       throw UsageError("convert --inspect writes a map.toml alone, expected no OUT (--map FILE)");
     }
-    inspect_log_file(in, options.map.empty() ? fs::path("map.toml") : fs::path(options.map));
+    inspect_log_file(in, options.map);
     return;
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");

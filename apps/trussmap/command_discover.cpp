@@ -69,7 +69,7 @@ ordered_json json(const Discovery& result) {
           {"warnings", result.found.warnings}};
 }
 
-void print_steps(const Discovery& result) {
+void print_steps(const Discovery& result, bool noise_found) {
   const bool reckoned = result.steps.front().reckoned_30.has_value();
   TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right,
                    Align::right, Align::right},
@@ -99,7 +99,8 @@ void print_steps(const Discovery& result) {
   }
   fmt::print("\n{}", table_text(table));
   const Diagnosis& last = result.last;
-  if (result.steps.size() > 1 && last.under && last.under->noise.changed()) {
+  const bool anew = noise_found || (last.under && last.under->noise.changed());
+  if (result.steps.size() > 1 && anew) {
     fmt::print("  the noise is estimated anew in every line: chi2 is no measure across them\n");
   }
   if (reckoned) {
@@ -107,13 +108,14 @@ void print_steps(const Discovery& result) {
   }
 }
 
-void print(const Discovery& result) {
+/// `noise_found`: the model found has other noise than the one given.
+void print(const Discovery& result, bool noise_found) {
   fmt::print("{}\n",
              verdict_text(result.consistent ? Mood::good : Mood::bad, verdict_in_words(result)));
   for (const EffectEstimate& one : result.found.effects) {
     fmt::print("  {}: {}\n", one.effect.name, in_words(one.effect, one.sd));
   }
-  print_steps(result);
+  print_steps(result, noise_found);
   for (const DiscoveryStep& step : result.steps) {
     for (const LookAlike& rival : step.look_alikes) {
       fmt::print("  instead of {} it could be: {} ({}), cosine {:.3f}\n", step.added->name,
@@ -186,10 +188,16 @@ void run_discover(const DiscoverCommand& options) {
   }
   files.write();
   told.end();
-  print(result);
+  const bool noise_found = !(result.found.model.noise == input.model.noise);
+  print(result, noise_found);
   if (result.last.under) {
     fmt::print("\n");
-    print_noise(result.last.under->noise);
+    if (noise_found && !result.last.under->noise.changed()) {
+      fmt::print(
+          "Noise is estimated, in an earlier step, and not as stated: the model found has it\n");
+    } else {
+      print_noise(result.last.under->noise);
+    }
   }
   print_budget(budget);
   print_notes(input);

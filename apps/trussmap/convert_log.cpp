@@ -110,12 +110,14 @@ void print_fields(const LogInspection& log) {
 
 void inspect_log_file(const fs::path& log, const fs::path& map) {
   std::error_code ignored;
-  if (fs::exists(map, ignored)) {
+  const bool is_there = fs::exists(map.empty() ? fs::path("map.toml") : map, ignored);
+  if (is_there && !map.empty()) {
     throw UsageError(map.string() +
-                     " is there already, expected another name (--map) for the map to write");
+                     " is there already, expected another name for the map to write");
   }
+  const fs::path to = map.empty() ? fs::path("map.toml") : map;
   const LogInspection inspection = inspect_log(log);
-  write_file(map, inspection.map);
+  if (!is_there) write_file(to, inspection.map);
   fmt::print("{}:\n\n", log.string());
   print_topics(inspection);
   print_frames(inspection);
@@ -124,10 +126,15 @@ void inspect_log_file(const fs::path& log, const fs::path& map) {
     fmt::print("\n{}", warning_text("the log is cut off " + inspection.cut_off +
                                     "; what is before is read"));
   }
+  if (is_there) {
+    fmt::print("\nnot written: {} is there already; a first map: --map ANOTHER.toml\n",
+               to.string());
+    return;
+  }
   fmt::print(
-      "\nwritten: {}. Read it, mend what is wrong, and convert:\n  trussmap convert {} OUT --map "
-      "{}\n",
-      map.string(), log.string(), map.string());
+      "\nwritten: {}. Read it, mend what is wrong, and convert:\n"
+      "  trussmap convert {} OUT --map {}\n",
+      to.string(), log.string(), to.string());
 }
 
 void convert_log(const fs::path& log, const fs::path& out, const fs::path& map) {

@@ -32,7 +32,11 @@ enum class Ordering { automatic, amd, metis, natural, fixed };
 class NotPositiveDefinite : public std::runtime_error {
  public:
   explicit NotPositiveDefinite(int column)
-      : std::runtime_error("the matrix is not positive definite"), column_(column) {}
+      : std::runtime_error(
+            "the problem has no unique solution in numbers (its matrix is not positive definite): "
+            "sizes may be wrong by powers of ten, a column in another unit or a noise far "
+            "too small"),
+        column_(column) {}
   [[nodiscard]] int column() const { return column_; }
 
  private:

@@ -56,6 +56,7 @@ TEST(ConvertLog, MistakesAreOneLineWithWhatToDo) {
   refused("convert " + log + " " + out + ".graphml --map " + map, "named like a map");
   refused("convert " + log + " " + out + " --map " + out + "/none.toml", "none.toml");
   refused("convert --inspect " + log + " --map " + map, "there already");
+  refused("convert --inspect " + out + "/none.mcap", "does not exist");
   refused("convert " + out + "/none.mcap " + out + " --map " + map, "none.mcap");
   EXPECT_FALSE(fs::exists(out)) << "nothing is half-written";
 }

@@ -207,6 +207,39 @@ pose = "/tf:map.base_link"
   ASSERT_FALSE(read.counts.empty());
 }
 
+/// As what is printed says: a misspelt path is no absent reading, and a guess no figure.
+TEST(LogRecording, SuspiciousMapsAreWarnedOf) {
+  std::string table = "t,l,r,g,c,tag,range\n";
+  double heading = 0.0;
+  for (int k = 0; k < 100; ++k) {
+    table += std::to_string(0.1 * k) + "," + std::to_string(-0.01 * k) + "," +
+             std::to_string(0.01 * k) + "," + std::to_string(heading) + ",0,A,2\n";
+    heading += 0.04 * 180.0 / std::numbers::pi;
+  }
+  const std::string map =
+      "time.field = \"t\"\n[robot]\nwheelbase = 0.5   # m; STATE IT\n[wheels]\n"
+      "left.field = \"l\"\nright.field = \"r\"\n[yaw_rate]\nfield = \"g\"\nunit = \"deg\"\n"
+      "[[sightings]]\nlandmark = \"tag\"\nrange = \"range\"\n";
+  const auto warnings = [&](const std::string& from, const std::string& to) {
+    std::string changed = map;
+    if (!from.empty()) changed.replace(changed.find(from), from.size(), to);
+    std::string all;
+    for (const std::string& one : converted(table, changed).warnings) all += one + "\n";
+    return all;
+  };
+  EXPECT_NE(warnings("", "").find("map.toml:3: the figure is a guess still"), std::string::npos);
+  EXPECT_EQ(warnings("   # m; STATE IT", ""), "");
+  EXPECT_NE(warnings("unit = \"deg\"", "unit = \"rad\"").find("gyro turns 57.3 times"),
+            std::string::npos)
+      << warnings("unit = \"deg\"", "unit = \"rad\"");
+  EXPECT_NE(warnings("unit = \"deg\"", "unit = \"deg\"\nsign = -1").find("gyro turns -1 times"),
+            std::string::npos);
+  std::string misspelt = map;
+  misspelt.replace(misspelt.find("range = \"range\""), 15, "range = \"rnage\"");
+  EXPECT_NE(error_of(misspelt, table).find("no message of"), std::string::npos)
+      << error_of(misspelt, table);
+}
+
 /// Latitudes, markers in lists beside each other, ranges.
 TEST(LogRecording, FixesMarkersAndRangesOfABag) {
   const ScratchFolder scratch;

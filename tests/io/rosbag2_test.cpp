@@ -70,11 +70,15 @@ TEST(Rosbag2, CutOffAnywhereIsRefusedInALineOrReadAsFarAsItGoes) {
     EXPECT_NE(log.error.find(".db3: "), std::string::npos) << size;
     EXPECT_EQ(log.error.find('\n'), std::string::npos) << size;
   }
-  EXPECT_EQ(complaint(scratch, scratch.write("cut.db3", whole.substr(0, 20 * 4096))),
-            "cut.db3: cannot be read as a rosbag2 (database disk image is malformed)");
-  EXPECT_EQ(complaint(scratch, scratch.write("cut.db3", whole.substr(0, whole.size() - 9))),
-            "cut.db3: at byte " + std::to_string(whole.size() - 9) +
-                ": ends in the middle of a page of 4096 bytes");
+  EXPECT_EQ(
+      complaint(scratch, scratch.write("cut.db3", whole.substr(0, 20 * 4096))),
+      "cut.db3: cannot be read as a rosbag2 (database disk image is malformed), expected a whole "
+      "database (copy it again, or sqlite3 FILE .recover)");
+  EXPECT_EQ(
+      complaint(scratch, scratch.write("cut.db3", whole.substr(0, whole.size() - 9))),
+      "cut.db3: at byte " + std::to_string(whole.size() - 9) +
+          ": the database is cut off, in the middle of a page of 4096 bytes, expected it whole "
+          "(copy it again, or sqlite3 FILE .recover)");
   EXPECT_EQ(complaint(scratch, scratch.write("cut.db3", "")),
             "cut.db3: is empty, expected the SQLite file of a rosbag2");
   EXPECT_EQ(complaint(scratch, scratch.write("cut.db3", std::string(30840, 'x'))),

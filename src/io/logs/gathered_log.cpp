@@ -83,11 +83,12 @@ class Gatherer {
     };
     try {
       to_.end = read_message_log(log, visit);
+    require_messages(log, to_.end);
     } catch (const std::invalid_argument& error) {  // of a path below a message
       throw InputError(map_.file.string(), 0, error.what());
     }
-    feeds_.check(log, to_.end);
     paths_.check(log);
+    feeds_.check(log, to_.end);
     to_.refused = feeds_.refused();
     to_.frames.sort();
   }

@@ -81,6 +81,7 @@ class Surveyor {
     visit.wanted = [](const LogTopic&) { return true; };
     visit.message = [this](const LogMessage& message) { take(message); };
     const LogEnd end = read_message_log(log, visit);
+    require_messages(log, end);
     LogSurvey result;
     for (std::size_t k = 0; k < end.topics.size(); ++k) {
       TopicState& state = states_[k];

@@ -9,6 +9,7 @@
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -127,7 +128,13 @@ std::vector<SurveyPoint> survey_of(const toml::table& node, const std::string& f
   TomlFields table(node, file, "[survey]");
   std::vector<SurveyPoint> survey;
   const std::string name = table.text("file");
-  if (!name.empty()) survey = read_survey(fs::path(file).parent_path() / name);
+  if (!name.empty()) {
+    try {
+      survey = read_survey(fs::path(file).parent_path() / name);
+    } catch (const InputError& error) {
+      table.fail(*table.find("file"), error.what());
+    }
+  }
   if (const toml::node* landmarks = table.find("landmarks")) {
     if (!landmarks->is_table()) table.fail(*landmarks, "landmarks is no table");
     for (const auto& [key, value] : *landmarks->as_table()) {
@@ -264,6 +271,21 @@ LogMap map_of(toml::table root, const fs::path& path) {
   return map;
 }
 
+/// Lines with a value whose comment still asks for it.
+std::vector<std::size_t> lines_to_state(const std::string& text) {
+  std::vector<std::size_t> found;
+  std::istringstream lines(text);
+  std::string line;
+  for (std::size_t number = 1; std::getline(lines, line); ++number) {
+    const std::size_t comment = line.find('#');
+    const std::size_t mark = line.find("STATE IT");
+    if (mark != std::string::npos && comment < mark && line.find('=') < comment) {
+      found.push_back(number);
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 bool is_steering_column(const Robot& robot, const std::string& column) {
@@ -274,7 +296,9 @@ bool is_steering_column(const Robot& robot, const std::string& column) {
 LogMap read_log_map(const fs::path& file) {
   const std::string text = read_file(file);
   try {
-    return map_of(toml::parse(text), file);
+    LogMap map = map_of(toml::parse(text), file);
+    map.to_state = lines_to_state(text);
+    return map;
   } catch (const toml::parse_error& error) {
     throw InputError(file.string(), error.source().begin.line,
                      "no TOML: " + std::string(error.description()));

@@ -118,7 +118,8 @@ struct LogMap {
   std::optional<FixMap> fixes;
   std::optional<TruthMap> truth;
   std::vector<SurveyPoint> survey;
-  double period = 0.0;  ///< s, of a row; 0: as the wheels come
+  double period = 0.0;                ///< s, of a row; 0: as the wheels come
+  std::vector<std::size_t> to_state;  ///< lines that still ask for a figure
   Model model;
 };
 

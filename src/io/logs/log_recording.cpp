@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -121,9 +123,60 @@ void warn_of_clock(const LogMap& map, const GatheredLog& log, LogRecording& resu
   if (!log.end.cut_off.empty()) {
     result.warnings.push_back("the log is cut off " + log.end.cut_off + "; what is before is read");
   }
+  for (const std::size_t line : map.to_state) {
+    result.warnings.push_back(fmt::format(
+        "{}:{}: the figure is a guess still (STATE IT); take the mark away once it is right",
+        map.file.string(), line));
+  }
   if (map.model.robot.drive == DriveKind::differential && !map.model.robot.wheelbase_stated) {
     result.warnings.push_back(fmt::format("[robot] of {} states no wheelbase: {} m is taken",
                                           map.file.string(), map.model.robot.wheelbase));
+  }
+}
+
+/// How many times as much as the wheels a sensor turns, by least squares over the rows; none where
+/// the wheels hardly turn.
+std::optional<double> turns_as(const Drive& drive, double wheelbase,
+                               const std::function<double(std::size_t)>& turn) {
+  double both = 0.0;
+  double wheels = 0.0;
+  double all = 0.0;
+  for (std::size_t row = 1; row < drive.rows(); ++row) {
+    const double seen = turn(row);
+    if (seen != seen) continue;
+    const double turned = (drive.right[row] - drive.left[row]) / wheelbase;
+    both += seen * turned;
+    wheels += turned * turned;
+    all += std::abs(turned);
+  }
+  constexpr double kEnough = 1.0;  // rad
+  if (!(all > kEnough) || !(wheels > 0.0)) return std::nullopt;
+  return both / wheels;
+}
+
+/// Units and signs are the map's to state: what they cannot be is said here, before anything is
+/// fitted.
+void warn_of_turns(const Drive& drive, double wheelbase, LogRecording& result) {
+  if (drive.left.empty()) return;
+  constexpr double kMost = 3.0;  // times: no effect of a robot does that
+  const auto warn = [&](const char* sensor, const std::optional<double>& times) {
+    if (!times || (*times > 1.0 / kMost && *times < kMost)) return;
+    result.warnings.push_back(
+        fmt::format("the {} turns {:.3g} times as much as the wheels: a unit, a sign or a constant "
+                    "of the wheels "
+                    "is wrong in the map, expected about 1",
+                    sensor, *times));
+  };
+  if (drive.has_gyro()) {
+    warn("gyro", turns_as(drive, wheelbase, [&](std::size_t row) {
+           return drive.yaw_rate[row] * drive.duration(row);
+         }));
+  }
+  if (drive.has_compass()) {
+    warn("compass", turns_as(drive, wheelbase, [&](std::size_t row) {
+           const double turn = drive.heading[row] - drive.heading[row - 1];
+           return turn == turn ? wrap_angle(turn) : kAbsent;
+         }));
   }
 }
 
@@ -227,6 +280,7 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
   result.warnings = std::move(rows.warnings);
   warn_of_clock(map, gathered, result);
   warn_of_far_fixes(recording, result);
+  warn_of_turns(drive, map.model.robot.wheelbase, result);
   if (recording.sightings.empty() && recording.fixes.empty() && recording.truth.empty()) {
     throw InputError(map_file.string(), 0,
                      "ties the drive to no place: no sighting, fix or truth is within it, expected "

@@ -4,6 +4,8 @@
 
 #include "trussmap/error.hpp"
 
+#include <algorithm>
+
 namespace trussmap {
 namespace {
 
@@ -30,12 +32,26 @@ bool is_message_log(const fs::path& path) {
 }
 
 LogEnd read_message_log(const fs::path& path, const LogVisit& visit) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
+    throw InputError(path.string(), 0, "does not exist, expected a log");
+  }
   for (const Format& one : kFormats) {
     if (one.is(path)) return one.read(path, visit);
   }
   throw InputError(path.string(), 0,
                    "is no log that can be read, expected an MCAP file, a rosbag2 (.db3 or its "
                    "folder), a .wpilog, a Road Runner .log or a table (.csv, .tsv, .txt)");
+}
+
+void require_messages(const fs::path& path, const LogEnd& end) {
+  const bool any = std::any_of(end.topics.begin(), end.topics.end(),
+                               [](const LogTopic& topic) { return topic.messages > 0; });
+  if (any) return;
+  throw InputError(path.string(), 0,
+                   "holds no messages" +
+                       (end.cut_off.empty() ? "" : ": it is cut off " + end.cut_off) +
+                       ", expected a log with some");
 }
 
 }  // namespace trussmap

@@ -86,4 +86,7 @@ inline constexpr std::uint64_t kLargestChunk = std::uint64_t{256} << 20U;
 [[nodiscard]] bool is_message_log(const std::filesystem::path& path);
 [[nodiscard]] LogEnd read_message_log(const std::filesystem::path& path, const LogVisit& visit);
 
+/// Throws InputError where a log holds none at all.
+void require_messages(const std::filesystem::path& path, const LogEnd& end);
+
 }  // namespace trussmap

@@ -50,7 +50,9 @@ void check_pages(const fs::path& file, const std::string& shown) {
   std::uintmax_t page = header[16] * 256U + header[17];
   if (page == 1) page = 65536;
   if (page == 0 || size % page == 0) return;
-  fail_at(shown, size, "ends in the middle of a page of " + std::to_string(page) + " bytes");
+  fail_at(shown, size,
+          "the database is cut off, in the middle of a page of " + std::to_string(page) +
+              " bytes, expected it whole (copy it again, or sqlite3 FILE .recover)");
 }
 
 class Database {
@@ -80,7 +82,9 @@ class Database {
     throw InputError(name_, 0, in_a_line(what));
   }
   [[noreturn]] void fail_by_sqlite() const {
-    fail(std::string("cannot be read as a rosbag2 (") + sqlite3_errmsg(base_) + ")");
+    const bool damaged = (sqlite3_errcode(base_) & 0xFF) == SQLITE_CORRUPT;
+    fail(std::string("cannot be read as a rosbag2 (") + sqlite3_errmsg(base_) + ")" +
+         (damaged ? ", expected a whole database (copy it again, or sqlite3 FILE .recover)" : ""));
   }
 
  private:

@@ -117,7 +117,12 @@ class TomlFields {
     throw InputError(file_, node.source().begin.line, where_ + ": " + what);
   }
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(file_, line(), where_ + " " + what);
+    std::string unknown;  // so far: a slip of the pen, most likely
+    for (const auto& [key, node] : *table_) {
+      if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
+      unknown += (unknown.empty() ? " (there is " : ", ") + std::string(key.str());
+    }
+    throw InputError(file_, line(), where_ + " " + what + unknown + (unknown.empty() ? "" : ")"));
   }
 
  private:
