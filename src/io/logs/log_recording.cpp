@@ -232,8 +232,9 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
   for (auto& [name, signal] : gathered.covariates) {
     signal.finish();
     if (signal.empty()) {
+      const std::string& key = name;
       const auto line = std::find_if(map.covariates.begin(), map.covariates.end(),
-                                     [&](const auto& one) { return one.first == name; });
+                                     [&key](const auto& one) { return one.first == key; });
       throw InputError(map_file.string(), line->second.line,
                        "covariate " + name + " has no value in the log, expected one or more");
     }
