@@ -265,7 +265,8 @@ void setup_convert(const Command& app) {
   command
       .add_option(
           "IN", options->in,
-          "A map (.graphml, .g2o, .db), a recording's folder, DIR/RobotN of an MRCLAM data set, an "
+          "A map (.graphml, .g2o, .db), a recording's folder, a log (with --map or --inspect), "
+          "DIR/RobotN of an MRCLAM data set, an "
           "OptiOdom run "
           "..._run-NN.csv, DIR/NAME of ranges to radio beacons, of places that look "
           "alike (TUC SLAM) or of a truck with steering and GPS (Victoria Park), dataset1.csv of a "

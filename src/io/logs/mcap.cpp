@@ -22,6 +22,7 @@
 #include "io/logs/mcap.hpp"
 
 #include "io/logs/byte_reader.hpp"
+#include "io/logs/mcap_records.hpp"
 #include "io/logs/sequential_file.hpp"
 #include "trussmap/error.hpp"
 
@@ -34,23 +35,13 @@ namespace trussmap {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace mcap;
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kNamed = 5;         // bytes of it that say that it is MCAP
 constexpr std::size_t kRecordHeader = 9;  // bytes
 constexpr std::size_t kDataEndSize = kRecordHeader + 4;
 constexpr std::size_t kLargestDefinition = std::size_t{1} << 20U;    // bytes
 constexpr std::size_t kLargestDefinitions = std::size_t{32} << 20U;  // all together
-
-enum Type : std::uint8_t {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kDataEnd = 0x0F
-};
 
 std::string kind_of(std::uint8_t type) {
   switch (type) {

@@ -3,6 +3,7 @@
 #include "io/logs/mcap_write.hpp"
 
 #include "io/logs/little_endian.hpp"
+#include "io/logs/mcap_records.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -14,24 +15,9 @@
 namespace trussmap {
 namespace {
 
-using namespace std::string_view_literals;
+using namespace mcap;
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n"sv;
 constexpr int kLevel = 3;  // zstd's default: what recorders take
-
-enum Opcode : std::uint8_t {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07,
-  kChunkIndex = 0x08,
-  kStatistics = 0x0B,
-  kSummaryOffset = 0x0E,
-  kDataEnd = 0x0F,
-};
 
 /// With its length before it, of 4 bytes: strings, maps, arrays.
 void put_counted(std::string& out, std::string_view bytes) {
