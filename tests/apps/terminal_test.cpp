@@ -195,7 +195,7 @@ TEST(TerminalCommand, IsColouredOnATerminalOnly) {
 TEST(TerminalCommand, TellsHowFarItIs) {
   TRUSSMAP_NEEDS_TERMINAL();
   const ScratchFolder scratch;
-  const std::string command = "discover " + recording(scratch, "6x6");
+  const std::string command = "discover " + recording(scratch, "4x4");
   const std::string seen = on_terminal(command);
   EXPECT_NE(seen.find("looking for what is missing"), std::string::npos) << seen;
   EXPECT_NE(seen.find(" s left"), std::string::npos) << seen;
