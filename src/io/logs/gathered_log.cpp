@@ -83,7 +83,7 @@ class Gatherer {
     };
     try {
       to_.end = read_message_log(log, visit);
-    require_messages(log, to_.end);
+      require_messages(log, to_.end);
     } catch (const std::invalid_argument& error) {  // of a path below a message
       throw InputError(map_.file.string(), 0, error.what());
     }
