@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "io/logs/byte_reader.hpp"
 #include "io/logs/gathered_log.hpp"
 #include "io/logs/seen_landmarks.hpp"
 #include "io/logs/tangent_plane.hpp"
@@ -200,7 +201,9 @@ bool is_log(const fs::path& path) {
   return is_message_log(path);
 }
 
-LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
+namespace {
+
+LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
   const LogMap map = read_log_map(map_file);
   GatheredLog gathered = gather(log, map);
   LogRecording result;
@@ -288,6 +291,21 @@ LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
                      "[[sightings]], [fixes] or [truth]");
   }
   return result;
+}
+
+}  // namespace
+
+LogRecording read_log_recording(const fs::path& log, const fs::path& map_file) {
+  try {
+    return recording_of(log, map_file);
+  } catch (const InputError& error) {
+    // Names of fields and frames are anybody's, line ends and all.
+    const std::string text = error.what();
+    const std::string prefix = InputError(error.file(), error.line(), "").what();
+    if (!text.starts_with(prefix)) throw;
+    throw InputError(error.file(), error.line(),
+                     in_a_line(std::string_view(text).substr(prefix.size())));
+  }
 }
 
 }  // namespace trussmap

@@ -38,7 +38,7 @@ class MapText {
       const auto byte = static_cast<unsigned char>(c);
       if (byte < 0x20U || byte == 0x7FU) c = '?';
     }
-    return text;
+    return valid_utf8(text);
   }
 
   std::string text_;
