@@ -9,6 +9,7 @@
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -153,11 +154,10 @@ std::vector<SurveyPoint> survey_of(const toml::table& node, const std::string& f
                         found.size() == 3 ? found[2] : kAbsent});
     }
   }
-  for (std::size_t k = 0; k < survey.size(); ++k) {
-    for (std::size_t other = 0; other < k; ++other) {
-      if (survey[other].landmark == survey[k].landmark) {
-        table.fail("has landmark " + survey[k].landmark + " twice, expected each once");
-      }
+  std::set<std::string> names;
+  for (const SurveyPoint& one : survey) {
+    if (!names.insert(one.landmark).second) {
+      table.fail("has landmark " + one.landmark + " twice, expected each once");
     }
   }
   table.finish();

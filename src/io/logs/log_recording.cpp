@@ -104,10 +104,7 @@ std::vector<TimedFieldPose> truth_of(const LogMap& map, const GatheredLog& log) 
   if (!map.truth) return {};
   std::vector<TimedFieldPose> truth = log.truth;
   if (is_frame_path(map.truth->pose)) {
-    truth = poses_along(map.truth->pose, log.frames, map, map.truth->line);
-    for (TimedFieldPose& one : truth) {
-      one.t += static_cast<std::int64_t>(std::llround(map.truth->clock * kSecond));
-    }
+    truth = poses_along(map.truth->pose, log.frames, map, map.truth->line, map.truth->clock);
   }
   std::stable_sort(truth.begin(), truth.end(),
                    [](const TimedFieldPose& a, const TimedFieldPose& b) { return a.t < b.t; });

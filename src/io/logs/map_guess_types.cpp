@@ -14,16 +14,15 @@ const std::vector<std::string> kPlaceWords{"landmark", "code",    "tag",   "rfid
                                            "qr",       "station", "marker"};
 const std::vector<std::string> kBeaconWords{"uwb", "beacon", "anchor", "tag", "radio", "/range/"};
 
-bool varies(const LogTopicFacts& topic, const std::string& path) {
-  const auto found = std::find_if(topic.fields.begin(), topic.fields.end(),
-                                  [&](const LogFieldFacts& one) { return one.path == path; });
-  return found != topic.fields.end() && found->largest > found->least;
-}
-
 const LogFieldFacts* field_of(const LogTopicFacts& topic, const std::string& path) {
   const auto found = std::find_if(topic.fields.begin(), topic.fields.end(),
                                   [&](const LogFieldFacts& one) { return one.path == path; });
   return found == topic.fields.end() ? nullptr : &*found;
+}
+
+bool varies(const LogTopicFacts& topic, const std::string& path) {
+  const LogFieldFacts* field = field_of(topic, path);
+  return field != nullptr && field->largest > field->least;
 }
 
 class TypeGuesser {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/wheel_rows.hpp"
 
+#include "io/logs/message_feed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
 
@@ -14,6 +15,11 @@ namespace trussmap {
 namespace {
 
 constexpr std::int64_t kSecond = 1000000000;  // ns
+
+/// Named left and right, and not columns of their own.
+bool has_two_wheels(const Robot& robot) {
+  return robot.drive == DriveKind::differential && robot.columns.empty();
+}
 
 struct NamedSignal {
   std::string name;
@@ -79,7 +85,7 @@ std::vector<NamedSignal> wheels_of(std::vector<TimedFieldPose> poses, double whe
 
 std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRows& rows) {
   const Robot& robot = map.model.robot;
-  const bool two = robot.drive == DriveKind::differential && robot.columns.empty();
+  const bool two = has_two_wheels(robot);
   const std::vector<std::string> expected =
       two ? std::vector<std::string>{"left", "right"} : robot.columns;
   if (map.odometry.line > 0) {
@@ -92,10 +98,8 @@ std::vector<NamedSignal> all_wheels(const LogMap& map, GatheredLog& log, WheelRo
     if (!map.odometry.twist.empty()) return wheels_of(log.twists, robot.wheelbase, rows.warnings);
     std::vector<TimedFieldPose> poses = log.odometry;
     if (is_frame_path(map.odometry.pose)) {
-      poses = poses_along(map.odometry.pose, log.frames, map, map.odometry.line);
-      for (TimedFieldPose& one : poses) {
-        one.t += static_cast<std::int64_t>(std::llround(map.odometry.clock * kSecond));
-      }
+      poses =
+          poses_along(map.odometry.pose, log.frames, map, map.odometry.line, map.odometry.clock);
     }
     return wheels_of(std::move(poses), robot.wheelbase);
   }
@@ -132,7 +136,7 @@ std::vector<std::int64_t> bounds_of(const LogMap& map, const std::vector<NamedSi
   }
   std::vector<std::int64_t> bounds;
   if (map.period > 0.0) {
-    const auto period = static_cast<std::int64_t>(std::llround(map.period * kSecond));
+    const auto period = nanoseconds(map.period);
     constexpr std::int64_t kMostRows = 20000000;
     if (period <= 0 || (to > from && (to - from) / period > kMostRows)) {
       throw InputError(
@@ -172,7 +176,7 @@ void warn_of_gaps(const std::vector<std::int64_t>& bounds, std::vector<std::stri
 }  // namespace
 
 std::vector<TimedFieldPose> poses_along(const std::string& path, const FrameTree& frames,
-                                        const LogMap& map, std::size_t line) {
+                                        const LogMap& map, std::size_t line, double clock) {
   const FramePath names = frame_path(path, frames);
   std::string known;
   constexpr std::size_t kMost = 20;
@@ -191,8 +195,8 @@ std::vector<TimedFieldPose> poses_along(const std::string& path, const FrameTree
   for (const std::int64_t t : frames.times(names.parent, names.child)) {
     const auto transform = frames.transform(names.parent, names.child, t);
     if (!transform) continue;
-    poses.push_back({t, transform->translation().x(), transform->translation().y(),
-                     planar_axis(transform->rotation(), 'x').angle});
+    poses.push_back({t + nanoseconds(clock), transform->translation().x(),
+                     transform->translation().y(), planar_axis(transform->rotation(), 'x').angle});
   }
   if (poses.empty()) {
     throw InputError(map.file.string(), line,
@@ -223,8 +227,7 @@ WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
                      "them at the same times");
   }
   warn_of_gaps(rows.bounds, rows.warnings);
-  const bool two =
-      map.model.robot.drive == DriveKind::differential && map.model.robot.columns.empty();
+  const bool two = has_two_wheels(map.model.robot);
   for (std::size_t w = 0; w < wheels.size(); ++w) {
     const bool steers = !two && is_steering_column(map.model.robot, wheels[w].name);
     std::vector<double> travels;

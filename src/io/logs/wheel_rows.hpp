@@ -28,10 +28,10 @@ struct WheelRows {
 /// Throws InputError where wheels are missing, or share no stretch of two rows.
 [[nodiscard]] WheelRows wheel_rows(const LogMap& map, GatheredLog& log);
 
-/// Poses along /tf:parent.child, in order of time. Throws InputError where the frames are not
-/// joined, or do not move.
+/// Poses along /tf:parent.child, in order of time, `clock` (s) added to it. Throws InputError where
+/// the frames are not joined, or do not move.
 [[nodiscard]] std::vector<TimedFieldPose> poses_along(const std::string& path,
                                                       const FrameTree& frames, const LogMap& map,
-                                                      std::size_t line);
+                                                      std::size_t line, double clock);
 
 }  // namespace trussmap
