@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace trussmap {
 
 std::string format_poses(const std::vector<TimedPose>& poses) {
@@ -26,8 +28,8 @@ std::string format_tum(const std::vector<TimedPose>& poses) {
   for (const TimedPose& one : poses) {
     const Pose& pose = one.estimate.pose;
     const double half = 0.5 * wrap_angle(pose.heading);
-    text += csv_number(one.t) + ' ' + csv_number(pose.x) + ' ' + csv_number(pose.y) + " 0 0 0 " +
-            csv_number(std::sin(half)) + ' ' + csv_number(std::cos(half)) + '\n';
+    text += fmt::format("{} {} {} 0 0 0 {} {}\n", csv_number(one.t), csv_number(pose.x),
+                        csv_number(pose.y), csv_number(std::sin(half)), csv_number(std::cos(half)));
   }
   return text;
 }
@@ -38,8 +40,8 @@ std::string format_kitti(const std::vector<TimedPose>& poses) {
     const Pose& pose = one.estimate.pose;
     const std::string cosine = csv_number(std::cos(pose.heading));
     const double sine = std::sin(pose.heading);
-    text += cosine + ' ' + csv_number(0.0 - sine) + " 0 " + csv_number(pose.x) + ' ' +
-            csv_number(sine) + ' ' + cosine + " 0 " + csv_number(pose.y) + " 0 0 1 0\n";
+    text += fmt::format("{} {} 0 {} {} {} 0 {} 0 0 1 0\n", cosine, csv_number(0.0 - sine),
+                        csv_number(pose.x), csv_number(sine), cosine, csv_number(pose.y));
   }
   return text;
 }
