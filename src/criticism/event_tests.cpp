@@ -4,6 +4,7 @@
 
 #include "criticism/event_scores.hpp"
 #include "criticism/single_events.hpp"
+#include "estimation/fitted_rows.hpp"
 #include "fit/fit_projection.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/multiple_tests.hpp"
@@ -30,13 +31,13 @@ void add_left_out(const FitState& fit, const RecordingSystem& system, std::vecto
   if (fit.adjustment.left_out.empty()) return;
   RecordingSystem whole(fit.problem, fit.columns.border);
   whole.linearise(fit.adjustment.state, fit.adjustment.coefficients);
+  const FittedRows fitted(system);
   for (const int left_out : fit.adjustment.left_out) {
     const std::size_t k = idx(left_out);
     const Measurement& one = fit.problem.measurements[k];
-    const Eigen::MatrixXd J = whole.transposed_rows(k);
     const Eigen::VectorXd r = whole.residuals().segment(whole.first_row(k), one.rows);
     const Eigen::MatrixXd R =
-        Eigen::MatrixXd::Identity(one.rows, one.rows) + J.transpose() * system.solve(J);
+        Eigen::MatrixXd::Identity(one.rows, one.rows) + fitted.covariance(whole, k);
     Ranked event;
     event.test.kind =
         one.kind == MeasurementKind::survey ? EventKind::landmark : EventKind::sighting;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/data_snooping.hpp"
 
+#include "estimation/fitted_rows.hpp"
 #include "estimation/recording_system.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
@@ -32,13 +33,12 @@ void test_against_others(const Eigen::VectorXd& r, const Eigen::MatrixXd& R,
   result.p_value = chi2_p_value(result.statistic, result.checked);
 }
 
-/// `rows` has the measurement at full weight, `fit` is factorised.
-CheckedMeasurement check(const RecordingSystem& fit, const RecordingSystem& rows,
+/// `rows` has the measurement at full weight.
+CheckedMeasurement check(const FittedRows& fit, const RecordingSystem& rows,
                          const Measurement& one, std::size_t k, bool left_out) {
   CheckedMeasurement result;
   result.measurement = static_cast<int>(k);
-  const Eigen::MatrixXd J = rows.transposed_rows(k);
-  const Eigen::MatrixXd predicted = J.transpose() * fit.solve(J);
+  const Eigen::MatrixXd predicted = fit.covariance(rows, k);
   const Eigen::VectorXd r = rows.residuals().segment(rows.first_row(k), one.rows);
   const Eigen::MatrixXd one_all = Eigen::MatrixXd::Identity(one.rows, one.rows);
   // Of a measurement that had no part in the fit the prediction's spread adds to its own.
@@ -75,13 +75,14 @@ std::vector<CheckedMeasurement> snoop(const RecordingProblem& problem,
   system.set_weights(weights);
   system.linearise(adjustment.state, adjustment.coefficients);
   system.factorise();
+  const FittedRows fitted(system);
   RecordingSystem whole(problem, border);  // rows of what was left out, with their full weight
   if (!adjustment.left_out.empty()) whole.linearise(adjustment.state, adjustment.coefficients);
   std::vector<CheckedMeasurement> result;
   result.reserve(problem.measurements.size());
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const RecordingSystem& rows = left_out[k] ? whole : system;
-    result.push_back(check(system, rows, problem.measurements[k], k, left_out[k]));
+    result.push_back(check(fitted, rows, problem.measurements[k], k, left_out[k]));
   }
   return result;
 }

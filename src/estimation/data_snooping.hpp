@@ -34,7 +34,7 @@ struct CheckedMeasurement {
 };
 
 /// Every measurement, in the problem's order; those left out are tested against the fit without
-/// them. One factorisation, and a solve per measurement.
+/// them. One factorisation and one inverse of its fronts.
 [[nodiscard]] std::vector<CheckedMeasurement> snoop(const RecordingProblem& problem,
                                                     const EffectParameters& border,
                                                     const RecordingAdjustment& adjustment);

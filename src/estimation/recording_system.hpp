@@ -96,9 +96,14 @@ class RecordingSystem {
   [[nodiscard]] Eigen::MatrixXd solve_nodes(const Eigen::MatrixXd& b) const {
     return normal_.solve(b);
   }
+  /// A^-1 B: by how much the nodes go the other way where a coefficient is one more. Call after
+  /// factorise.
+  [[nodiscard]] const Eigen::MatrixXd& nodes_by_coefficients() const { return A_inverse_B_; }
   [[nodiscard]] int rows() const { return rows_; }
-  /// Where a measurement's rows begin in r and M.
-  [[nodiscard]] int first_row(std::size_t measurement) const { return first_row_[measurement]; }
+  /// Where a measurement's rows begin in r and M; of one past the last, where those of all end.
+  [[nodiscard]] int first_row(std::size_t measurement) const {
+    return measurement < first_row_.size() ? first_row_[measurement] : measured_rows_;
+  }
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const Eigen::MatrixXd& border() const { return M_; }
   /// Squared whitened error of each measurement, as if all weights were 1; of one with heavy tails

@@ -10,7 +10,7 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
                              const RecordingSystem& system, const Eigen::MatrixXd& nuisance)
     : problem_(problem),
       system_(system),
-      inverse_(system.normal_equations().matrix()),
+      fitted_(system),
       left_out_(problem.measurements.size(), false) {
   for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
   const Eigen::MatrixXd& M = system.border();
@@ -39,16 +39,7 @@ Eigen::MatrixXd FitProjection::own_block(std::size_t measurement) const {
   const Measurement& one = problem_.measurements[measurement];
   Eigen::MatrixXd own = Eigen::MatrixXd::Identity(one.rows, one.rows);
   if (left_out_[measurement]) return own;
-  const BlockSystem& normal = system_.normal_equations();
-  const std::vector<RecordingSystem::NodeRows> links = system_.node_rows(measurement);
-  for (const RecordingSystem::NodeRows& a : links) {
-    for (const RecordingSystem::NodeRows& b : links) {
-      own -= a.rows *
-             inverse_.block(normal.offset(a.node), normal.size(a.node), normal.offset(b.node),
-                            normal.size(b.node)) *
-             b.rows.transpose();
-    }
-  }
+  own -= fitted_.by_nodes(system_, measurement);
   const auto Q = Q_.middleRows(system_.first_row(measurement), one.rows);
   own -= Q * Q.transpose();
   return 0.5 * (own + own.transpose());

@@ -7,13 +7,11 @@
 //                                Q   orthonormal columns of the coefficients fitted, less their
 //                                    projection on J, and of nuisance columns
 //
-// A measurement's own block P_kk costs no solve: its nodes are neighbours in A, whose inverse is
-// known there (truss/selected_inverse.hpp).
+// A measurement's own block P_kk costs no solve (estimation/fitted_rows.hpp).
 #pragma once
 
-#include "estimation/recording_system.hpp"
+#include "estimation/fitted_rows.hpp"
 #include "fit/fit_state.hpp"
-#include "linalg/selected_inverse.hpp"
 
 #include <vector>
 
@@ -40,7 +38,7 @@ class FitProjection {
  private:
   const RecordingProblem& problem_;
   const RecordingSystem& system_;
-  SelectedInverse inverse_;
+  FittedRows fitted_;
   std::vector<bool> left_out_;
   Eigen::MatrixXd Q_;
 };

@@ -150,8 +150,17 @@ void BlockSystem::solve_in_place(Eigen::VectorXd& x) {
 Eigen::MatrixXd BlockSystem::solve(const Eigen::MatrixXd& b) const {
   if (kernel_ == Kernel::cholmod) return cholmod_.solve(b);
   Eigen::MatrixXd x = b;
-  for (Eigen::Index c = 0; c < x.cols(); ++c) frontal_.solve_in_place(x.col(c));
+  if (x.cols() == 1) {
+    frontal_.solve_in_place(x.col(0));
+  } else {
+    frontal_.solve_columns(x);
+  }
   return x;
+}
+
+FrontalInverse BlockSystem::inverse() const {
+  if (kernel_ != Kernel::frontal) throw std::logic_error("CHOLMOD's factor keeps no fronts");
+  return frontal_.inverse();
 }
 
 Eigen::MatrixXd BlockSystem::inverse_blocks() const {

@@ -66,6 +66,10 @@ class BlockSystem {
   /// of columns offset ... offset+size-1. Call after factorise. Cost: about two factorisations.
   [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
 
+  /// A^-1 between nodes that are coupled, and of each with itself; of Kernel::frontal alone
+  /// (std::logic_error). Call after factorise; not to be used once this system is gone.
+  [[nodiscard]] FrontalInverse inverse() const;
+
   [[nodiscard]] double log_determinant() const;
   [[nodiscard]] double reciprocal_condition() const;
 

@@ -269,6 +269,74 @@ TRUSSMAP_VERSIONS void solve_backward(const double* panel, int rows, int width, 
   }
 }
 
+// The right sides, row by row, are columns to BLAS: `count` high.
+TRUSSMAP_VERSIONS void forward_small(const double* panel, int rows, int width, double* x,
+                                     int count) {
+  for (int j = 0; j < width; j += kBlock) {
+    const int n = std::min(kBlock, width - j);
+    subtract_product(x + at(0, j, count), count, x, count, panel + j, rows, 1, count, n, j);
+    for (int c = j; c < j + n; ++c) {
+      double* own = x + at(0, c, count);
+      for (int q = j; q < c; ++q) {
+        const double factor = panel[at(c, q, rows)];
+        const double* before = x + at(0, q, count);
+        for (int i = 0; i < count; ++i) own[i] -= before[i] * factor;
+      }
+      const double scale = 1.0 / panel[at(c, c, rows)];
+      for (int i = 0; i < count; ++i) own[i] *= scale;
+    }
+  }
+  for (int j = width; j < rows; j += kBlock) {
+    subtract_product(x + at(0, j, count), count, x, count, panel + j, rows, 1, count,
+                     std::min(kBlock, rows - j), width);
+  }
+}
+
+TRUSSMAP_VERSIONS void backward_small(const double* panel, int rows, int width, double* x,
+                                      int count) {
+  int end = width;
+  while (end > 0) {
+    const int n = (end - 1) % kBlock + 1;
+    const int j = end - n;
+    subtract_product(x + at(0, j, count), count, x + at(0, end, count), count,
+                     panel + at(end, j, rows), 1, rows, count, n, rows - end);
+    for (int c = end - 1; c >= j; --c) {
+      double* own = x + at(0, c, count);
+      for (int q = c + 1; q < end; ++q) {
+        const double factor = panel[at(q, c, rows)];
+        const double* after = x + at(0, q, count);
+        for (int i = 0; i < count; ++i) own[i] -= after[i] * factor;
+      }
+      const double scale = 1.0 / panel[at(c, c, rows)];
+      for (int i = 0; i < count; ++i) own[i] *= scale;
+    }
+    end = j;
+  }
+}
+
+void solve_forward_many(const double* panel, int rows, int width, double* x, int count) {
+  if (!is_large(rows, width)) return forward_small(panel, rows, width, x, count);
+  const double one = 1.0;
+  const double minus = -1.0;
+  const int height = rows - width;
+  dtrsm_("R", "L", "T", "N", &count, &width, &one, panel, &rows, x, &count);
+  if (height == 0) return;
+  dgemm_("N", "T", &count, &height, &width, &minus, x, &count, panel + width, &rows, &one,
+         x + at(0, width, count), &count);
+}
+
+void solve_backward_many(const double* panel, int rows, int width, double* x, int count) {
+  if (!is_large(rows, width)) return backward_small(panel, rows, width, x, count);
+  const double one = 1.0;
+  const double minus = -1.0;
+  const int height = rows - width;
+  if (height > 0) {
+    dgemm_("N", "N", &count, &width, &height, &minus, x + at(0, width, count), &count,
+           panel + width, &rows, &one, x, &count);
+  }
+  dtrsm_("R", "L", "N", "N", &count, &width, &one, panel, &rows, x, &count);
+}
+
 void invert_front(double* panel, int rows, int width, double* inverse, double* space) {
   if (is_large(rows, width)) {
     invert_large(panel, rows, width, inverse, space);

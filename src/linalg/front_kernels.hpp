@@ -14,6 +14,11 @@ inline std::ptrdiff_t at(int row, int column, int leading) {
   return row + static_cast<std::ptrdiff_t>(column) * leading;
 }
 
+/// Numbers in a matrix.
+inline std::size_t area(int rows, int columns) {
+  return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+}
+
 /// Partial Cholesky factorisation. `panel`: rows x width, of which the triangle on and below the
 /// diagonal is read and becomes L. `update`, (rows - width) square: the lower triangle loses
 /// L21 L21'. Returns the column that is not positive, -1 if all are.
@@ -23,6 +28,11 @@ int eliminate(double* panel, int rows, int width, double* update);
 /// x_1 := L11^-T (x_1 - L21' x_2).
 void solve_forward(const double* panel, int rows, int width, double* x);
 void solve_backward(const double* panel, int rows, int width, double* x);
+
+/// The same for `count` right sides at once, a multiple of 8: x holds them row by row, `count`
+/// numbers each. A side's digits do not depend on what the others are.
+void solve_forward_many(const double* panel, int rows, int width, double* x, int count);
+void solve_backward_many(const double* panel, int rows, int width, double* x, int count);
 
 /// `inverse`, rows square and symmetric, holds the inverse of the remaining rows at its lower
 /// right; the rest of it is found from the panel (L, which is spoilt). `space`: rows x width.

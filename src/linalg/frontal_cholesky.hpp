@@ -30,6 +30,8 @@
 
 namespace trussmap {
 
+class FrontalInverse;
+
 class FrontalCholesky {
  public:
   FrontalCholesky() = default;
@@ -43,10 +45,16 @@ class FrontalCholesky {
 
   /// A x = b; `x` holds b before and the solution after. Call after factorise.
   void solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const;
+  /// A X = B likewise, many columns at once; a column's digits do not depend on the others.
+  void solve_columns(Eigen::MatrixXd& x) const;
 
   /// Diagonal blocks of A^-1: column k of the result is unknown k's, its rows those of the
   /// unknowns of its node, as many as the largest node has (the rest zero).
   [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
+
+  /// A^-1 where L has entries, kept: as many numbers as L has. Call after factorise; it is to be
+  /// used no longer than this factorisation lives.
+  [[nodiscard]] FrontalInverse inverse() const;
 
   [[nodiscard]] double log_determinant() const;
   /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
@@ -55,6 +63,8 @@ class FrontalCholesky {
   [[nodiscard]] double stored() const { return static_cast<double>(stored_); }
 
  private:
+  friend class FrontalInverse;
+
   struct Run {  ///< consecutive rows that are consecutive in the parent's front as well
     int from, to, length;
   };
@@ -78,6 +88,10 @@ class FrontalCholesky {
   void assemble(const Part& front, const SparseMatrix& lower);
   void add_update(const Part& child, const Part& front);
   void copy_rows(const Part& front, const double* parent, int above, double* inverse) const;
+  /// From the root down: `visit` gets each front and its whole inverse, rows square.
+  template <typename Visit>
+  void descend(const Visit& visit) const;
+  void solve_some(Eigen::Ref<Eigen::MatrixXd> x) const;
   [[nodiscard]] double* update_of(const Part& front) {
     return waiting_[static_cast<std::size_t>(front.depth % 2)].get() + front.update;
   }
@@ -95,6 +109,22 @@ class FrontalCholesky {
   // of its children.
   std::array<std::unique_ptr<double[]>, 2> waiting_;
   std::array<std::size_t, 2> waiting_size_{};
+};
+
+/// Entries of A^-1, A in the order of the front tree.
+class FrontalInverse {
+ public:
+  /// rows x columns of them, from (row, column) on, within one node each: nodes that the matrix
+  /// couples, or one with itself. std::out_of_range where L has no entry.
+  [[nodiscard]] Eigen::MatrixXd block(int row, int rows, int column, int columns) const;
+
+ private:
+  friend class FrontalCholesky;
+  explicit FrontalInverse(const FrontalCholesky& factor);
+
+  const FrontalCholesky& factor_;
+  std::vector<int> front_;             ///< of each unknown
+  std::unique_ptr<double[]> entries_;  ///< the fronts' first columns, as L's are stored
 };
 
 }  // namespace trussmap
