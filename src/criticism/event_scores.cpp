@@ -97,7 +97,7 @@ class Scorer {
   void solve(const std::vector<SingleEvent>& events, std::vector<std::size_t>& waiting,
              Eigen::Index& columns, std::vector<Scored>& result) const {
     const BlockSystem& normal = system_.normal_equations();
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(normal.unknowns(), columns);
+    std::vector<Eigen::Triplet<double>> right;
     Eigen::MatrixXd nuisance = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
     Eigen::VectorXd whole = Eigen::VectorXd::Zero(columns);
@@ -110,8 +110,13 @@ class Scorer {
           const Eigen::MatrixXd& M = part.rows;
           const int first = system_.first_row(k);
           for (const RecordingSystem::NodeRows& link : system_.node_rows(k)) {
-            right.block(normal.offset(link.node), at, link.rows.cols(), count) +=
-                link.rows.transpose() * M;
+            const Eigen::MatrixXd block = link.rows.transpose() * M;
+            for (Eigen::Index c = 0; c < block.cols(); ++c) {
+              for (Eigen::Index r = 0; r < block.rows(); ++r) {
+                right.emplace_back(normal.offset(link.node) + static_cast<int>(r),
+                                   static_cast<int>(at + c), block(r, c));
+              }
+            }
           }
           g.segment(at, count) += M.transpose() * r_.segment(first, M.rows());
           whole.segment(at, count) += M.colwise().squaredNorm();
@@ -121,16 +126,14 @@ class Scorer {
         at += count;
       }
     }
-    const Eigen::MatrixXd x = system_.solve_nodes(right);
+    const Eigen::MatrixXd explained = normal.inverse_products(right, static_cast<int>(columns));
     at = 0;
     for (const std::size_t e : waiting) {
       const SingleEvent& event = events[e];
       const Eigen::Index count = width(event);
       const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
       const auto Q = nuisance.middleCols(at, all);
-      const Eigen::MatrixXd S = gram(event) -
-                                right.middleCols(at, all).transpose() * x.middleCols(at, all) -
-                                Q.transpose() * Q;
+      const Eigen::MatrixXd S = gram(event) - explained.block(at, at, all, all) - Q.transpose() * Q;
       for (Eigen::Index own = 0; own < all; own += count) {
         result[e].places.push_back(
             judge(g.segment(at + own, count), S.block(own, own, count, count),

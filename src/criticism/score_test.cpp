@@ -14,12 +14,16 @@ namespace trussmap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kBatch = 64;  // columns at a time
+constexpr Eigen::Index kBatch = 4'000'000;  // numbers in the columns that are worked on at once
 constexpr double kQuick = 1.0;       // s of driving at a time
 constexpr double kShows = 0.05;      // p
 
+void take_out(const Eigen::MatrixXd& present, Eigen::MatrixXd& M) {
+  if (present.cols() > 0) M.noalias() -= present * (present.transpose() * M);
+}
+
 Eigen::MatrixXd free_of(const Eigen::MatrixXd& present, Eigen::MatrixXd M) {
-  if (present.cols() > 0) M -= present * (present.transpose() * M);
+  take_out(present, M);
   return M;
 }
 
@@ -61,7 +65,10 @@ ScoreTest::ScoreTest(const FitState& fit)
 }
 
 Eigen::MatrixXd ScoreTest::free_of_map(const Eigen::MatrixXd& M) const {
-  return M - clean_system_->times(clean_system_->solve_nodes(clean_system_->transposed_times(M)));
+  Eigen::MatrixXd left = M;
+  clean_system_->subtract_times(clean_system_->solve_nodes(clean_system_->transposed_times(M)),
+                                left);
+  return left;
 }
 
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {
@@ -196,7 +203,7 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
     std::vector<Eigen::MatrixXd> parts;
     Eigen::Index count = 0;
     std::size_t next = first;
-    while (next < candidates.size() && (next == first || count < kBatch)) {
+    while (next < candidates.size() && (next == first || count < batch())) {
       parts.push_back(builder.columns(candidates[next]));
       count += parts.back().cols();
       ++next;
@@ -208,19 +215,24 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
       at += part.cols();
     }
     const Eigen::MatrixXd nodes = system.solve_nodes(system.transposed_times(M));
-    const Eigen::MatrixXd left = free_of(present_, M - system.times(nodes));
+    system.subtract_times(nodes, M);
+    take_out(present_, M);
     at = 0;
     for (std::size_t k = first; k < next; ++k) {
       Eigen::MatrixXd& own = parts[k - first];
       const Eigen::Index shapes = own.cols();
       scores.push_back(score_of(candidates[k], builder.largest(candidates[k]), std::move(own),
-                                left.middleCols(at, shapes)));
+                                M.middleCols(at, shapes)));
       scores.back().landmarks = -landmark_rows(nodes.middleCols(at, shapes));
       at += shapes;
     }
     first = next;
   }
   return scores;
+}
+
+Eigen::Index ScoreTest::batch() const {
+  return std::clamp<Eigen::Index>(kBatch / std::max<Eigen::Index>(1, residuals_.size()), 8, 64);
 }
 
 double ScoreTest::joint_score(const std::vector<Effect>& effects) const {

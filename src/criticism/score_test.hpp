@@ -66,6 +66,9 @@ class ScoreTest {
   [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,
                                         Resolution resolution = Resolution::exact) const;
 
+  /// Columns that are worked on at once: whoever asks for about as many at a time keeps no more.
+  [[nodiscard]] Eigen::Index batch() const;
+
   /// The chi^2 that adding all of these jointly would take away, without priors.
   [[nodiscard]] double joint_score(const std::vector<Effect>& effects) const;
 

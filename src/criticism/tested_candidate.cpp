@@ -11,7 +11,6 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kChunk = 48;  // candidates
 constexpr double kLargestPriorSd = 3.0;
 constexpr double kNoEvidence = -1e300;
 
@@ -65,12 +64,18 @@ void adjust_p_values(std::vector<Tested>& tested, int tried) {
 void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidates,
                   Resolution resolution,
                   const std::function<void(std::size_t candidate, Score& score)>& visit) {
-  for (std::size_t first = 0; first < candidates.size(); first += kChunk) {
-    const std::size_t end = std::min(candidates.size(), first + kChunk);
+  const std::size_t sessions = tests.context().recordings().size();
+  const auto batch = static_cast<std::size_t>(tests.batch());
+  for (std::size_t first = 0; first < candidates.size();) {
     std::vector<Effect> effects;
-    for (std::size_t k = first; k < end; ++k) effects.push_back(candidates[k].effect);
+    std::size_t columns = 0;
+    for (std::size_t k = first; k < candidates.size() && columns < batch; ++k) {
+      effects.push_back(candidates[k].effect);
+      columns += effects.back().shape.size() * (effects.back().per_session ? sessions : 1);
+    }
     std::vector<Score> scores = tests.test(effects, resolution);
-    for (std::size_t k = first; k < end; ++k) visit(k, scores[k - first]);
+    for (std::size_t k = 0; k < scores.size(); ++k) visit(first + k, scores[k]);
+    first += effects.size();
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/trends.hpp"
 
+#include "criticism/tested_candidate.hpp"
 #include "effects/place_patterns.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "recording/row_variables.hpp"
@@ -159,58 +160,72 @@ bool is_its_own_noise(const Kind& kind, const Variable& variable) {
          (variable.name == kTurnSense || variable.name == kSignedTurnRate);
 }
 
-double rms_of(const std::vector<double>& coefficients,
-              const std::vector<std::vector<std::vector<double>>>& values) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (std::size_t s = 0; !values.empty() && s < values.front().size(); ++s) {
-    for (std::size_t row = 0; row < values.front()[s].size(); ++row) {
-      double g = 0.0;
-      for (std::size_t k = 0; k < values.size(); ++k) g += coefficients[k] * values[k][s][row];
-      squares += g * g;
-      count += 1.0;
-    }
+/// Mean over all rows of f f', f the shapes' values: a trend of coefficients a is sqrt(a' G a) in
+/// size (rms).
+Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes, const ShapeContext& context) {
+  const auto count = static_cast<Eigen::Index>(shapes.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count, count);
+  std::vector<std::vector<std::vector<double>>> values;
+  for (const Shape& shape : shapes) {
+    values.push_back(context.values(shape, ShapeContext::Instant::middle));
   }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  double rows = 0.0;
+  for (std::size_t s = 0; s < context.recordings().size(); ++s) {
+    const auto of = [&](Eigen::Index k) {
+      const std::vector<double>& f = values[idx(k)][s];
+      return Eigen::Map<const Eigen::VectorXd>(f.data(), static_cast<Eigen::Index>(f.size()));
+    };
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) sums(i, j) += of(i).dot(of(j));
+    }
+    rows += static_cast<double>(of(0).size());
+  }
+  return Eigen::MatrixXd(sums.selfadjointView<Eigen::Lower>()) / std::max(1.0, rows);
 }
 
 }  // namespace
 
 std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
-  std::vector<Trend> trends;
-  std::vector<Effect> effects;
+  const std::vector<Kind> kinds = kinds_of(fit);
   const std::vector<Variable> variables = variables_of(fit);
-  for (const Kind& kind : kinds_of(fit)) {
-    for (const Variable& variable : variables) {
-      if (is_its_own_noise(kind, variable)) continue;
-      Trend trend;
-      trend.kind = kind.name;
-      trend.against = variable.name;
-      trend.effect.name = kind.name + " against " + variable.name;
-      trend.effect.channel = kind.channel;
-      trend.effect.shape = variable.shapes;
-      trend.unit = facts_of(kind.channel).unit;
-      effects.push_back(trend.effect);
-      trends.push_back(std::move(trend));
+  // Variable by variable, so that its shapes are evaluated once; listed kind by kind.
+  std::vector<std::vector<Trend>> found(kinds.size());
+  for (const Variable& variable : variables) {
+    std::vector<Candidate> candidates;
+    std::vector<std::size_t> of;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      if (is_its_own_noise(kinds[k], variable)) continue;
+      candidates.emplace_back();
+      Effect& effect = candidates.back().effect;
+      effect.name = kinds[k].name + " against " + variable.name;
+      effect.channel = kinds[k].channel;
+      effect.shape = variable.shapes;
+      of.push_back(k);
     }
+    const Eigen::MatrixXd products = mean_products(variable.shapes, tests.context());
+    visit_scores(tests, candidates, Resolution::exact, [&](std::size_t k, const Score& score) {
+      if (score.dof == 0) return;
+      Trend trend;
+      trend.kind = kinds[of[k]].name;
+      trend.against = variable.name;
+      trend.effect = candidates[k].effect;
+      trend.effect.coefficients = score.coefficients;
+      trend.unit = facts_of(trend.effect.channel).unit;
+      trend.score = score.score;
+      trend.dof = score.dof;
+      trend.p_value = score.p_value;
+      const Eigen::Map<const Eigen::VectorXd> a(score.coefficients.data(), products.cols());
+      trend.size = std::sqrt(std::max(0.0, a.dot(products * a)));
+      found[of[k]].push_back(std::move(trend));
+    });
   }
-  const std::vector<Score> scores = tests.test(effects);
   std::vector<double> p_values;
   std::vector<Trend> seen;
-  for (std::size_t k = 0; k < trends.size(); ++k) {
-    if (scores[k].dof == 0) continue;
-    Trend& trend = trends[k];
-    trend.score = scores[k].score;
-    trend.dof = scores[k].dof;
-    trend.p_value = scores[k].p_value;
-    trend.effect.coefficients = scores[k].coefficients;
-    std::vector<std::vector<std::vector<double>>> values;
-    for (const Shape& shape : trend.effect.shape) {
-      values.push_back(tests.context().values(shape, ShapeContext::Instant::middle));
+  for (std::vector<Trend>& of_kind : found) {
+    for (Trend& trend : of_kind) {
+      p_values.push_back(trend.p_value);
+      seen.push_back(std::move(trend));
     }
-    trend.size = rms_of(trend.effect.coefficients, values);
-    p_values.push_back(trend.p_value);
-    seen.push_back(std::move(trend));
   }
   const std::vector<double> adjusted = holm(p_values);
   for (std::size_t k = 0; k < seen.size(); ++k) seen[k].p_adjusted = adjusted[k];

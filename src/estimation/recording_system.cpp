@@ -367,27 +367,31 @@ Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) c
 
 Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, nodes.cols());
+  subtract_times(nodes, result);
+  return -result;
+}
+
+void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const {
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    auto part = result.middleRows(first_row_[k], one.rows);
+    auto part = rows.middleRows(first_row_[k], one.rows);
     for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
       if (node < 0 || normal_.size(node) == 0) continue;
       const int size = normal_.size(node);
-      part += J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
+      part -= J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
     }
     for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
       const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
-      part += J_[k].states[t].head(one.rows) * nodes.row(at);
+      part -= J_[k].states[t].head(one.rows) * nodes.row(at);
     }
   }
   for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
     const NoiseState& state = problem_.noise_states[k];
-    auto part = result.row(state_row(k));
-    part = nodes.row(normal_.offset(state_node(static_cast<int>(k)))) / state.sd;
+    auto part = rows.row(state_row(k));
+    part -= nodes.row(normal_.offset(state_node(static_cast<int>(k)))) / state.sd;
     if (state.previous < 0) continue;
-    part -= state.keep / state.sd * nodes.row(normal_.offset(state_node(state.previous)));
+    part += state.keep / state.sd * nodes.row(normal_.offset(state_node(state.previous)));
   }
-  return result;
 }
 
 Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const {

@@ -112,6 +112,8 @@ class RecordingSystem {
   /// J'v and J x, J as linearised.
   [[nodiscard]] Eigen::MatrixXd transposed_times(const Eigen::MatrixXd& rows) const;
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
+  /// rows -= J nodes.
+  void subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const;
   /// J's part of a measurement by the nodes that it touches: nodes of normal_equations().
   struct NodeRows {
     int node = -1;

@@ -14,7 +14,8 @@ namespace {
 
 using Instant = ShapeContext::Instant;
 
-constexpr std::size_t kValuesKept = 30'000'000;  // numbers
+constexpr std::size_t kValuesKept = 16'000'000;  // numbers, of shapes
+constexpr std::size_t kBasesKept = 32'000'000;   // of channels
 
 /// Shape and session (-1: all) of each of an effect's coefficients.
 struct Part {
@@ -54,6 +55,11 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
                              const EffectParameters& border, const Eigen::VectorXd& offsets,
                              const RecordingState& state, const std::vector<double>& weights)
     : context_(context), segment_rows_(std::make_shared<std::vector<Row>>()) {
+  std::size_t count = 0;
+  for (const Measurement& one : problem.measurements) {
+    if (is_driven(one.kind)) count += problem.segments[one.source].size();
+  }
+  segment_rows_->reserve(count);
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
@@ -151,6 +157,7 @@ RowVariables ColumnBuilder::thinned(std::size_t session, Instant at) const {
 const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
   const auto found = bases_.find(channel);
   if (found != bases_.end()) return found->second;
+  if ((bases_.size() + 1) * 4 * training_segments_.size() > kBasesKept) bases_.clear();
   Eigen::Matrix4Xd basis =
       Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(training_segments_.size()));
   for (const Segment& segment : segments_) {
@@ -173,7 +180,7 @@ const ColumnBuilder::Values& ColumnBuilder::values(const Shape& shape, Instant a
   const auto key = std::make_pair(shape, at);
   const auto found = values_.find(key);
   if (found != values_.end()) return found->second;
-  if (values_.size() * training_segments_.size() > kValuesKept) values_.clear();
+  if ((values_.size() + 1) * training_segments_.size() > kValuesKept) values_.clear();
   const Values& f = values_.emplace(key, evaluated(shape, at)).first->second;
   std::vector<double>& largest = largest_[key];
   largest.clear();

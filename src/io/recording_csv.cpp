@@ -128,6 +128,10 @@ Drive read_drive(const fs::path& file) {
                      std::to_string(drive.rows()) + (drive.rows() == 1 ? " row" : " rows") +
                          ", expected two at least (the first interval is as long as the second)");
   }
+  for (auto* column : {&drive.t, &drive.left, &drive.right, &drive.heading, &drive.yaw_rate}) {
+    column->shrink_to_fit();
+  }
+  for (Covariate& one : drive.covariates) one.values.shrink_to_fit();
   return drive;
 }
 

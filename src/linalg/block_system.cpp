@@ -163,6 +163,14 @@ FrontalInverse BlockSystem::inverse() const {
   return frontal_.inverse();
 }
 
+Eigen::MatrixXd BlockSystem::inverse_products(const std::vector<Eigen::Triplet<double>>& b,
+                                              int columns) const {
+  if (kernel_ == Kernel::frontal) return frontal_.inverse_products(b, columns);
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(unknowns_, columns);
+  for (const Eigen::Triplet<double>& one : b) B(one.row(), one.col()) += one.value();
+  return B.transpose() * cholmod_.solve(B);
+}
+
 Eigen::MatrixXd BlockSystem::inverse_blocks() const {
   if (kernel_ == Kernel::frontal) return frontal_.inverse_blocks();
   const SelectedInverse inverse(matrix_);

@@ -62,6 +62,11 @@ class BlockSystem {
   void solve_in_place(Eigen::VectorXd& x);
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
 
+  /// B' A^-1 B, of columns with few entries each: (row, column, value), those of one place are
+  /// added up. Call after factorise. Cost: the fronts from the entries up to the root.
+  [[nodiscard]] Eigen::MatrixXd inverse_products(const std::vector<Eigen::Triplet<double>>& b,
+                                                 int columns) const;
+
   /// Diagonal blocks of A^-1, the covariances of all nodes: the node's stands in rows 0 ... size-1
   /// of columns offset ... offset+size-1. Call after factorise. Cost: about two factorisations.
   [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;

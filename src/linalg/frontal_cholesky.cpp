@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -236,6 +238,48 @@ void FrontalCholesky::solve_some(Eigen::Ref<Eigen::MatrixXd> x) const {
     const double* from = sides.data() + c;
     for (Eigen::Index r = 0; r < x.rows(); ++r) to[r] = from[r * count];
   }
+}
+
+std::size_t FrontalCholesky::front_of(int unknown) const {
+  const auto after =
+      std::upper_bound(parts_.begin(), parts_.end(), unknown,
+                       [](int value, const Part& front) { return value < front.unknown; });
+  return idx(after - parts_.begin()) - 1;
+}
+
+/// |L^-1 B|^2, front by front: what a front leaves for the rows above waits for its parent.
+Eigen::MatrixXd FrontalCholesky::inverse_products(const std::vector<Eigen::Triplet<double>>& b,
+                                                  int columns) const {
+  const int count = (columns + 7) / 8 * 8;
+  std::map<std::size_t, std::vector<double>> reached;  // rows x count of a front, row by row
+  const auto sides_of = [&](std::size_t f) -> std::vector<double>& {
+    std::vector<double>& sides = reached[f];
+    if (sides.empty()) sides.assign(area(parts_[f].rows, count), 0.0);
+    return sides;
+  };
+  for (const Eigen::Triplet<double>& one : b) {
+    const std::size_t f = front_of(one.row());
+    sides_of(f)[idx(at(one.col(), one.row() - parts_[f].unknown, count))] += one.value();
+  }
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count, count);
+  while (!reached.empty()) {
+    const auto first = reached.begin();  // whose children are all done
+    const Part& front = parts_[first->first];
+    std::vector<double> sides = std::move(first->second);
+    reached.erase(first);
+    solve_forward_many(panels_.get() + front.panel, front.rows, front.width, sides.data(), count);
+    const Eigen::Map<const Eigen::MatrixXd> Y(sides.data(), count, front.width);
+    products.selfadjointView<Eigen::Lower>().rankUpdate(Y);
+    if (front.height() == 0) continue;
+    std::vector<double>& above = sides_of(idx(front.parent));
+    for (int k = front.runs_begin; k < front.runs_end; ++k) {
+      const Run& run = runs_[idx(k)];
+      const double* from = sides.data() + at(0, front.width + run.from, count);
+      double* to = above.data() + at(0, run.to, count);
+      for (std::size_t q = 0; q < area(run.length, count); ++q) to[q] += from[q];
+    }
+  }
+  return Eigen::MatrixXd(products.selfadjointView<Eigen::Lower>()).topLeftCorner(columns, columns);
 }
 
 double FrontalCholesky::log_determinant() const {

@@ -48,6 +48,11 @@ class FrontalCholesky {
   /// A X = B likewise, many columns at once; a column's digits do not depend on the others.
   void solve_columns(Eigen::MatrixXd& x) const;
 
+  /// B' A^-1 B, of columns with few entries each: (row, column, value), those of one place are
+  /// added up. Cost: the fronts from the entries up to the root, once for up to 64 columns.
+  [[nodiscard]] Eigen::MatrixXd inverse_products(const std::vector<Eigen::Triplet<double>>& b,
+                                                 int columns) const;
+
   /// Diagonal blocks of A^-1: column k of the result is unknown k's, its rows those of the
   /// unknowns of its node, as many as the largest node has (the rest zero).
   [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
@@ -82,6 +87,7 @@ class FrontalCholesky {
   };
 
   void number_rows(const FrontTree& tree);
+  [[nodiscard]] std::size_t front_of(int unknown) const;
   void list_children();
   void find_runs();
   void place_updates();
