@@ -37,8 +37,7 @@ std::string missing_effect(const FitState& fit, const ScoreTest& tests, double l
 }  // namespace
 
 Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
-                   const CompareOptions& options, const ScoreTest& tests,
-                   const std::optional<std::string>& known_missing) {
+                   const CompareOptions& options, const ScoreTest& tests, KnownOfFit known) {
   const FitState& state = *fit.state;
   Comparison result;
   result.chi2 = fit.chi2;
@@ -59,17 +58,21 @@ Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit
   result.residuals = residuals_by_source(state.problem, checked);
   result.outliers = find_outliers(state, checked, tests.dispersion(), options.level);
   result.lacks = lacks_of(recordings, fit.model.robot, fit.options);
-  result.held_out = predict_held_out(recordings, fit, options.legs);
+  result.held_out =
+      known.held_out ? std::move(*known.held_out) : predict_held_out(recordings, fit, options.legs);
   result.objection = misfit_of(result.p_value, result.trends, options.level);
   if (result.objection != Objection::none) return result;
-  result.missing = known_missing ? *known_missing : missing_effect(state, tests, options.level);
+  result.missing = known.missing ? *known.missing : missing_effect(state, tests, options.level);
   if (!result.missing.empty()) result.objection = Objection::effect;
   return result;
 }
 
 Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
                    const CompareOptions& options) {
-  return compare(recordings, fit, options, ScoreTest(*fit.state));
+  // Before the tests, so that what either needs for a while is not there at once.
+  KnownOfFit known;
+  known.held_out = predict_held_out(recordings, fit, options.legs);
+  return compare(recordings, fit, options, ScoreTest(*fit.state), std::move(known));
 }
 
 Comparison compare(const std::vector<Recording>& recordings, const Model& model,

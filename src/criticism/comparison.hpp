@@ -13,10 +13,16 @@
 
 namespace trussmap {
 
-/// `tests` are of this fit. `known_missing` spares the search for a missing effect: its name, empty
-/// where none is missing.
+/// What need not be found anew.
+struct KnownOfFit {
+  std::optional<std::string> missing =
+      {};  ///< name of the missing effect, empty where there is none
+  std::optional<HeldOut> held_out = {};
+};
+
+/// `tests` are of this fit.
 [[nodiscard]] Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit,
                                  const CompareOptions& options, const ScoreTest& tests,
-                                 const std::optional<std::string>& known_missing = {});
+                                 KnownOfFit known = {});
 
 }  // namespace trussmap

@@ -39,8 +39,8 @@ class Diagnostician {
         fit_(fit),
         state_(*fit.state),
         options_(options),
-        tests_(state_),
         legs_(recordings, state_, fitter_options(fit.options), options.legs),
+        tests_(state_),
         search_(state_, tests_, {options.level, options.most_missing}, &legs_) {}
 
   DiagnosisRun run() {
@@ -269,8 +269,8 @@ class Diagnostician {
   const ModelFit& fit_;
   const FitState& state_;
   const DiagnoseOptions& options_;
+  HeldOutLegs legs_;  // before the tests: the largest of what is needed only for a while
   ScoreTest tests_;
-  HeldOutLegs legs_;
   EffectSearch search_;
   std::vector<std::vector<LookAlike>> look_alikes_;  ///< of each that is missing
   Diagnosis result_;

@@ -27,7 +27,7 @@ CompareOptions compare_options(const DiagnoseOptions& options) {
 ModelEvidence model_evidence(const std::vector<Recording>& recordings, const ModelFit& fit,
                              const ScoreTest& tests, const CompareOptions& options,
                              const std::optional<std::string>& known_missing = {}) {
-  return {compare(recordings, fit, options, tests, known_missing), fitted_map(fit)};
+  return {compare(recordings, fit, options, tests, {known_missing, {}}), fitted_map(fit)};
 }
 
 std::vector<TrendEvidence> trend_evidence(const Comparison& comparison, const FitState& fit,

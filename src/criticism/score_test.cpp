@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kBatch = 4'000'000;  // numbers in the columns that are worked on at once
-constexpr double kQuick = 1.0;       // s of driving at a time
-constexpr double kShows = 0.05;      // p
+constexpr double kQuick = 1.0;              // s of driving at a time
+constexpr double kShows = 0.05;             // p
 
 void take_out(const Eigen::MatrixXd& present, Eigen::MatrixXd& M) {
   if (present.cols() > 0) M.noalias() -= present * (present.transpose() * M);

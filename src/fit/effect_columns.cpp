@@ -54,30 +54,17 @@ RowVariables event_variables(const Recording& recording, const Robot& robot,
 
 ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
                            const std::vector<SessionPath>& paths)
-    : recordings_(recordings), robot_(robot) {
-  for (std::size_t s = 0; s < recordings.size(); ++s) {
-    const Recording& one = recordings[s];
-    const int session = static_cast<int>(s);
-    missing_.push_back(paths[s].missing);
-    excess_.push_back(paths[s].excess);
-    middles_.push_back(
-        row_variables(one.drive, robot.wheelbase, paths[s].start, paths[s].ends, session));
-    ends_.push_back(
-        instant_variables(one.drive, robot.wheelbase, one.drive.t, paths[s].ends, session));
-    sightings_.push_back(event_variables(one, robot, paths[s], one.sightings, session));
-    truths_.push_back(event_variables(one, robot, paths[s], one.truth, session));
-    fixes_.push_back(event_variables(one, robot, paths[s], one.fixes, session));
-  }
-}
+    : recordings_(recordings), robot_(robot), paths_(paths) {}
 
 RowTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
   const Drive& drive = recordings_[session].drive;
   RowTravel travel = row_travel(drive, row, robot_.wheelbase);
-  if (missing_[session].empty()) return travel;
-  Vector2 lacks = missing_[session][row];
-  if (travel.gyro_reads && !excess_[session].empty()) {
+  const SessionPath& path = paths_[session];
+  if (path.missing.empty()) return travel;
+  Vector2 lacks = path.missing[row];
+  if (travel.gyro_reads && !path.excess.empty()) {
     // The noise of an excess is the wheels' in part, and the gyro's for the rest.
-    const double excess = excess_[session][row];
+    const double excess = path.excess[row];
     travel.gyro_turn += lacks[1] - (1.0 - travel.gyro_share) * excess;
     lacks += excess * Vector2(travel.gyro_along, travel.gyro_share);
   }
@@ -87,19 +74,29 @@ RowTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
 }
 
 const RowVariables& ShapeContext::variables(std::size_t session, Instant at) const {
-  switch (at) {
-    case Instant::middle:
-      return middles_[session];
-    case Instant::end:
-      return ends_[session];
-    case Instant::sighting:
-      return sightings_[session];
-    case Instant::truth:
-      return truths_[session];
-    case Instant::fix:
-      break;
-  }
-  return fixes_[session];
+  const auto key = std::make_pair(session, at);
+  const auto found = variables_.find(key);
+  if (found != variables_.end()) return found->second;
+  const Recording& one = recordings_[session];
+  const SessionPath& path = paths_[session];
+  const double wheelbase = robot_.wheelbase;
+  const int number = static_cast<int>(session);
+  const auto made = [&]() -> RowVariables {
+    switch (at) {
+      case Instant::middle:
+        return row_variables(one.drive, wheelbase, path.start, path.ends, number);
+      case Instant::end:
+        return instant_variables(one.drive, wheelbase, one.drive.t, path.ends, number);
+      case Instant::sighting:
+        return event_variables(one, robot_, path, one.sightings, number);
+      case Instant::truth:
+        return event_variables(one, robot_, path, one.truth, number);
+      case Instant::fix:
+        break;
+    }
+    return event_variables(one, robot_, path, one.fixes, number);
+  };
+  return variables_.emplace(key, made()).first->second;
 }
 
 std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instant at) const {

@@ -20,7 +20,9 @@
 #include "recording/row_variables.hpp"
 #include "trussmap/channel.hpp"
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -52,7 +54,8 @@ struct EffectColumns {
 /// What shapes may speak of, for all sessions.
 class ShapeContext {
  public:
-  /// Keeps references to the recordings.
+  /// Keeps references to recordings and paths. Variables are made when first asked for, so that it
+  /// is no object for several threads at once.
   ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
                const std::vector<SessionPath>& paths);
 
@@ -70,9 +73,8 @@ class ShapeContext {
  private:
   const std::vector<Recording>& recordings_;
   Robot robot_;
-  std::vector<std::vector<Vector2>> missing_;  ///< per session and row: travel, turn
-  std::vector<std::vector<double>> excess_;    ///< likewise, of the gyro; empty: none
-  std::vector<RowVariables> middles_, ends_, sightings_, truths_, fixes_;
+  const std::vector<SessionPath>& paths_;
+  mutable std::map<std::pair<std::size_t, Instant>, RowVariables> variables_;
 };
 
 /// One column per coefficient: a channel with a given shape, acting in one session (-1: in all).

@@ -25,6 +25,8 @@ HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitStat
   steps_ = predictor.take_steps();
   legs_ = predictor.take_legs();
   problem_ = std::move(trained.problem);
+  problem_.segments = {};
+  problem_.gyro_weights = {};
   int rows = 0;
   for (const Measurement& one : problem_.measurements) {
     first_row_.push_back(rows);
