@@ -14,20 +14,24 @@ namespace {
 
 /// Of each row, by random signs: E[z' R z] over the rows of a source is the trace of R there.
 Eigen::VectorXd redundancies(const RecordingSystem& system) {
-  constexpr Eigen::Index kProbes = 48;
-  const Eigen::Index rows = system.rows();
+  constexpr int kBatches = 3;
+  constexpr Eigen::Index kProbes = 16;  // at once
   std::mt19937_64 random(1);
-  Eigen::MatrixXd probes(rows, kProbes);
-  for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
   const Eigen::Index unknowns = system.normal_equations().unknowns();
   const Eigen::MatrixXd& M = system.border();
-  Eigen::MatrixXd right(unknowns + M.cols(), kProbes);
-  right.topRows(unknowns) = system.transposed_times(probes);
-  right.bottomRows(M.cols()) = M.transpose() * probes;
-  const Eigen::MatrixXd x = system.solve(right);
-  const Eigen::MatrixXd left =
-      probes - system.times(x.topRows(unknowns)) - M * x.bottomRows(M.cols());
-  return probes.cwiseProduct(left).rowwise().mean();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(system.rows());
+  for (int batch = 0; batch < kBatches; ++batch) {
+    Eigen::MatrixXd probes(system.rows(), kProbes);
+    for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
+    Eigen::MatrixXd right(unknowns + M.cols(), kProbes);
+    right.topRows(unknowns) = system.transposed_times(probes);
+    right.bottomRows(M.cols()) = M.transpose() * probes;
+    const Eigen::MatrixXd x = system.solve(right);
+    Eigen::MatrixXd left = probes - M * x.bottomRows(M.cols());
+    system.subtract_times(x.topRows(unknowns), left);
+    sum += probes.cwiseProduct(left).rowwise().sum();
+  }
+  return sum / (kBatches * kProbes);
 }
 
 }  // namespace

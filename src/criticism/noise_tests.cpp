@@ -18,7 +18,9 @@ namespace trussmap {
 namespace {
 
 constexpr Eigen::Index kProbes = 48;
+constexpr Eigen::Index kAtOnce = 16;  // columns, of either
 constexpr Eigen::Index kDraws = 128;
+static_assert(kDraws % kAtOnce == 0);
 constexpr double kLeastRedundancy = 1e-6;
 constexpr double kWorthFitting = 0.01;  // p
 constexpr double kLeastDrive = 0.1;     // m
@@ -73,10 +75,18 @@ LawScore score_of(const NoiseLaw& law, const RecordingProblem& problem,
   }
   LawScore result;
   if (expected <= kLeastRedundancy * whole) return result;
-  const Eigen::MatrixXd once = P.times(law_times(V, problem, system, projected_probes));
-  const double count = static_cast<double>(projected_probes.cols());
-  const double second = once.squaredNorm() / count;
-  const double third = once.cwiseProduct(law_times(V, problem, system, once)).sum() / count;
+  double second = 0.0;
+  double third = 0.0;
+  for (Eigen::Index first = 0; first < projected_probes.cols(); first += kAtOnce) {
+    const Eigen::MatrixXd some =
+        projected_probes.middleCols(first, std::min(kAtOnce, projected_probes.cols() - first));
+    const Eigen::MatrixXd once = P.times(law_times(V, problem, system, some));
+    second += once.squaredNorm();
+    third += once.cwiseProduct(law_times(V, problem, system, once)).sum();
+  }
+  const auto count = static_cast<double>(projected_probes.cols());
+  second /= count;
+  third /= count;
   result.seen = second > 0.0;
   if (!result.seen) return result;
   result.z = (q - expected) / std::sqrt(2.0 * second);
@@ -187,18 +197,19 @@ void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<
   const ShapeStatistics statistics(under.problem(), under.system(), P);
   std::mt19937_64 random(2);
   std::normal_distribution<double> normal;
-  Eigen::MatrixXd draws(under.system().rows(), kDraws + 1);
-  for (double& value : draws.reshaped()) value = normal(random);
-  draws.col(kDraws) = under.system().residuals();
-  draws = P.times(draws);
   Eigen::VectorXd tails(kDraws);
   Eigen::VectorXd correlation(kDraws);
-  for (Eigen::Index k = 0; k < kDraws; ++k) {
-    const NoiseShape shape = statistics.of(draws.col(k));
-    tails[k] = shape.tails;
-    correlation[k] = shape.correlation;
+  for (Eigen::Index first = 0; first < kDraws; first += kAtOnce) {
+    Eigen::MatrixXd draws(under.system().rows(), kAtOnce);
+    for (double& value : draws.reshaped()) value = normal(random);
+    draws = P.times(std::move(draws));
+    for (Eigen::Index k = 0; k < kAtOnce; ++k) {
+      const NoiseShape shape = statistics.of(draws.col(k));
+      tails[first + k] = shape.tails;
+      correlation[first + k] = shape.correlation;
+    }
   }
-  const NoiseShape found = statistics.of(draws.col(kDraws));
+  const NoiseShape found = statistics.of(P.times(under.system().residuals()));
   tests.push_back(shape_test("heavy tails", found.tails, tails));
   if (statistics.pairs() < 3) return;
   tests.push_back(shape_test("autocorrelation", found.correlation, correlation));
@@ -218,7 +229,7 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
   std::mt19937_64 random(1);
   Eigen::MatrixXd probes(system.rows(), kProbes);
   for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
-  probes = P.times(probes);
+  probes = P.times(std::move(probes));
   const Eigen::VectorXd r = P.times(system.residuals());
 
   NoiseLikelihood likelihood(fit, apart);

@@ -368,7 +368,8 @@ Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) c
 Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, nodes.cols());
   subtract_times(nodes, result);
-  return -result;
+  result = -result;
+  return result;
 }
 
 void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const {

@@ -4,7 +4,15 @@
 
 #include "linalg/dense.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace trussmap {
+namespace {
+
+constexpr Eigen::Index kColumns = 16;  // worked on at once
+
+}  // namespace
 
 FitProjection::FitProjection(const FitState& fit, const RecordingProblem& problem,
                              const RecordingSystem& system, const Eigen::MatrixXd& nuisance)
@@ -28,11 +36,15 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
   }
 }
 
-Eigen::MatrixXd FitProjection::times(const Eigen::MatrixXd& columns) const {
-  Eigen::MatrixXd left =
-      columns - system_.times(system_.solve_nodes(system_.transposed_times(columns)));
-  if (Q_.cols() > 0) left -= Q_ * (Q_.transpose() * left);
-  return left;
+Eigen::MatrixXd FitProjection::times(Eigen::MatrixXd columns) const {
+  for (Eigen::Index first = 0; first < columns.cols(); first += kColumns) {
+    auto some = columns.middleCols(first, std::min(kColumns, columns.cols() - first));
+    Eigen::MatrixXd left = some;
+    system_.subtract_times(system_.solve_nodes(system_.transposed_times(left)), left);
+    if (Q_.cols() > 0) left -= Q_ * (Q_.transpose() * left);
+    some = left;
+  }
+  return columns;
 }
 
 Eigen::MatrixXd FitProjection::own_block(std::size_t measurement) const {

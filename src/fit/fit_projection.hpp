@@ -24,8 +24,8 @@ class FitProjection {
   FitProjection(const FitState& fit, const RecordingProblem& problem, const RecordingSystem& system,
                 const Eigen::MatrixXd& nuisance);
 
-  /// P times the columns.
-  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& columns) const;
+  /// P times the columns, some at a time.
+  [[nodiscard]] Eigen::MatrixXd times(Eigen::MatrixXd columns) const;
   /// P_kk, rows x rows of the measurement; the unit matrix where it is left out.
   [[nodiscard]] Eigen::MatrixXd own_block(std::size_t measurement) const;
   /// A sighting's whitened rows by the landmark, rows x 2; zero where it is left out.
