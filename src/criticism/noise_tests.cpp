@@ -219,6 +219,7 @@ void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<
 
 std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
                                        const Eigen::MatrixXd& nuisance) {
+  tests.forget();
   const RecordingProblem& problem = fit.problem;
   const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? orthonormal_basis(nuisance, kSameDirection)

@@ -231,6 +231,11 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
   return scores;
 }
 
+void ScoreTest::forget() const {
+  builders_->exact.forget();
+  builders_->quick.reset();
+}
+
 Eigen::Index ScoreTest::batch() const {
   return std::clamp<Eigen::Index>(kBatch / std::max<Eigen::Index>(1, residuals_.size()), 8, 64);
 }

@@ -88,6 +88,9 @@ class ScoreTest {
   /// to be explained.
   void condition_on(const Eigen::MatrixXd& columns);
 
+  /// What was kept to make further columns fast is dropped, until it is asked for again.
+  void forget() const;
+
   [[nodiscard]] double dispersion() const { return dispersion_; }  ///< phi
   /// Of the fit, less what the columns that it is conditioned on explain.
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }

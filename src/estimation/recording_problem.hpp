@@ -124,10 +124,10 @@ struct PoseNode {
 };
 
 struct RecordingProblem {
-  std::vector<std::string> landmarks;             ///< names, in order of first sighting
-  std::vector<PoseNode> poses;                    ///< session after session, in order of time
-  std::vector<int> oriented;                      ///< landmarks with an orientation
-  std::vector<std::vector<SegmentRow>> segments;  ///< rows of each segment
+  std::vector<std::string> landmarks;  ///< names, in order of first sighting
+  std::vector<PoseNode> poses;         ///< session after session, in order of time
+  std::vector<int> oriented;           ///< landmarks with an orientation
+  std::vector<SegmentRows> segments;   ///< rows of each segment
   /// Per segment and row what an excess of the gyro counts (gyro_excess.hpp); empty: no gyro.
   std::vector<std::vector<Vector4>> gyro_weights;
   std::vector<Measurement> measurements;

@@ -28,6 +28,8 @@
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -44,6 +46,25 @@ struct SegmentRow {
   double duration = 0.0;     ///< s
   double reading = kAbsent;  ///< rad, compass at the end of this row; NaN: none
   double slip = 0.0;         ///< m to the left, that the wheels show
+};
+
+/// A segment's rows, which copies share: of a week's drive they are a million.
+class SegmentRows {
+ public:
+  SegmentRows() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): to be used as the vector that it holds
+  SegmentRows(std::vector<SegmentRow> rows)
+      : rows_(std::make_shared<const std::vector<SegmentRow>>(std::move(rows))) {}
+
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  operator const std::vector<SegmentRow>&() const { return *rows_; }
+  [[nodiscard]] std::size_t size() const { return rows_->size(); }
+  [[nodiscard]] auto begin() const { return rows_->begin(); }
+  [[nodiscard]] auto end() const { return rows_->end(); }
+
+ private:
+  std::shared_ptr<const std::vector<SegmentRow>> rows_ =
+      std::make_shared<const std::vector<SegmentRow>>();
 };
 
 /// The four numbers. Without readings the mean is NaN.

@@ -116,6 +116,12 @@ ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
   return result;
 }
 
+void ColumnBuilder::forget() {
+  bases_.clear();
+  thinned_.clear();
+  values_.clear();
+}
+
 void ColumnBuilder::take_training_segments() {
   training_segments_.clear();
   middles_.assign(context_.recordings().size(), {});

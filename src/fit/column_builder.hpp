@@ -40,6 +40,9 @@ class ColumnBuilder {
   /// |f| at most, per coefficient.
   [[nodiscard]] std::vector<double> largest(const Effect& effect);
 
+  /// Drops what is kept for further columns.
+  void forget();
+
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
 
  private:

@@ -4,6 +4,8 @@
 
 #include "estimation/measurement_rows.hpp"
 
+#include <utility>
+
 namespace trussmap {
 namespace {
 
@@ -36,10 +38,12 @@ RecordingProblem without_noise(const RecordingProblem& problem,
     if (one.kind != MeasurementKind::segment) continue;
     const SessionPath& path = paths[idx(one.session)];
     if (path.missing.empty()) continue;
-    for (SegmentRow& row : result.segments[one.source]) {
+    std::vector<SegmentRow> rows = result.segments[one.source];
+    for (SegmentRow& row : rows) {
       row.path += row.part * path.missing[row.row][0];
       row.turn += row.part * path.missing[row.row][1];
     }
+    result.segments[one.source] = std::move(rows);
   }
   return result;
 }
