@@ -14,7 +14,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Eigen::Index kBatch = 4'000'000;  // numbers in the columns that are worked on at once
+constexpr Eigen::Index kBatch = 2'500'000;  // numbers in the columns that are worked on at once
 constexpr double kQuick = 1.0;              // s of driving at a time
 constexpr double kShows = 0.05;             // p
 

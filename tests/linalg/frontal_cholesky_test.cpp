@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -134,6 +135,82 @@ void expect_like_dense(const Mesh& mesh, const std::vector<int>& order, unsigned
               1e-13);
     begin += size;
   }
+}
+
+/// Many right sides at once, entries of the inverse, and products with columns of few entries.
+void expect_inverse_like_dense(const Mesh& mesh, const std::vector<int>& order, unsigned seed) {
+  const Case c = factored(mesh, order, seed);
+  const Eigen::MatrixXd A = Eigen::MatrixXd(c.lower).selfadjointView<Eigen::Lower>();
+  const Eigen::MatrixXd inverse = A.inverse();
+  const double accuracy = 1e-13 * static_cast<double>(A.rows());
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const Eigen::Index columns : {1, 7, 8, 45}) {
+    Eigen::MatrixXd X(A.rows(), columns);
+    for (double& value : X.reshaped()) value = uniform(random);
+    const Eigen::MatrixXd expected = inverse * X;
+    Eigen::MatrixXd together = X;
+    c.cholesky.solve_columns(together);
+    EXPECT_LT((together - expected).cwiseAbs().maxCoeff(), accuracy);
+    // A column is the same to the last digit, whatever stands beside it.
+    Eigen::MatrixXd last = X.rightCols(1);
+    c.cholesky.solve_columns(last);
+    EXPECT_EQ((together.rightCols(1) - last).cwiseAbs().maxCoeff(), 0.0);
+  }
+
+  const FrontalInverse entries = c.cholesky.inverse();
+  std::vector<int> begin{0};
+  for (const int size : c.sizes) begin.push_back(begin.back() + size);
+  for (std::size_t a = 0; a < c.sizes.size(); ++a) {
+    for (std::size_t b = 0; b < c.sizes.size(); ++b) {
+      const auto coupling = A.block(begin[a], begin[b], c.sizes[a], c.sizes[b]);
+      if (coupling.isZero(0.0)) continue;
+      EXPECT_LT((entries.block(begin[a], c.sizes[a], begin[b], c.sizes[b]) -
+                 inverse.block(begin[a], begin[b], c.sizes[a], c.sizes[b]))
+                    .cwiseAbs()
+                    .maxCoeff(),
+                accuracy);
+    }
+  }
+
+  constexpr int kColumns = 11;
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(A.rows(), kColumns);
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int k = 0; k < 3 * kColumns; ++k) {
+    const int row = static_cast<int>(random() % static_cast<unsigned>(A.rows()));
+    triplets.emplace_back(row, k % kColumns, uniform(random));
+    B(row, k % kColumns) += triplets.back().value();
+  }
+  EXPECT_LT((c.cholesky.inverse_products(triplets, kColumns) - B.transpose() * inverse * B)
+                .cwiseAbs()
+                .maxCoeff(),
+            accuracy);
+}
+
+TEST(FrontalCholesky, HasTheInverseOfADenseMatrix) {
+  for (const int side : {1, 2, 7, 12}) {
+    const Mesh mesh = square_mesh(side, 4, static_cast<unsigned>(side));
+    expect_inverse_like_dense(mesh, dissection_order(mesh.positions, mesh.pairs), 1);
+    expect_inverse_like_dense(mesh, as_they_come(mesh), 2);
+  }
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Mesh mesh = wild_mesh(60, 30, seed);
+    expect_inverse_like_dense(mesh, as_they_come(mesh), seed);
+  }
+  // Fronts large enough for BLAS.
+  const Mesh dense = wild_mesh(130, 3000, 3);
+  expect_inverse_like_dense(dense, as_they_come(dense), 3);
+}
+
+TEST(FrontalCholesky, KnowsNoInverseBetweenNodesThatNothingCouples) {
+  Mesh mesh;
+  for (int k = 0; k < 3; ++k) {
+    mesh.positions.emplace_back(k, 0.0);
+    mesh.sizes.push_back(2);
+  }
+  mesh.pairs = {{1, 2}};
+  const Case c = factored(mesh, as_they_come(mesh), 1);
+  EXPECT_THROW(static_cast<void>(c.cholesky.inverse().block(4, 2, 0, 2)), std::out_of_range);
 }
 
 TEST(FrontalCholesky, EqualsADenseFactorisationOnMeshes) {
