@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace trussmap {
 namespace {
 
 constexpr double kMedians = 10.0;
+constexpr std::size_t kMostPairs = 5000;
 constexpr double kRms = 10.0;
 constexpr std::size_t kFewest = 3;
 
@@ -44,20 +46,32 @@ std::vector<double> distances(const Common& common, const Alignment& alignment) 
   return result;
 }
 
-/// The pair's alignment whose median distance is least.
+/// The pair's alignment whose median distance is least (Rousseeuw, "Least median of squares
+/// regression", 1984): of all pairs, or of some drawn at random where they are many.
 Alignment robust_alignment(const Common& common) {
+  const std::size_t count = common.names.size();
   Alignment best;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < common.names.size(); ++i) {
-    for (std::size_t j = i + 1; j < common.names.size(); ++j) {
-      const Alignment candidate = align_rigidly({common.in_map[i], common.in_map[j]},
-                                                {common.surveyed[i], common.surveyed[j]});
-      const double middle = median(distances(common, candidate));
-      if (middle < least) {
-        least = middle;
-        best = candidate;
-      }
+  const auto try_pair = [&](std::size_t i, std::size_t j) {
+    const Alignment candidate = align_rigidly({common.in_map[i], common.in_map[j]},
+                                              {common.surveyed[i], common.surveyed[j]});
+    const double middle = median(distances(common, candidate));
+    if (middle < least) {
+      least = middle;
+      best = candidate;
     }
+  };
+  if (count * (count - 1) / 2 <= kMostPairs) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; j < count; ++j) try_pair(i, j);
+    }
+    return best;
+  }
+  std::mt19937_64 random(1);
+  for (std::size_t k = 0; k < kMostPairs; ++k) {
+    const std::size_t i = random() % count;
+    const std::size_t j = random() % count;
+    if (i != j) try_pair(i, j);
   }
   return best;
 }
