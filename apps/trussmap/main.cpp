@@ -68,8 +68,8 @@ void use_one_thread_but_for_graphs(int argc, char** argv) {
   openblas_set_num_threads(1);
 }
 
-/// Large matrices are made and dropped by the thousand: their memory is kept instead of being fetched
-/// anew, zeroed, from the system, which took a fifth of the time of a week's recording.
+/// Large matrices are made and dropped by the thousand: their memory is kept instead of being
+/// fetched anew, zeroed, from the system, which took a fifth of the time of a week's recording.
 void keep_memory() {
 #if defined(__GLIBC__)
   mallopt(M_MMAP_THRESHOLD, 1 << 30);

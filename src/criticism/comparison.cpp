@@ -53,8 +53,8 @@ Comparison compare(const std::vector<Recording>& recordings, const ModelFit& fit
   result.worst_landmarks = std::move(misfits.landmarks);
   result.trends = find_trends(state, tests);
   result.sources = calibrate_sources(state, tests);
-  const std::vector<CheckedMeasurement> checked =
-      snoop(state.problem, state.columns.border, state.adjustment);
+  const std::vector<CheckedMeasurement> checked = snoop(
+      tests.system(), *tests.fitted_rows(), state.problem, state.columns.border, state.adjustment);
   result.residuals = residuals_by_source(state.problem, checked);
   result.outliers = find_outliers(state, checked, tests.dispersion(), options.level);
   result.lacks = lacks_of(recordings, fit.model.robot, fit.options);

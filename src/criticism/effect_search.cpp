@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <string>
 
 namespace trussmap {
@@ -81,10 +82,20 @@ void EffectSearch::test_all() {
     if (score.score > best.score) best = {k, score.score, best.tried};
   });
   for (const auto& [name, best] : families) tested.push_back(members[best.member]);
-  visit_scores(tests_, tested, Resolution::screening, [&](std::size_t k, Score& score) {
-    tested_.emplace_back();
-    take(tested_.back(), tested[k], score);
-    if (!tested[k].family.empty()) tested_.back().tried = families[tested[k].family].tried;
+  // Those of one shape together: it is evaluated once.
+  std::vector<std::size_t> order(tested.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&tested](std::size_t a, std::size_t b) {
+    return texts_of(tested[a].effect.shape) < texts_of(tested[b].effect.shape);
+  });
+  std::vector<Candidate> by_shape;
+  by_shape.reserve(tested.size());
+  for (const std::size_t k : order) by_shape.push_back(tested[k]);
+  tested_.resize(tested.size());
+  visit_scores(tests_, by_shape, Resolution::screening, [&](std::size_t k, Score& score) {
+    Tested& one = tested_[order[k]];
+    take(one, by_shape[k], score);
+    if (!by_shape[k].family.empty()) one.tried = families[by_shape[k].family].tried;
   });
 }
 

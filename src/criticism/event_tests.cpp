@@ -76,7 +76,7 @@ std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests
                                      const Eigen::MatrixXd& nuisance) {
   const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? nuisance : Eigen::MatrixXd(system.rows(), 0);
-  const FitProjection P(fit, fit.problem, system, apart);
+  const FitProjection P(fit, fit.problem, system, apart, tests.fitted_rows());
   const std::vector<SingleEvent> events = single_events(fit, tests, P);
   const std::vector<Scored> scored = score_events(fit, system, P, events);
   std::vector<Ranked> ranked;

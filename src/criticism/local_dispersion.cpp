@@ -17,7 +17,7 @@ constexpr double kDoubt = 0.05;  // that it is larger still
 }  // namespace
 
 LocalDispersion::LocalDispersion(const FitState& fit, const ScoreTest& tests) : tests_(tests) {
-  const FitProjection P(fit, fit.problem, tests.system(), tests.present());
+  const FitProjection P(fit, fit.problem, tests.system(), tests.present(), tests.fitted_rows());
   own_.reserve(fit.problem.measurements.size());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     own_.push_back(P.left_out(k) ? Eigen::MatrixXd::Zero(fit.problem.measurements[k].rows,

@@ -224,7 +224,7 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
   const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? orthonormal_basis(nuisance, kSameDirection)
                                                     : Eigen::MatrixXd(system.rows(), 0);
-  const FitProjection P(fit, problem, system, apart);
+  const FitProjection P(fit, problem, system, apart, tests.fitted_rows());
   std::vector<Eigen::MatrixXd> own;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));
   std::mt19937_64 random(1);

@@ -231,6 +231,11 @@ std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
   return scores;
 }
 
+std::shared_ptr<const FittedRows> ScoreTest::fitted_rows() const {
+  if (!fitted_) fitted_ = std::make_shared<const FittedRows>(*system_);
+  return fitted_;
+}
+
 void ScoreTest::forget() const {
   builders_->exact.forget();
   builders_->quick.reset();

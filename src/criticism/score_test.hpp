@@ -22,6 +22,7 @@
 // One factorisation serves all candidates.
 #pragma once
 
+#include "estimation/fitted_rows.hpp"
 #include "estimation/recording_system.hpp"
 #include "fit/column_builder.hpp"
 #include "fit/fit_state.hpp"
@@ -98,6 +99,8 @@ class ScoreTest {
   [[nodiscard]] const Eigen::MatrixXd& present() const { return present_; }
   /// At the fit itself, noise and all.
   [[nodiscard]] const RecordingSystem& system() const { return *system_; }
+  /// What that fit knows of its rows.
+  [[nodiscard]] std::shared_ptr<const FittedRows> fitted_rows() const;
   [[nodiscard]] const ShapeContext& context() const { return clean_->context; }
 
  private:
@@ -112,6 +115,7 @@ class ScoreTest {
   const FitState& fit_;
   std::shared_ptr<const NoiseFree> clean_;
   std::shared_ptr<RecordingSystem> system_;
+  mutable std::shared_ptr<const FittedRows> fitted_;  ///< made when first asked for
   std::shared_ptr<RecordingSystem> clean_system_;
   struct Builders {
     ColumnBuilder exact;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -34,8 +35,8 @@ void test_against_others(const Eigen::VectorXd& r, const Eigen::MatrixXd& R,
 }
 
 /// `rows` has the measurement at full weight.
-CheckedMeasurement check(const FittedRows& fit, const RecordingSystem& rows,
-                         const Measurement& one, std::size_t k, bool left_out) {
+CheckedMeasurement check(const FittedRows& fit, const RecordingSystem& rows, const Measurement& one,
+                         std::size_t k, bool left_out) {
   CheckedMeasurement result;
   result.measurement = static_cast<int>(k);
   const Eigen::MatrixXd predicted = fit.covariance(rows, k);
@@ -62,29 +63,34 @@ CheckedMeasurement check(const FittedRows& fit, const RecordingSystem& rows,
 
 }  // namespace
 
+std::vector<CheckedMeasurement> snoop(const RecordingSystem& system, const FittedRows& fitted,
+                                      const RecordingProblem& problem,
+                                      const EffectParameters& border,
+                                      const RecordingAdjustment& adjustment) {
+  std::vector<bool> left_out(problem.measurements.size(), false);
+  for (const int k : adjustment.left_out) left_out[idx(k)] = true;
+  std::optional<RecordingSystem> whole;  // rows of what was left out, with their full weight
+  if (!adjustment.left_out.empty()) {
+    whole.emplace(problem, border);
+    whole->linearise(adjustment.state, adjustment.coefficients);
+  }
+  std::vector<CheckedMeasurement> result;
+  result.reserve(problem.measurements.size());
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const RecordingSystem& rows = left_out[k] ? *whole : system;
+    result.push_back(check(fitted, rows, problem.measurements[k], k, left_out[k]));
+  }
+  return result;
+}
+
 std::vector<CheckedMeasurement> snoop(const RecordingProblem& problem,
                                       const EffectParameters& border,
                                       const RecordingAdjustment& adjustment) {
   RecordingSystem system(problem, border);
-  std::vector<bool> left_out(problem.measurements.size(), false);
-  std::vector<double> weights(problem.measurements.size(), 1.0);
-  for (const int k : adjustment.left_out) {
-    left_out[idx(k)] = true;
-    weights[idx(k)] = 0.0;
-  }
-  system.set_weights(weights);
+  system.set_weights(weights_without(adjustment.left_out, problem.measurements.size()));
   system.linearise(adjustment.state, adjustment.coefficients);
   system.factorise();
-  const FittedRows fitted(system);
-  RecordingSystem whole(problem, border);  // rows of what was left out, with their full weight
-  if (!adjustment.left_out.empty()) whole.linearise(adjustment.state, adjustment.coefficients);
-  std::vector<CheckedMeasurement> result;
-  result.reserve(problem.measurements.size());
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    const RecordingSystem& rows = left_out[k] ? whole : system;
-    result.push_back(check(fitted, rows, problem.measurements[k], k, left_out[k]));
-  }
-  return result;
+  return snoop(system, FittedRows(system), problem, border, adjustment);
 }
 
 std::vector<OutlierTest> outliers(const std::vector<CheckedMeasurement>& checked, double level,

@@ -17,6 +17,7 @@
 // is large enough to show (infinity).
 #pragma once
 
+#include "estimation/fitted_rows.hpp"
 #include "estimation/recording_adjustment.hpp"
 
 #include <vector>
@@ -36,6 +37,13 @@ struct CheckedMeasurement {
 /// Every measurement, in the problem's order; those left out are tested against the fit without
 /// them. One factorisation and one inverse of its fronts.
 [[nodiscard]] std::vector<CheckedMeasurement> snoop(const RecordingProblem& problem,
+                                                    const EffectParameters& border,
+                                                    const RecordingAdjustment& adjustment);
+
+/// The same of a fit whose system is there already, with those left out at weight 0.
+[[nodiscard]] std::vector<CheckedMeasurement> snoop(const RecordingSystem& system,
+                                                    const FittedRows& fitted,
+                                                    const RecordingProblem& problem,
                                                     const EffectParameters& border,
                                                     const RecordingAdjustment& adjustment);
 

@@ -15,10 +15,11 @@ constexpr Eigen::Index kColumns = 16;  // worked on at once
 }  // namespace
 
 FitProjection::FitProjection(const FitState& fit, const RecordingProblem& problem,
-                             const RecordingSystem& system, const Eigen::MatrixXd& nuisance)
+                             const RecordingSystem& system, const Eigen::MatrixXd& nuisance,
+                             std::shared_ptr<const FittedRows> fitted)
     : problem_(problem),
       system_(system),
-      fitted_(system),
+      fitted_(fitted ? std::move(fitted) : std::make_shared<const FittedRows>(system)),
       left_out_(problem.measurements.size(), false) {
   for (const int k : fit.adjustment.left_out) left_out_[idx(k)] = true;
   const Eigen::MatrixXd& M = system.border();
@@ -51,7 +52,7 @@ Eigen::MatrixXd FitProjection::own_block(std::size_t measurement) const {
   const Measurement& one = problem_.measurements[measurement];
   Eigen::MatrixXd own = Eigen::MatrixXd::Identity(one.rows, one.rows);
   if (left_out_[measurement]) return own;
-  own -= fitted_.by_nodes(system_, measurement);
+  own -= fitted_->by_nodes(system_, measurement);
   const auto Q = Q_.middleRows(system_.first_row(measurement), one.rows);
   own -= Q * Q.transpose();
   return 0.5 * (own + own.transpose());

@@ -13,6 +13,7 @@
 #include "estimation/fitted_rows.hpp"
 #include "fit/fit_state.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace trussmap {
@@ -20,9 +21,11 @@ namespace trussmap {
 class FitProjection {
  public:
   /// `problem` has the fit's measurements, perhaps with other weights; `system` is factorised.
-  /// `nuisance`: columns that are already free of J. Keeps references to problem and system.
+  /// `nuisance`: columns that are already free of J. `fitted`: the system's, where they are there
+  /// already. Keeps references to problem and system.
   FitProjection(const FitState& fit, const RecordingProblem& problem, const RecordingSystem& system,
-                const Eigen::MatrixXd& nuisance);
+                const Eigen::MatrixXd& nuisance,
+                std::shared_ptr<const FittedRows> fitted = nullptr);
 
   /// P times the columns, some at a time.
   [[nodiscard]] Eigen::MatrixXd times(Eigen::MatrixXd columns) const;
@@ -38,7 +41,7 @@ class FitProjection {
  private:
   const RecordingProblem& problem_;
   const RecordingSystem& system_;
-  FittedRows fitted_;
+  std::shared_ptr<const FittedRows> fitted_;
   std::vector<bool> left_out_;
   Eigen::MatrixXd Q_;
 };
