@@ -91,7 +91,8 @@ std::vector<fs::path> bag_files_in(const fs::path& folder) {
   return files;
 }
 
-/// The path that metadata name: within the folder, or refused.
+/// The path that metadata name: within the folder, or refused. The system would read a name with a
+/// zero byte as far as that.
 fs::path named_file(const fs::path& folder, const fs::path& metadata, const std::string& name) {
   const fs::path path(name);
   const bool leaves =
@@ -99,6 +100,11 @@ fs::path named_file(const fs::path& folder, const fs::path& metadata, const std:
   if (leaves) {
     throw InputError(metadata.string(), 0,
                      "names the file \"" + in_a_line(name) + "\", expected one within the folder");
+  }
+  if (in_a_line(name) != name) {
+    throw InputError(metadata.string(), 0,
+                     "names the file \"" + in_a_line(name) +
+                         "\", expected a name without control characters");
   }
   std::error_code ignored;
   // Before version 4 paths began with the folder's name.
