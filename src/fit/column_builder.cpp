@@ -14,8 +14,8 @@ namespace {
 
 using Instant = ShapeContext::Instant;
 
-constexpr std::size_t kValuesKept = 16'000'000;  // numbers, of shapes
-constexpr std::size_t kBasesKept = 20'000'000;   // of channels
+constexpr std::size_t kValuesKept = 24'000'000;  // numbers, of shapes
+constexpr std::size_t kBasesKept = 12'000'000;   // of channels
 
 /// Shape and session (-1: all) of each of an effect's coefficients.
 struct Part {
