@@ -347,8 +347,8 @@ Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) c
     for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
       if (node < 0 || normal_.size(node) == 0) continue;
       const int size = normal_.size(node);
-      result.middleRows(normal_.offset(node), size) +=
-          J->topLeftCorner(one.rows, size).transpose() * part;
+      result.middleRows(normal_.offset(node), size).noalias() +=
+          J->topLeftCorner(one.rows, size).transpose().lazyProduct(part);
     }
     for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
       const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
@@ -379,7 +379,8 @@ void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::Matrix
     for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
       if (node < 0 || normal_.size(node) == 0) continue;
       const int size = normal_.size(node);
-      part -= J->topLeftCorner(one.rows, size) * nodes.middleRows(normal_.offset(node), size);
+      part.noalias() -= J->topLeftCorner(one.rows, size)
+                            .lazyProduct(nodes.middleRows(normal_.offset(node), size));
     }
     for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
       const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
