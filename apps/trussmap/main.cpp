@@ -105,6 +105,8 @@ int run(int argc, char** argv) {
     return app.exit(wanted);
   } catch (const trussmap::app::AnswerIsNo&) {
     return kFailed;
+  } catch (const trussmap::app::SaidByAnother& other) {
+    return other.status();
   } catch (const CLI::ParseError& error) {
     return complain(error, kBadInput);
   } catch (const trussmap::InputError& error) {

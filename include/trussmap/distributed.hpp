@@ -48,6 +48,8 @@ class Processes {
   [[nodiscard]] std::vector<std::string> gather(const std::string& text) const;
   /// The text of process 0.
   [[nodiscard]] std::string spread(const std::string& text) const;
+  /// True if every process makes this call within so many seconds.
+  [[nodiscard]] bool all_come(double seconds) const;
   /// Ends all processes at once: for what only one of them has noticed.
   [[noreturn]] void abort(int status) const;
 
