@@ -14,6 +14,7 @@
 #include <exception>
 #include <iterator>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,7 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
 
   template <typename... Values>
-  void line(fmt::format_string<Values...> format, const Values&... values) {
+  void line(fmt::format_string<const Values&...> format, const Values&... values) {
     fmt::format_to(std::back_inserter(text_), format, values...);
     if (text_.size() >= kChunk) flush();
   }
