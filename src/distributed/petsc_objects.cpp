@@ -29,6 +29,10 @@ void require_petsc(PetscErrorCode error, const char* what) {
 PetscSession::PetscSession() {
   require_petsc(PetscInitializeNoArguments(), "the start of PETSc");
   require_petsc(PetscPushErrorHandler(stay_silent, nullptr), "the start of PETSc");
+  // What comes from other processes is added in one order, not as it arrives.
+  for (const char* option : {"-matstash_legacy", "-matstash_reproduce"}) {
+    require_petsc(PetscOptionsSetValue(nullptr, option, nullptr), "the start of PETSc");
+  }
   require_petsc(PetscPopSignalHandler(), "the start of PETSc");
 }
 

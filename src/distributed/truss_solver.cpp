@@ -29,6 +29,12 @@ void use_multigrid(KSP solver, PC preconditioner) {
   require_petsc(KSPSetType(solver, KSPCG), "conjugate gradients");
   require_petsc(KSPSetNormType(solver, KSP_NORM_UNPRECONDITIONED), "conjugate gradients");
   require_petsc(PCSetType(preconditioner, PCGAMG), "multigrid");
+  int processes = 1;
+  require_mpi(MPI_Comm_size(PetscObjectComm(reinterpret_cast<PetscObject>(solver)), &processes),
+              "ranks");
+  // The other ways to form P'KP add what comes from other processes as it arrives. One process
+  // knows no such way.
+  if (processes > 1) set_default("-matptap_via", "allatonce");
   set_default("-pc_gamg_agg_nsmooths", "1");
   set_default("-pc_gamg_threshold", "0.0");
   set_default("-mg_levels_ksp_type", "chebyshev");
@@ -70,6 +76,11 @@ void require_no_failure(KSP solver, bool mumps) {
 }
 
 double complexity_of(PC preconditioner) {
+  PetscBool multigrid = PETSC_FALSE;
+  require_petsc(
+      PetscObjectTypeCompare(reinterpret_cast<PetscObject>(preconditioner), PCGAMG, &multigrid),
+      "multigrid");
+  if (multigrid == PETSC_FALSE) return 0.0;
   PetscReal grid = 0.0;
   PetscReal operators = 0.0;
   require_petsc(PCMGGetGridComplexity(preconditioner, &grid, &operators), "multigrid");

