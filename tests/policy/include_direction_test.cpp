@@ -219,8 +219,8 @@ TEST(IncludeDirection, PublicHeadersIncludePublicHeadersAlone) {
   }
 }
 
-TEST(IncludeDirection, ThereAreAtMostFortyPublicHeadersBesideTheUmbrella) {
-  EXPECT_LE(source_files({"include"}).size(), 40U + 1U);
+TEST(IncludeDirection, ThereAreAtMostFortyTwoPublicHeadersBesideTheUmbrella) {
+  EXPECT_LE(source_files({"include"}).size(), 42U + 1U);
 }
 
 TEST(IncludeDirection, ApplicationsUsePublicHeadersAlone) {
