@@ -12,14 +12,15 @@
 //                  the events? And an effect named for it?
 //   noise          a law of noise that the model does not state, a leg's spread doubled, 56 legs:
 //                  first of the four? And an effect named for it?
+//   riddles        effects hidden as simulate --hide does: are they found?
 //   cost           time of a diagnosis and of 200 of its candidates against one fit of the same
 //                  recording, 180 to 10 000 legs
 #include "bench_program.hpp"
 #include "bench_worlds.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/known_events.hpp"
+#include "criticism_parts.hpp"
 #include "fit/fit_state.hpp"
-#include "trials.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/wording.hpp"
 
@@ -38,19 +39,7 @@
 namespace trussmap::bench {
 namespace {
 
-struct Options {
-  std::uint64_t first = 1;
-  int recordings = 20;  ///< per effect and size
-  int clean = 1000;
-  std::vector<double> times = {2.0, 3.0};  ///< of the smallest detectable size
-  bool loops = false;                      ///< without survey
-  bool ladder = true;
-  bool verbose = false;
-  std::string shard;                ///< "3/16"
-  std::string out;                  ///< of the share
-  std::vector<std::string> merged;  ///< files of shares
-  std::shared_ptr<Trials> trials = std::make_shared<Trials>("trussmap_criticism_bench");
-};
+using Options = CriticismOptions;
 
 void false_alarms(const Options& options) {
   int named = 0;
@@ -343,123 +332,6 @@ void odd(const Options& options) {
              shown, percent(right, shown));
 }
 
-struct Asked {
-  int first = 0;
-  int named = 0;
-};
-
-void report_asked(const std::string& what, const Asked& asked, int whole) {
-  fmt::print("{}: first in {} of {} ({:.1f} %), an effect named for it in {} ({:.1f} %)\n", what,
-             asked.first, whole, percent(asked.first, whole), asked.named,
-             percent(asked.named, whole));
-}
-
-/// Whether an effect was named, and which.
-Outcome asked_of(const Diagnosis& result, const Options& options, std::uint64_t seed, bool first) {
-  const bool named = result.verdict == Diagnosis::Verdict::missing;
-  Outcome one{{"first", first}, {"named", named}};
-  if (named && options.verbose) one["said"] = fmt::format("  seed {}: {}\n", seed, result.missing);
-  return one;
-}
-
-void count(const std::optional<Outcome>& outcome, Asked& asked) {
-  if (!outcome) return;
-  asked.first += outcome->at("first") ? 1 : 0;
-  asked.named += outcome->at("named") ? 1 : 0;
-}
-
-void events(const Options& options) {
-  const int whole = 10 * options.recordings;
-  Asked bump;
-  Asked moved;
-  for (int k = 0; k < whole; ++k) {
-    const std::uint64_t seed = options.first + static_cast<std::uint64_t>(k);
-    count(options.trials->next([&] {
-      const testing::Bump one = testing::bumped({}, 5.0, seed);
-      const Diagnosis result = diagnose(one.world.recordings, one.world.model);
-      const EventTest& leg = result.events.front();
-      return asked_of(result, options, seed, leg.kind == EventKind::leg && leg.name == one.name);
-    }),
-          bump);
-    count(options.trials->next([&] {
-      std::string landmark;
-      const testing::NoisyDrive world = testing::with_moved_landmark(5.0, seed, landmark);
-      const Diagnosis result = diagnose(world.recordings, world.model);
-      const EventTest& place = result.events.front();
-      return asked_of(result, options, seed,
-                      place.kind == EventKind::landmark && place.name == landmark);
-    }),
-          moved);
-  }
-  if (!options.trials->whole()) return;
-  report_asked("a leg's row wrong by 5 sds", bump, whole);
-  report_asked("a landmark moved by 5 sds", moved, whole);
-}
-
-void noise(const Options& options) {
-  const int whole = 5 * options.recordings;
-  const std::vector<std::string> laws = {"per metre", "per second", "per start", "per spin"};
-  for (const std::string& law : laws) {
-    Asked asked;
-    for (int k = 0; k < whole; ++k) {
-      const std::uint64_t seed = options.first + static_cast<std::uint64_t>(k);
-      count(options.trials->next([&] {
-        testing::NoisyDrive world = testing::simulate_world({}, seed);
-        testing::add_noise(world, law, 2.0, seed);
-        const Diagnosis result = diagnose(world.recordings, world.model);
-        const auto best =
-            std::find_if(result.noise.begin(), result.noise.end(), [&](const NoiseTest& one) {
-              return std::find(laws.begin(), laws.end(), one.law) != laws.end();
-            });
-        return asked_of(result, options, seed, best != result.noise.end() && best->law == law);
-      }),
-            asked);
-    }
-    if (!options.trials->whole()) continue;
-    report_asked(fmt::format("noise {}", law), asked, whole);
-  }
-}
-
-template <typename Work>
-double seconds(const Work& work) {
-  const auto begun = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
-void cost() {
-  const World world = draw_world(1, Survey::yes);
-  for (const int legs : {180, 600, 2000, 10000}) {
-    const World here = with_legs(world, legs);
-    const std::vector<Recording> recordings{record_in(here, {})};
-    std::optional<ModelFit> fit;
-    const double fitting = seconds([&] { fit = fit_model(recordings, here.model); });
-    std::optional<ScoreTest> tests;
-    const double preparing = seconds([&] { tests.emplace(*fit->state); });
-    const std::vector<Candidate> candidates = candidates_for(*fit->state, tests->context());
-    std::vector<Effect> effects;
-    for (std::size_t k = 0; k < 200 && k < candidates.size(); ++k) {
-      effects.push_back(candidates[k * candidates.size() / 200].effect);
-    }
-    double scores = 0.0;
-    const double testing = seconds([&] {
-      for (std::size_t k = 0; k < effects.size(); k += 25) {
-        const auto from = effects.begin() + static_cast<std::ptrdiff_t>(k);
-        for (const Score& one : tests->test({from, from + 25}, Resolution::screening)) {
-          scores += one.score;
-        }
-      }
-    });
-    const double whole = seconds([&] { scores += diagnose(recordings, *fit, {}).chi2; });
-    fmt::print(
-        "cost of {} legs, {} rows: fit {:.2f} s; 200 candidates {:.2f} s, {:.2f} of the fit (of "
-        "which {:.2f} s once); all of a diagnosis ({} tests) {:.2f} s, {:.2f} ms a leg{}\n",
-        legs, recordings.front().drive.rows(), fitting, preparing + testing,
-        (preparing + testing) / fitting, preparing, candidates.size(), whole, 1e3 * whole / legs,
-        scores < 0.0 ? "!" : "");
-  }
-}
-
 void add_options(CLI::App& app, Options& options) {
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--recordings", options.recordings, "Recordings per effect and size")
@@ -503,7 +375,8 @@ void begin(Options& options, std::vector<std::string>& parts) {
     take_settings(options.trials->take_results(options.merged), options, parts);
   } else if (!options.shard.empty()) {
     if (options.out.empty()) throw std::invalid_argument("--shard needs --out");
-    if (parts.empty()) parts = {"false-alarms", "identify", "two", "odd", "events", "noise"};
+    if (parts.empty())
+      parts = {"false-alarms", "identify", "two", "odd", "events", "noise", "riddles"};
     if (std::find(parts.begin(), parts.end(), "cost") != parts.end()) {
       throw std::invalid_argument("cost measures time, and is of no share");
     }
@@ -526,6 +399,7 @@ int main(int argc, char** argv) {
                                          {"odd", odd},
                                          {"events", events},
                                          {"noise", noise},
+                                         {"riddles", riddles},
                                          {"cost", [](const Options&) { cost(); }}};
   return run_bench<Options>(argc, argv, "How well diagnose and discover do on simulated recordings",
                             parts, add_options, {begin, end});

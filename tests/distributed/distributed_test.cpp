@@ -34,11 +34,6 @@ using testing::Ran;
 using testing::run_trussmap;
 using testing::ScratchFolder;
 
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(WithoutMpi, SolverPetscSaysHowToBuildIt) {
 #ifdef TRUSSMAP_MPIEXEC
   GTEST_SKIP() << "needs a build without MPI";
@@ -58,6 +53,11 @@ TEST(Distributed, ThreeProcesses) {
 }
 
 #else
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
 
 /// The command on so many processes.
 Ran run_on(int processes, const std::string& arguments) {
