@@ -21,11 +21,19 @@ struct Part {
   std::function<void(const Options&)> run;
 };
 
+/// What a bench does before its parts run, to options and the parts asked for, and after.
+template <typename Options>
+struct Around {
+  std::function<void(Options&, std::vector<std::string>&)> before = [](auto&, auto&) {};
+  std::function<void(const Options&, const std::vector<std::string>&)> after = [](auto&, auto&) {};
+};
+
 /// Body of main. `add_options` adds those of its own; what a part throws is told in one line.
 template <typename Options>
 int run_bench(int argc, char** argv, const std::string& description,
               const std::vector<Part<Options>>& parts,
-              const std::function<void(CLI::App&, Options&)>& add_options) {
+              const std::function<void(CLI::App&, Options&)>& add_options,
+              const Around<Options>& around = {}) {
   try {
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // a long run is watched
     CLI::App app(description);
@@ -36,11 +44,13 @@ int run_bench(int argc, char** argv, const std::string& description,
     app.add_option("parts", asked, "What to measure (default: all)")->check(CLI::IsMember(names));
     add_options(app, options);
     CLI11_PARSE(app, argc, argv);
+    around.before(options, asked);
     for (const Part<Options>& one : parts) {
       if (asked.empty() || std::find(asked.begin(), asked.end(), one.name) != asked.end()) {
         one.run(options);
       }
     }
+    around.after(options, asked);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

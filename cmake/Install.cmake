@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# Four sets of targets, so that find_package(trussmap COMPONENTS map) needs only what maps need.
+# Four sets of targets, five with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
@@ -14,6 +14,13 @@ install(TARGETS trussmap_store EXPORT trussmapStoreTargets
 install(TARGETS trussmap_logs EXPORT trussmapLogsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TRUSSMAP_WITH_MPI)
+  install(TARGETS trussmap_distributed EXPORT trussmapDistributedTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT trussmapDistributedTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
+  install(FILES cmake/FindPetsc.cmake DESTINATION ${config_dir})
+endif()
 install(TARGETS trussmap EXPORT trussmapTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

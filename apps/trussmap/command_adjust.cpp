@@ -3,6 +3,7 @@
 //
 // trussmap adjust: the best fit of a plain pose graph.
 #include "commands.hpp"
+#include "distributed_adjust.hpp"
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
@@ -29,6 +30,8 @@ struct AdjustOptions {
   std::string start = "best";
   bool robust = false;
   double gate = RobustOptions{}.gate;
+  std::string solver = "frontal";
+  double tolerance = DistributedAdjustOptions{}.tolerance;
 };
 
 /// Everything that the table and the JSON file say.
@@ -120,6 +123,11 @@ Run adjust_graph(const AdjustOptions& options, const PoseGraph& graph) {
 }
 
 void run_adjust(const AdjustOptions& options) {
+  if (options.solver != "frontal") {
+    run_distributed_adjust(
+        {options.graph, options.out, options.json, options.solver, options.tolerance});
+    return;
+  }
   Progress progress({{"reading", 20}, {"adjusting", 80}});
   progress.next();
   PoseGraph graph = read_g2o(options.graph);
@@ -136,6 +144,21 @@ void run_adjust(const AdjustOptions& options) {
   files.write();
   progress.end();
   fmt::print("{}", table(run));
+}
+
+/// Options that belong to one solver are not given with another.
+void check_solver(const Command& command, const AdjustOptions& options) {
+  if (options.solver == "frontal") {
+    if (command.count("--tolerance") == 0) return;
+    throw UsageError("--tolerance is given without --solver petsc or mumps, to which it belongs");
+  }
+  for (const char* name : {"--start", "--robust"}) {
+    if (command.count(name) == 0) continue;
+    throw UsageError(
+        fmt::format("{} is given with --solver {}, expected without: a truss has one "
+                    "minimum, whatever the start, and every route counts",
+                    name, options.solver));
+  }
 }
 
 }  // namespace
@@ -164,6 +187,20 @@ void setup_adjust(const Command& app) {
                   "all others, exceeds this (squared standard deviations)")
       .check(above_zero())
       .capture_default_str();
+  command
+      .add_option(
+          "--solver", options->solver,
+          fmt::format("frontal: one machine, any graph. petsc, mumps: by all processes of mpirun "
+                      "-n N trussmap adjust, landmarks and displacements (VERTEX_XY, EDGE_POINTXY) "
+                      "of any number: conjugate gradients with multigrid, or an exact factor{}",
+                      distributed_note()))
+      .check(one_of({"frontal", "petsc", "mumps"}))
+      .capture_default_str();
+  command
+      .add_option("--tolerance", options->tolerance,
+                  "With --solver petsc or mumps: |f - K u| to be reached, against |f|")
+      .check(between(1e-15, 0.1))
+      .capture_default_str();
   command.footer(
       "Formats: g2o (VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_POINTXY, FIX) and TORO\n"
       "(VERTEX2, EDGE2), iSAM (ODOMETRY or EDGE2, LANDMARK), plain or .xz. Without FIX the first "
@@ -172,6 +209,7 @@ void setup_adjust(const Command& app) {
     if (command.count("--gate") > 0 && !options->robust) {
       throw UsageError("--gate is given without --robust, to which it belongs");
     }
+    check_solver(command, *options);
     run_adjust(*options);
   });
 }

@@ -23,6 +23,16 @@ namespace trussmap::app {
 /// Thrown by a command that has done its work, and has to say no by exit status 1.
 class AnswerIsNo : public std::exception {};
 
+/// Thrown in a process of several, where another says what went wrong: the exit status alone.
+class SaidByAnother : public std::exception {
+ public:
+  explicit SaidByAnother(int status) : status_(status) {}
+  [[nodiscard]] int status() const { return status_; }
+
+ private:
+  int status_;
+};
+
 /// Options that fit each other badly, or a value out of range: one line, status 2.
 class UsageError : public std::runtime_error {
  public:

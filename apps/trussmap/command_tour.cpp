@@ -6,20 +6,21 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
-#include "trussmap/tour_experiment.hpp"
+#include "team.hpp"
+#include "tour_shards.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace trussmap::app {
 namespace {
-
-using nlohmann::json;
 
 struct CommandOptions {
   std::string mesh = "6x6";
@@ -35,7 +36,24 @@ struct CommandOptions {
   std::string eta = "all";
   std::string json_file;
   PageOptions page;
+  std::string shard;  ///< "3/16", "" for the whole run
+  std::string out;
 };
+
+Shard shard_of(const CommandOptions& options) {
+  if (options.shard.empty() != options.out.empty()) {
+    throw UsageError("--shard and --out are given both or not at all");
+  }
+  if (options.shard.empty()) return {};
+  if (!options.json_file.empty() || options.page.wanted()) {
+    throw UsageError("--json, --html and --plots are of whole runs: give them to merge");
+  }
+  try {
+    return parse_shard(options.shard);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--shard: {}", error.what()));
+  }
+}
 
 TourOptions experiment_options(const CommandOptions& options) {
   TourOptions result;
@@ -59,106 +77,51 @@ TourOptions experiment_options(const CommandOptions& options) {
   return result;
 }
 
-json metrics_json(const TourMetrics& metrics) {
-  json result = {{"stretch_error", metrics.stretch_error.mean},
-                 {"stretch_error_se", metrics.stretch_error.standard_error},
-                 {"orientation_error_rad", metrics.orientation_error.mean},
-                 {"orientation_error_rad_se", metrics.orientation_error.standard_error}};
-  if (metrics.position_error) {
-    result["position_error_m"] = metrics.position_error->mean;
-    result["position_error_m_se"] = metrics.position_error->standard_error;
+/// Seeds that are done, of this process's; a run of several processes shows the first one's.
+class SeedProgress {
+ public:
+  SeedProgress(TourOptions& experiment, std::size_t seeds) {
+    progress_.next();
+    experiment.seeds_done = [this, seeds](int done) {
+      progress_.report(done, static_cast<int>(seeds));
+    };
   }
-  return result;
-}
 
-json result_json(const TourResult& result) {
-  json tours = json::array();
-  for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
-    json methods;
-    for (const auto& [name, metrics] : result.tours[tour]) methods[name] = metrics_json(metrics);
-    tours.push_back({{"tour", tour + 1}, {"methods", methods}});
-  }
-  return {{"tours", tours},
-          {"first_sight",
-           {{"before", metrics_json(result.first_sight_before)},
-            {"after", metrics_json(result.first_sight_after)}}}};
-}
+ private:
+  Progress progress_{{{"seeds"}}};
+};
 
-/// Which tours a table shows: the first few, then fewer and fewer, and the last.
-std::vector<std::size_t> shown_tours(std::size_t count) {
-  std::vector<std::size_t> shown;
-  for (const std::size_t tour : {1, 2, 3, 4, 5, 10, 20, 50, 100, 200, 500, 1000}) {
-    if (tour <= count) shown.push_back(tour);
-  }
-  if (shown.back() != count) shown.push_back(count);
-  return shown;
-}
-
-template <class Pick>
-void print_block(const TourResult& result, const char* title, int digits, const Pick& pick) {
-  fmt::print("\n{}\n  tour", title);
-  std::vector<std::string> methods;
-  for (const std::string& method : tour_methods()) {
-    if (pick(result.tours.front().at(method))) methods.push_back(method);
-  }
-  for (const std::string& method : methods) fmt::print("  {:>16}", method);
-  fmt::print("\n");
-  for (const std::size_t tour : shown_tours(result.tours.size())) {
-    fmt::print("  {:>4}", tour);
-    for (const std::string& method : methods) {
-      fmt::print("  {:>16.{}f}", pick(result.tours[tour - 1].at(method))->mean, digits);
-    }
-    fmt::print("\n");
-  }
-}
-
-void print_result(const TourResult& result, const CommandOptions& options) {
-  const MethodMetrics& last = result.tours.back();
-  const double raw = last.at("raw").stretch_error.mean;
-  fmt::print(
-      "after {} tours the elastic map's mean error is {:.2f} % of a route's stretch and {:.4f} rad "
-      "of its orientation\n"
-      "(single measurements: {:.2f} %, {:.4f} rad; the best possible, the adjustment: {:.2f} %, "
-      "{:.4f} rad);\nmeans over {} seeds\n",
-      result.tours.size(), 100.0 * last.at("elastic").stretch_error.mean,
-      last.at("elastic").orientation_error.mean, 100.0 * raw, last.at("raw").orientation_error.mean,
-      100.0 * last.at("adjustment").stretch_error.mean,
-      last.at("adjustment").orientation_error.mean, options.seeds);
-  print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
-              [](const TourMetrics& f) { return std::optional<SeedMean>(f.stretch_error); });
-  print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
-              [](const TourMetrics& f) { return std::optional<SeedMean>(f.orientation_error); });
-  print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
-              [](const TourMetrics& f) { return f.position_error; });
-  fmt::print(
-      "\nfirst sight, tour 1: before {:.3f} / {:.3f} rad, after {:.3f} / {:.3f} rad "
-      "(the paper's Table I, one map: 0.049 / 0.033, then 0.046 / 0.032)\n",
-      result.first_sight_before.stretch_error.mean,
-      result.first_sight_before.orientation_error.mean, result.first_sight_after.stretch_error.mean,
-      result.first_sight_after.orientation_error.mean);
-}
-
-TourResult toured(const CommandOptions& options) {
+/// Trials of a share, of which this process of a team does its own.
+ShardResults run_share(const CommandOptions& options, const Shard& shard, const Team& team) {
   TourOptions experiment = experiment_options(options);
-  Progress progress({{"seeds"}});
-  progress.next();
-  experiment.seeds_done = [&](int done) { progress.report(done, options.seeds); };
-  return run_tours(experiment);
+  const std::string world = options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
+  const std::string settings =
+      tour_settings(experiment, fmt::format("{}, walk {}", world, options.walk));
+  const Shard mine{shard.number + shard.of * team.rank(), shard.of * team.count()};
+  const auto seeds = static_cast<std::size_t>(options.seeds) / static_cast<std::size_t>(mine.of);
+  std::optional<SeedProgress> progress;
+  if (team.rank() == 0) progress.emplace(experiment, std::max<std::size_t>(seeds, 1));
+  ShardResults results = run_tour_shard(experiment, settings, mine);
+  for (const std::string& text : team.gather(format_shard(results))) {
+    results.results.merge(parse_shard_results(text, "a process's share").results);
+  }
+  results.shard = shard;
+  return results;
 }
 
 void run_tour(const CommandOptions& options) {
-  const TourResult result = toured(options);
-  Files files;
-  if (!options.json_file.empty()) {
-    files.emplace_back(options.json_file, result_json(result).dump(2) + "\n");
+  const Shard shard = shard_of(options);
+  ShardResults results;
+  if (!run_together(false, [&](const Team& team) { results = run_share(options, shard, team); })) {
+    return;
   }
-  if (options.page.wanted()) {
-    const std::string world = options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
-    add_page(files, tour_page(result, options.seeds, world + ", walk " + options.walk),
-             options.page);
+  if (options.shard.empty()) {
+    show_tour_run(results, {"", 0, options.json_file, options.page});
+    return;
   }
-  files.write();
-  print_result(result, options);
+  write_file(options.out, format_shard(results));
+  fmt::print("shard {}/{}: {} of {} seeds, in {}\n", shard.number, shard.of, results.results.size(),
+             results.trials, options.out);
 }
 
 void add_world(const Command& command, CommandOptions& options) {
@@ -216,6 +179,17 @@ void setup_tour(const Command& app) {
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
+  command
+      .add_option("--shard", options->shard,
+                  "Do a share of the seeds alone, like 3/16, as a task of a job array; with --out")
+      .type_name("K/N");
+  command
+      .add_option("--out", options->out,
+                  "With --shard: write its results; merge prints what the whole run would have")
+      .type_name("FILE");
+  if (built_with_mpi()) {
+    command.footer("mpirun -n N trussmap tour ... shares the seeds among N processes.");
+  }
   command.callback([options] { run_tour(*options); });
 }
 

@@ -105,6 +105,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_fit(commands);
+  trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);
   trussmap::app::setup_simulate(commands);
@@ -119,6 +120,8 @@ int run(int argc, char** argv) {
     return app.exit(wanted);
   } catch (const trussmap::app::AnswerIsNo&) {
     return kFailed;
+  } catch (const trussmap::app::SaidByAnother& other) {
+    return other.status();
   } catch (const CLI::ParseError& error) {
     return complain(error, kBadInput);
   } catch (const trussmap::InputError& error) {

@@ -32,6 +32,20 @@
 
 namespace trussmap {
 
+/// How far one map is from the truth.
+struct MapErrors {
+  double stretch = 0.0;
+  double orientation = 0.0;        ///< rad
+  std::optional<double> position;  ///< m, where the method has positions
+};
+
+/// One seed's errors, of all methods.
+struct SeedErrors {
+  std::vector<std::map<std::string, MapErrors>> tours;  ///< after tour 1, 2, ...
+  MapErrors first_sight_before;
+  MapErrors first_sight_after;
+};
+
 struct TourOptions {
   Mesh mesh;
   WalkKind walk = WalkKind::euler;
@@ -70,5 +84,11 @@ struct TourResult {
 
 /// Throws std::invalid_argument on options out of range.
 [[nodiscard]] TourResult run_tours(const TourOptions& options);
+
+/// The same in parts: errors of some of the seeds, which are numbered from 0 to options.seeds - 1,
+/// and what the errors of all of them, in this order, come to. Throws like run_tours.
+[[nodiscard]] std::vector<SeedErrors> run_tour_seeds(const TourOptions& options,
+                                                     const std::vector<int>& seeds);
+[[nodiscard]] TourResult average_tours(const std::vector<SeedErrors>& seeds);
 
 }  // namespace trussmap

@@ -13,26 +13,15 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <numeric>
 #include <stdexcept>
 #include <thread>
 
 namespace trussmap {
 namespace {
 
-/// The three metrics of one map.
-struct Errors {
-  double stretch = 0.0;
-  double orientation = 0.0;
-  std::optional<double> position;
-};
-
-using MethodErrors = std::map<std::string, Errors>;
-
-struct SeedErrors {
-  std::vector<MethodErrors> tours;
-  Errors first_sight_before;
-  Errors first_sight_after;
-};
+using Errors = MapErrors;
+using MethodErrors = std::map<std::string, MapErrors>;
 
 /// Errors of routes whose vectors (from -> to of the mesh) are given.
 Errors route_errors(const Mesh& mesh, const std::function<Vector2(const MeshRoute&)>& vector) {
@@ -194,18 +183,30 @@ TourMetrics metrics_of(const std::vector<Errors>& errors) {
   return metrics;
 }
 
-std::vector<SeedErrors> run_seeds(const TourOptions& options) {
-  std::vector<SeedErrors> results(idx(options.seeds));
-  std::atomic<int> next{0};
+void check(const TourOptions& options) {
+  if (options.tours < 1 || options.seeds < 1) {
+    throw std::invalid_argument("the experiment needs a tour and a seed at least");
+  }
+  if (!(options.odometry_error > 0.0) || !(options.compass_error > 0.0)) {
+    throw std::invalid_argument("the odometry and compass errors must be above 0");
+  }
+}
+
+}  // namespace
+
+std::vector<SeedErrors> run_tour_seeds(const TourOptions& options, const std::vector<int>& seeds) {
+  check(options);
+  std::vector<SeedErrors> results(seeds.size());
+  std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   std::mutex failing;
   std::mutex reporting;
   int done = 0;
   const auto work = [&] {
-    for (int k = next++; k < options.seeds; k = next++) {
+    for (std::size_t k = next++; k < seeds.size(); k = next++) {
       try {
-        results[idx(k)] =
-            SeedRun(options, options.first_seed + static_cast<std::uint64_t>(k)).run();
+        const auto seed = static_cast<std::uint64_t>(seeds[k]);
+        results[k] = SeedRun(options, options.first_seed + seed).run();
         const std::lock_guard<std::mutex> lock(reporting);
         ++done;
         if (options.seeds_done) options.seeds_done(done);
@@ -224,8 +225,6 @@ std::vector<SeedErrors> run_seeds(const TourOptions& options) {
   return results;
 }
 
-}  // namespace
-
 const std::vector<std::string>& tour_methods() {
   static const std::vector<std::string> names{
       "raw",     "dead_reckoning", "weighted_average", "elastic_printed",
@@ -234,13 +233,14 @@ const std::vector<std::string>& tour_methods() {
 }
 
 TourResult run_tours(const TourOptions& options) {
-  if (options.tours < 1 || options.seeds < 1) {
-    throw std::invalid_argument("the experiment needs a tour and a seed at least");
-  }
-  if (!(options.odometry_error > 0.0) || !(options.compass_error > 0.0)) {
-    throw std::invalid_argument("the odometry and compass errors must be above 0");
-  }
-  const std::vector<SeedErrors> seeds = run_seeds(options);
+  check(options);
+  std::vector<int> all(idx(options.seeds));
+  std::iota(all.begin(), all.end(), 0);
+  return average_tours(run_tour_seeds(options, all));
+}
+
+TourResult average_tours(const std::vector<SeedErrors>& seeds) {
+  if (seeds.empty()) throw std::invalid_argument("the experiment needs a seed at least");
   const auto over_seeds = [&seeds](const std::function<Errors(const SeedErrors&)>& pick) {
     std::vector<Errors> errors;
     errors.reserve(seeds.size());

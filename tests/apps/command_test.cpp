@@ -26,8 +26,8 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
-    "add",      "adjust", "build", "calibrate", "compare",  "convert", "diagnose",
-    "discover", "fit",    "noise", "reveal",    "simulate", "tour",    "umbmark"};
+    "add", "adjust", "build", "calibrate", "compare",  "convert", "diagnose", "discover",
+    "fit", "merge",  "noise", "reveal",    "simulate", "tour",    "umbmark"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;

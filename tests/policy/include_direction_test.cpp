@@ -30,10 +30,11 @@ using testing::text_of;
 
 /// From the foundations up; a room includes from itself and from those before it.
 const std::vector<std::string> kRooms = {
-    "geometry",   "text",       "statistics",  "linalg",     "recording",  "effects",
-    "odometry",   "truss",      "map",         "store",      "estimation", "fit",
-    "pose_graph", "build_map",  "calibration", "validation", "criticism",  "wording",
-    "check",      "simulation", "experiment",  "plot",       "report",     "io"};
+    "geometry",   "text",      "statistics", "linalg",    "recording",
+    "effects",    "odometry",  "truss",      "map",       "store",
+    "estimation", "fit",       "pose_graph", "build_map", "calibration",
+    "validation", "criticism", "wording",    "check",     "simulation",
+    "experiment", "plot",      "report",     "io",        "distributed"};
 
 /// Rooms that must not know of all before them. A simulator that shared the estimators' formulas
 /// would prove nothing about them; the truss is structural mechanics and knows no robots.
@@ -77,6 +78,7 @@ const std::map<std::string, std::string> kDoors = {{"error", "geometry"},
                                                    {"wording", "wording"},
                                                    {"check", "check"},
                                                    {"simulation", "simulation"},
+                                                   {"shards", "experiment"},
                                                    {"tour_experiment", "experiment"},
                                                    {"pages", "report"},
                                                    {"table", "text"},
@@ -84,7 +86,8 @@ const std::map<std::string, std::string> kDoors = {{"error", "geometry"},
                                                    {"map_files", "io"},
                                                    {"model_file", "io"},
                                                    {"recording_files", "io"},
-                                                   {"write_files", "io"}};
+                                                   {"write_files", "io"},
+                                                   {"distributed", "distributed"}};
 
 /// The umbrella includes all of them.
 constexpr const char* kUmbrella = "trussmap";
@@ -92,9 +95,9 @@ constexpr const char* kUmbrella = "trussmap";
 /// Files outside of src/ that include private headers: benches that look into a fit. A file that
 /// has come clean must be struck off.
 const std::set<std::string> kNotYetClean = {
-    "bench/bench_worlds.cpp",     "bench/bench_worlds.hpp",       "bench/criticism_bench.cpp",
-    "bench/noise_bench.cpp",      "bench/scale/ceres_rivals.cpp", "bench/scale/grid_part.cpp",
-    "bench/scale/online_part.cpp"};
+    "bench/bench_worlds.cpp",    "bench/bench_worlds.hpp",     "bench/criticism_bench.cpp",
+    "bench/criticism_parts.cpp", "bench/noise_bench.cpp",      "bench/scale/ceres_rivals.cpp",
+    "bench/scale/grid_part.cpp", "bench/scale/online_part.cpp"};
 
 struct Include {
   int line = 0;
@@ -216,8 +219,8 @@ TEST(IncludeDirection, PublicHeadersIncludePublicHeadersAlone) {
   }
 }
 
-TEST(IncludeDirection, ThereAreAtMostFortyPublicHeadersBesideTheUmbrella) {
-  EXPECT_LE(source_files({"include"}).size(), 40U + 1U);
+TEST(IncludeDirection, ThereAreAtMostFortyTwoPublicHeadersBesideTheUmbrella) {
+  EXPECT_LE(source_files({"include"}).size(), 42U + 1U);
 }
 
 TEST(IncludeDirection, ApplicationsUsePublicHeadersAlone) {

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "tour_output.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::json;
+
+json metrics_json(const TourMetrics& metrics) {
+  json result = {{"stretch_error", metrics.stretch_error.mean},
+                 {"stretch_error_se", metrics.stretch_error.standard_error},
+                 {"orientation_error_rad", metrics.orientation_error.mean},
+                 {"orientation_error_rad_se", metrics.orientation_error.standard_error}};
+  if (metrics.position_error) {
+    result["position_error_m"] = metrics.position_error->mean;
+    result["position_error_m_se"] = metrics.position_error->standard_error;
+  }
+  return result;
+}
+
+json result_json(const TourResult& result) {
+  json tours = json::array();
+  for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
+    json methods;
+    for (const auto& [name, metrics] : result.tours[tour]) methods[name] = metrics_json(metrics);
+    tours.push_back({{"tour", tour + 1}, {"methods", methods}});
+  }
+  return {{"tours", tours},
+          {"first_sight",
+           {{"before", metrics_json(result.first_sight_before)},
+            {"after", metrics_json(result.first_sight_after)}}}};
+}
+
+/// Which tours a table shows: the first few, then fewer and fewer, and the last.
+std::vector<std::size_t> shown_tours(std::size_t count) {
+  std::vector<std::size_t> shown;
+  for (const std::size_t tour : {1, 2, 3, 4, 5, 10, 20, 50, 100, 200, 500, 1000}) {
+    if (tour <= count) shown.push_back(tour);
+  }
+  if (shown.back() != count) shown.push_back(count);
+  return shown;
+}
+
+template <class Pick>
+void print_block(const TourResult& result, const char* title, int digits, const Pick& pick) {
+  fmt::print("\n{}\n  tour", title);
+  std::vector<std::string> methods;
+  for (const std::string& method : tour_methods()) {
+    if (pick(result.tours.front().at(method))) methods.push_back(method);
+  }
+  for (const std::string& method : methods) fmt::print("  {:>16}", method);
+  fmt::print("\n");
+  for (const std::size_t tour : shown_tours(result.tours.size())) {
+    fmt::print("  {:>4}", tour);
+    for (const std::string& method : methods) {
+      fmt::print("  {:>16.{}f}", pick(result.tours[tour - 1].at(method))->mean, digits);
+    }
+    fmt::print("\n");
+  }
+}
+
+}  // namespace
+
+void show_tours(const TourResult& result, const TourOutput& output) {
+  Files files;
+  if (!output.json_file.empty()) {
+    files.emplace_back(output.json_file, result_json(result).dump(2) + "\n");
+  }
+  if (output.page.wanted()) {
+    add_page(files, tour_page(result, output.seeds, output.world), output.page);
+  }
+  files.write();
+  const MethodMetrics& last = result.tours.back();
+  const double raw = last.at("raw").stretch_error.mean;
+  fmt::print(
+      "after {} tours the elastic map's mean error is {:.2f} % of a route's stretch and {:.4f} rad "
+      "of its orientation\n"
+      "(single measurements: {:.2f} %, {:.4f} rad; the best possible, the adjustment: {:.2f} %, "
+      "{:.4f} rad);\nmeans over {} seeds\n",
+      result.tours.size(), 100.0 * last.at("elastic").stretch_error.mean,
+      last.at("elastic").orientation_error.mean, 100.0 * raw, last.at("raw").orientation_error.mean,
+      100.0 * last.at("adjustment").stretch_error.mean,
+      last.at("adjustment").orientation_error.mean, output.seeds);
+  print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
+              [](const TourMetrics& f) { return std::optional<SeedMean>(f.stretch_error); });
+  print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
+              [](const TourMetrics& f) { return std::optional<SeedMean>(f.orientation_error); });
+  print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
+              [](const TourMetrics& f) { return f.position_error; });
+  fmt::print(
+      "\nfirst sight, tour 1: before {:.3f} / {:.3f} rad, after {:.3f} / {:.3f} rad "
+      "(the paper's Table I, one map: 0.049 / 0.033, then 0.046 / 0.032)\n",
+      result.first_sight_before.stretch_error.mean,
+      result.first_sight_before.orientation_error.mean, result.first_sight_after.stretch_error.mean,
+      result.first_sight_after.orientation_error.mean);
+}
+
+}  // namespace trussmap::app
