@@ -166,6 +166,7 @@ Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes, const ShapeConte
   const auto count = static_cast<Eigen::Index>(shapes.size());
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count, count);
   std::vector<std::vector<std::vector<double>>> values;
+  values.reserve(shapes.size());
   for (const Shape& shape : shapes) {
     values.push_back(context.values(shape, ShapeContext::Instant::middle));
   }
