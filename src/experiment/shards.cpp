@@ -105,7 +105,7 @@ ShardResults parse_shard_results(std::string_view text, const std::string& name)
   }
   try {
     if (file.at(kKind) != kVersion) throw std::invalid_argument("it is of another version");
-    const ShardResults found = results_of(file);
+    ShardResults found = results_of(file);
     require_its_trials(found, name);
     return found;
   } catch (const nlohmann::json::exception& error) {

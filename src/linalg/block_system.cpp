@@ -63,7 +63,7 @@ BlockSystem::BlockSystem(const std::vector<int>& sizes, const std::vector<NodePa
     place = places();
     pattern = pattern_of(pairs, place, pattern.nodes());
     for (std::size_t k = 0; k < free_nodes.size(); ++k) free_sizes[k] = sizes[idx(free_nodes[k])];
-    frontal_ = FrontalCholesky(std::move(tree), free_sizes);
+    frontal_ = FrontalCholesky(tree, free_sizes);
   }
   nodes_.resize(sizes.size());
   for (const int node : free_nodes) {
