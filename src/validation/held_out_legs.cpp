@@ -55,12 +55,13 @@ Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,
   const auto seen = [&](const LegEnd& end, const Eigen::MatrixXd& s) -> Eigen::MatrixXd {
     const auto c = rows_of(end.measurement);
     Eigen::MatrixXd result = end.by_pose * s + end.by_rows.leftCols(c.rows()) * c;
-    if (end.landmark >= 0) result += end.by_landmark * landmarks.middleRows(2 * end.landmark, 2);
+    if (end.landmark >= 0)
+      result += end.by_landmark * landmarks.middleRows(Eigen::Index{2} * end.landmark, 2);
     return result;
   };
   const auto target = [&](const LegEnd& end) -> Eigen::MatrixXd {
     if (end.landmark < 0) return Eigen::MatrixXd::Zero(2, count);
-    return landmarks.middleRows(2 * end.landmark, 2);
+    return landmarks.middleRows(Eigen::Index{2} * end.landmark, 2);
   };
   Eigen::MatrixXd result(6 * static_cast<Eigen::Index>(legs_.size()), count);
   Eigen::MatrixXd s = Eigen::MatrixXd::Zero(3, count);
