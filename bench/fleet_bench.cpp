@@ -37,10 +37,11 @@ struct Options {
   int tours = 2;
 };
 
-constexpr double kCommon = 0.004;
-constexpr double kBatch = 0.02;
-constexpr double kOutlier = 0.008;
-constexpr double kDriftPerDay = 0.0006;
+constexpr double kCommon = 0.002;
+constexpr double kBatch = 0.012;
+constexpr double kOutlier = 0.006;
+constexpr double kDriftPerDay = 0.0002;
+constexpr double kSpacing = 3.0;  // m
 constexpr int kBetweenDays = 10;
 constexpr std::size_t kOutliers = 5;
 
@@ -69,7 +70,7 @@ std::vector<FleetRow> drive_fleet(const Options& options, std::uint64_t seed, Tr
   truth = draw_truth(random, options.robots);
   Model model;
   const std::string text = format_model(model);
-  const Mesh mesh = even_mesh({3, 3}, 5.0);
+  const Mesh mesh = even_mesh({3, 3}, kSpacing);
   std::vector<FleetRow> rows;
   for (int robot = 0; robot < options.robots; ++robot) {
     const std::string name = robot_name(robot);

@@ -91,6 +91,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_fit(commands);
+  trussmap::app::setup_fleet(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);
   trussmap::app::setup_simulate(commands);

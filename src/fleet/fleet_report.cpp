@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostFindings = 8;
 constexpr double kLeastCosine = 0.95;
 /// Of what is found, in standard deviations, the share that its second order may leave elsewhere.
-constexpr double kRemainder = 0.05;
+constexpr double kRemainder = 0.1;
 /// Tests per candidate: all robots alike, robots as a whole, one robot, one robot's slope.
 constexpr double kKinds = 4.0;
 
@@ -118,7 +118,7 @@ class FleetSearch {
   [[nodiscard]] double found_in(const Conditioned& left, const FleetMember& member) const {
     double sum = 0.0;
     for (const std::size_t row : member.rows) {
-      sum += (ground_.rows[row].chi2 - left.rows[row].chi2) / left.rows[row].dispersion();
+      sum += (fleet_.rows[row].chi2 - left.rows[row].chi2) / left.rows[row].dispersion();
     }
     return std::max(0.0, sum);
   }
@@ -127,7 +127,8 @@ class FleetSearch {
   [[nodiscard]] Claim claim_of(std::size_t at, const Conditioned& left) const {
     const FleetBlock& block = fleet_.blocks[at];
     const double phi = left.all.dispersion();
-    const double found = (ground_.all.chi2 - left.all.chi2) / phi;
+    double found = 0.0;
+    for (const FleetMember& member : members_.members) found += found_in(left, member);
     const PooledTest pooled = pooled_test(fleet_, left.all, block, phi);
     const double common = beyond(pooled.score / phi, found);
     double p = chi2_p_value(common, pooled.dof);
@@ -179,6 +180,69 @@ class FleetSearch {
       left.sweep(fleet_.blocks[best.block].columns);
     }
     eliminate();
+    simplify();
+  }
+
+  /// How many robots need how many of these effects: of effects that span the same, those are told
+  /// that the fewest robots have.
+  [[nodiscard]] int burden_of(const std::vector<std::size_t>& blocks) const {
+    std::vector<Eigen::Index> all;
+    std::vector<std::vector<Eigen::Index>> own;
+    const auto take = [&](std::size_t block) {
+      std::vector<Eigen::Index> places;
+      for (const Eigen::Index column : fleet_.blocks[block].columns) {
+        places.push_back(static_cast<Eigen::Index>(all.size()));
+        all.push_back(column);
+      }
+      own.push_back(places);
+    };
+    for (const std::size_t one : blocks) take(one);
+    for (const std::size_t one : model_) take(one);
+    int burden = 0;
+    const auto robots = static_cast<double>(members_.members.size());
+    for (const FleetMember& member : members_.members) {
+      std::vector<double> sums(blocks.size(), 0.0);
+      std::vector<int> dof(blocks.size(), 0);
+      for (const std::size_t row : member.rows) {
+        const ColumnSums& whole = fleet_.rows[row];
+        const ColumnSums sub{whole.g(all), whole.S(all, all), whole.whole(all), whole.chi2,
+                             whole.dof};
+        ColumnSums after = sub;
+        for (const std::vector<Eigen::Index>& one : own) after.sweep(one);
+        for (std::size_t k = 0; k < blocks.size(); ++k) {
+          ColumnSums without = sub;
+          for (std::size_t other = 0; other < own.size(); ++other) {
+            if (other != k) without.sweep(own[other]);
+          }
+          sums[k] += (without.chi2 - after.chi2) / after.dispersion();
+          dof[k] += without.dof - after.dof;
+        }
+      }
+      for (std::size_t k = 0; k < blocks.size(); ++k) {
+        burden += dof[k] > 0 && sums[k] > chi2_quantile(1.0 - level_ / robots, dof[k]) ? 1 : 0;
+      }
+    }
+    return burden;
+  }
+
+  /// Exchanges what is found for its look-alikes, as long as fewer robots need fewer effects.
+  void simplify() {
+    int least = burden_of(found_);
+    for (bool better = true; better;) {
+      better = false;
+      for (std::size_t k = 0; k < found_.size(); ++k) {
+        for (const std::size_t rival : rivals_of(found_[k], conditioned(others(found_[k])))) {
+          if (std::find(found_.begin(), found_.end(), rival) != found_.end()) continue;
+          std::vector<std::size_t> exchanged = found_;
+          exchanged[k] = rival;
+          const int burden = burden_of(exchanged);
+          if (burden >= least) continue;
+          least = burden;
+          found_ = exchanged;
+          better = true;
+        }
+      }
+    }
   }
 
   void eliminate() {
@@ -205,7 +269,8 @@ class FleetSearch {
                                                std::vector<DayEstimate>(left.rows.size()));
     for (const FleetMember& member : members_.members) {
       // Of the other findings a second order is left here, too.
-      const double rest = 1.0 + kRemainder * kRemainder * found_in(left, member);
+      const double found_here = kRemainder * kRemainder * found_in(left, member);
+      const double rest = 1.0 + found_here;
       for (const std::size_t row : member.rows) {
         const ColumnSums& one = left.rows[row];
         const std::vector<Eigen::Index> columns = seen(block, one);
@@ -217,7 +282,7 @@ class FleetSearch {
         for (std::size_t k = 0; k < columns.size(); ++k) {
           const auto c = static_cast<Eigen::Index>(k);
           days[k][row] = {true, fleet_.reference[static_cast<std::size_t>(columns[k])] + step[c],
-                          C(c, c) * after.dispersion() * rest};
+                          C(c, c) * after.dispersion() * rest, found_here / rest};
         }
       }
     }
@@ -230,23 +295,32 @@ class FleetSearch {
     return result;
   }
 
-  /// |P v|/|v| of the trace v of the fleet's mean (of its strongest coefficient, where that is 0).
+  /// |P v|/|v| of the trace v of what all robots together say; of the same number of shapes.
+  [[nodiscard]] double cosine(const FleetBlock& block, const FleetBlock& rival,
+                              const Conditioned& left) const {
+    const Eigen::MatrixXd S = left.all.S(block.columns, block.columns);
+    const Eigen::VectorXd v = DenseLdlt(S).solve(left.all.g(block.columns));
+    const double length = v.dot(S * v);
+    const Eigen::MatrixXd R = left.all.S(rival.columns, rival.columns);
+    if (!(length > 0.0) || !(R.diagonal().maxCoeff() > 0.0)) return 0.0;
+    const Eigen::VectorXd c = left.all.S(rival.columns, block.columns) * v;
+    return std::min(1.0, std::sqrt(score_of(c, R) / length));
+  }
+
+  [[nodiscard]] std::vector<std::size_t> rivals_of(std::size_t at, const Conditioned& left) const {
+    std::vector<std::size_t> rivals;
+    for (std::size_t k = 0; k < fleet_.blocks.size(); ++k) {
+      if (k == at || fleet_.blocks[k].of_model) continue;
+      if (cosine(fleet_.blocks[at], fleet_.blocks[k], left) >= kLeastCosine) rivals.push_back(k);
+    }
+    return rivals;
+  }
+
   [[nodiscard]] std::vector<FleetLookAlike> look_alikes(std::size_t at,
                                                         const Conditioned& left) const {
     std::vector<FleetLookAlike> alike;
-    const FleetBlock& block = fleet_.blocks[at];
-    const Eigen::MatrixXd S = left.all.S(block.columns, block.columns);
-    Eigen::VectorXd v = DenseLdlt(S).solve(left.all.g(block.columns));
-    const double length = v.dot(S * v);
-    if (!(length > 0.0)) return alike;
-    for (std::size_t k = 0; k < fleet_.blocks.size(); ++k) {
-      const FleetBlock& rival = fleet_.blocks[k];
-      if (k == at || rival.of_model) continue;
-      const Eigen::MatrixXd R = left.all.S(rival.columns, rival.columns);
-      if (!(R.diagonal().maxCoeff() > 0.0)) continue;
-      const Eigen::VectorXd c = left.all.S(rival.columns, block.columns) * v;
-      const double cosine = std::sqrt(score_of(c, R) / length);
-      if (cosine >= kLeastCosine) alike.push_back({rival.effect, std::min(1.0, cosine)});
+    for (const std::size_t k : rivals_of(at, left)) {
+      alike.push_back({fleet_.blocks[k].effect, cosine(fleet_.blocks[at], fleet_.blocks[k], left)});
     }
     std::stable_sort(
         alike.begin(), alike.end(),

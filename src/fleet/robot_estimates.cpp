@@ -14,6 +14,7 @@
 namespace trussmap {
 namespace {
 
+constexpr double kMostRobots = 0.9;          // whose remainder a mean has to be beyond
 constexpr int kLeastGroup = 3;               // robots
 constexpr const char* kService = "service";  // the key whose date days count from
 
@@ -29,6 +30,7 @@ struct Line {
   double first_variance = 0.0;
   double misfit = 0.0;  ///< chi^2 about the line
   int dof = 0;
+  double remainder = 0.0;  ///< of the mean: error that robots may have in common
 };
 
 Line line_of(const FleetMember& member, const std::vector<DayEstimate>& days) {
@@ -48,6 +50,9 @@ Line line_of(const FleetMember& member, const std::vector<DayEstimate>& days) {
     Wy += w * one.value;
   }
   if (line.days == 0) return line;
+  double share = 0.0;
+  for (const std::size_t row : member.rows) share = std::max(share, days[row].remainder);
+  line.remainder = std::sqrt(share / W);
   const double x0 = Wx / W;
   line.mean = Wy / W;
   line.mean_variance = 1.0 / W;
@@ -151,6 +156,12 @@ Grouping grouping_by(const std::string& key, const FleetMembers& fleet,
   return result;
 }
 
+/// p of a mean that is as far from 0 as the remainder at most.
+double p_beyond(double mean, double sd, double remainder, int dof) {
+  const double z = std::max(0.0, std::abs(mean) - remainder) / sd;
+  return dof > 0 ? 2.0 * student_p_value(z, dof) : chi2_p_value(z * z, 1);
+}
+
 struct Fitted {
   std::vector<std::size_t> of;  ///< members
   RandomEffects effects;
@@ -226,6 +237,12 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
   }
   if (lines.empty()) return result;
   widen(lines);
+  double remainder = 0.0;  // at most, of any robot
+  std::vector<double> remainders;
+  for (const Line& one : lines) remainders.push_back(one.remainder);
+  std::sort(remainders.begin(), remainders.end());
+  remainder = remainders[static_cast<std::size_t>(kMostRobots *
+                                                  static_cast<double>(remainders.size() - 1))];
   find_drifts(result, lines, level, tests);
   std::vector<bool> drifts;
   for (const FleetRobot& one : result.members) drifts.push_back(one.drifts);
@@ -241,7 +258,10 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
     if (by.values.size() < 2) continue;
     const Fitted one = fitted(lines, drifts, by, level / tests);
     const double p = bonferroni(one.effects.p_groups, key_tests);
-    if (!(p < level)) continue;
+    const auto [least, most] =
+        std::minmax_element(one.effects.groups.begin(), one.effects.groups.end(),
+                            [](const GroupMean& a, const GroupMean& b) { return a.mean < b.mean; });
+    if (!(p < level) || most->mean - least->mean < 2.0 * remainder) continue;
     if (!chosen.empty() && by.group == chosen.front().second.group) {
       result.goes_with.front().same_as.push_back(key);
       continue;
@@ -273,7 +293,7 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
   const RandomEffects& effects = fit.effects;
   result.mean = effects.mean;
   result.sd = effects.sd;
-  result.p_common = bonferroni(effects.p_mean, tests);
+  result.p_common = bonferroni(p_beyond(effects.mean, effects.sd, remainder, effects.Q_dof), tests);
   result.common = result.p_common < level;
   if (!result.goes_with.empty()) {
     const std::vector<FleetGroup>& groups = result.goes_with.front().groups;

@@ -32,6 +32,7 @@ struct DayEstimate {
   bool seen = false;
   double value = 0.0;
   double variance = 0.0;
+  double remainder = 0.0;  ///< share of the variance that is second order, and may be of one sign
 };
 
 /// `days`: per row; `tests`: findings times coefficients that share the level.
