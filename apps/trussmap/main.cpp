@@ -105,6 +105,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_fit(commands);
+  trussmap::app::setup_fleet(commands);
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);

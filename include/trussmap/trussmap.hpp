@@ -31,6 +31,8 @@
 #include "trussmap/error.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/fit_model.hpp"
+#include "trussmap/fleet.hpp"
+#include "trussmap/fleet_store.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/held_out.hpp"
 #include "trussmap/landmark_map.hpp"

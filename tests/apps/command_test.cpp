@@ -244,7 +244,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(ran.output,
             "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
             "calibrate, check, "
-            "compare, convert, diagnose, discover, fit, merge, noise, reveal, simulate, tour, umbmark\n");
+            "compare, convert, diagnose, discover, fit, fleet, merge, noise, reveal, simulate, "
+            "tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

@@ -30,11 +30,11 @@ using testing::text_of;
 
 /// From the foundations up; a room includes from itself and from those before it.
 const std::vector<std::string> kRooms = {
-    "geometry",   "text",      "statistics", "linalg",    "recording",
-    "effects",    "odometry",  "truss",      "map",       "store",
-    "estimation", "fit",       "pose_graph", "build_map", "calibration",
-    "validation", "criticism", "wording",    "check",     "simulation",
-    "experiment", "plot",      "report",     "io",        "distributed"};
+    "geometry",   "text",       "statistics",  "linalg",     "recording",  "effects",
+    "odometry",   "truss",      "map",         "store",      "estimation", "fit",
+    "pose_graph", "build_map",  "calibration", "validation", "criticism",  "fleet",
+    "wording",    "check",      "simulation",  "experiment", "plot",       "report",
+    "io",         "distributed"};
 
 /// Rooms that must not know of all before them. A simulator that shared the estimators' formulas
 /// would prove nothing about them; the truss is structural mechanics and knows no robots.
@@ -75,6 +75,8 @@ const std::map<std::string, std::string> kDoors = {{"error", "geometry"},
                                                    {"diagnose", "criticism"},
                                                    {"discover", "criticism"},
                                                    {"evidence", "criticism"},
+                                                   {"fleet", "fleet"},
+                                                   {"fleet_store", "fleet"},
                                                    {"wording", "wording"},
                                                    {"check", "check"},
                                                    {"simulation", "simulation"},
