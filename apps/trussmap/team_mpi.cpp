@@ -34,7 +34,7 @@ constexpr double kPatience = 10.0;  // s, until a process counts as the only one
     std::fflush(stderr);
   }
   static_cast<void>(processes.all_come(kPatience));
-  throw SaidByAnother(status);
+  throw AlreadySaid(status);
 }
 
 }  // namespace

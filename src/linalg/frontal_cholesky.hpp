@@ -130,7 +130,6 @@ class FrontalInverse {
   explicit FrontalInverse(const FrontalCholesky& factor);
 
   const FrontalCholesky& factor_;
-  std::vector<int> front_;             ///< of each unknown
   std::unique_ptr<double[]> entries_;  ///< the fronts' first columns, as L's are stored
 };
 
