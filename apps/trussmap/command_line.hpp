@@ -23,10 +23,11 @@ namespace trussmap::app {
 /// Thrown by a command that has done its work, and has to say no by exit status 1.
 class AnswerIsNo : public std::exception {};
 
-/// Thrown in a process of several, where another says what went wrong: the exit status alone.
-class SaidByAnother : public std::exception {
+/// Thrown in each process of several, when one of them has said what went wrong: the exit status
+/// alone.
+class AlreadySaid : public std::exception {
  public:
-  explicit SaidByAnother(int status) : status_(status) {}
+  explicit AlreadySaid(int status) : status_(status) {}
   [[nodiscard]] int status() const { return status_; }
 
  private:

@@ -121,7 +121,7 @@ int run(int argc, char** argv) {
     return app.exit(wanted);
   } catch (const trussmap::app::AnswerIsNo&) {
     return kFailed;
-  } catch (const trussmap::app::SaidByAnother& other) {
+  } catch (const trussmap::app::AlreadySaid& other) {
     return other.status();
   } catch (const CLI::ParseError& error) {
     return complain(error, kBadInput);

@@ -35,8 +35,8 @@ class Team {
 };
 
 /// Runs `work` in each process of a team; true in the first of them, which goes on and prints.
-/// `always`: begins MPI even where nothing was launched. What fails in all processes is thrown by
-/// the first, SaidByAnother by the others; what fails in one alone ends all.
+/// `always`: begins MPI even where nothing was launched. What fails in all processes is said by
+/// the first, and all throw AlreadySaid; what fails in one alone ends all.
 bool run_together(bool always, const std::function<void(const Team&)>& work);
 
 }  // namespace trussmap::app

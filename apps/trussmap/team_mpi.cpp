@@ -5,11 +5,13 @@
 #include "command_line.hpp"
 #include "team.hpp"
 #include "trussmap/distributed.hpp"
+#include "trussmap/table.hpp"
 
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace trussmap::app {
 namespace {
@@ -25,8 +27,14 @@ constexpr double kPatience = 10.0;  // s, until a process counts as the only one
                  processes.count());
     processes.abort(status);
   }
-  if (processes.rank() > 0) throw SaidByAnother(status);
-  throw;
+  // Said before any of them ends: mpirun ends the others as soon as one has failed.
+  if (processes.rank() == 0) {
+    const std::string message = escaped_controls(error.what(), true);
+    std::fprintf(stderr, "trussmap: %s\n", shortened_words(message).c_str());
+    std::fflush(stderr);
+  }
+  static_cast<void>(processes.all_come(kPatience));
+  throw AlreadySaid(status);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace trussmap {
 
 /// What need not be found anew.
 struct KnownOfFit {
-  std::optional<std::string> missing =
-      {};  ///< name of the missing effect, empty where there is none
+  /// Name of the missing effect, empty where there is none.
+  std::optional<std::string> missing = {};
   std::optional<HeldOut> held_out = {};
 };
 

@@ -86,7 +86,7 @@ void EffectSearch::test_all() {
   std::vector<std::size_t> order(tested.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&tested](std::size_t a, std::size_t b) {
-    return texts_of(tested[a].effect.shape) < texts_of(tested[b].effect.shape);
+    return tested[a].effect.shape < tested[b].effect.shape;
   });
   std::vector<Candidate> by_shape;
   by_shape.reserve(tested.size());

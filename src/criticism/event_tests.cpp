@@ -4,7 +4,6 @@
 
 #include "criticism/event_scores.hpp"
 #include "criticism/single_events.hpp"
-#include "estimation/fitted_rows.hpp"
 #include "fit/fit_projection.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/multiple_tests.hpp"
@@ -12,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <Eigen/LU>
 
@@ -27,17 +27,17 @@ struct Ranked {
 };
 
 /// Sightings that the fit leaves out, against the fit without them.
-void add_left_out(const FitState& fit, const RecordingSystem& system, std::vector<Ranked>& ranked) {
+void add_left_out(const FitState& fit, const ScoreTest& tests, std::vector<Ranked>& ranked) {
   if (fit.adjustment.left_out.empty()) return;
   RecordingSystem whole(fit.problem, fit.columns.border);
   whole.linearise(fit.adjustment.state, fit.adjustment.coefficients);
-  const FittedRows fitted(system);
+  const std::shared_ptr<const FittedRows> fitted = tests.fitted_rows();
   for (const int left_out : fit.adjustment.left_out) {
     const std::size_t k = idx(left_out);
     const Measurement& one = fit.problem.measurements[k];
     const Eigen::VectorXd r = whole.residuals().segment(whole.first_row(k), one.rows);
     const Eigen::MatrixXd R =
-        Eigen::MatrixXd::Identity(one.rows, one.rows) + fitted.covariance(whole, k);
+        Eigen::MatrixXd::Identity(one.rows, one.rows) + fitted->covariance(whole, k);
     Ranked event;
     event.test.kind =
         one.kind == MeasurementKind::survey ? EventKind::landmark : EventKind::sighting;
@@ -104,7 +104,7 @@ std::vector<TestedEvent> test_events(const FitState& fit, const ScoreTest& tests
     }
     ranked.push_back(std::move(one));
   }
-  add_left_out(fit, system, ranked);
+  add_left_out(fit, tests, ranked);
   std::vector<double> p_values;
   for (Ranked& one : ranked) {
     one.test.p_value = std::exp(one.log_p);

@@ -65,10 +65,7 @@ ScoreTest::ScoreTest(const FitState& fit)
 }
 
 Eigen::MatrixXd ScoreTest::free_of_map(const Eigen::MatrixXd& M) const {
-  Eigen::MatrixXd left = M;
-  clean_system_->subtract_times(clean_system_->solve_nodes(clean_system_->transposed_times(M)),
-                                left);
-  return left;
+  return clean_system_->free_of_nodes(M);
 }
 
 Eigen::MatrixXd ScoreTest::projected(const Eigen::MatrixXd& M) const {

@@ -396,6 +396,11 @@ void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::Matrix
   }
 }
 
+Eigen::MatrixXd RecordingSystem::free_of_nodes(Eigen::MatrixXd columns) const {
+  if (columns.cols() > 0) subtract_times(solve_nodes(transposed_times(columns)), columns);
+  return columns;
+}
+
 Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const {
   const Measurement& one = problem_.measurements[measurement];
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns() + M_.cols(), one.rows);

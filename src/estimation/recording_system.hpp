@@ -114,6 +114,9 @@ class RecordingSystem {
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& nodes) const;
   /// rows -= J nodes.
   void subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const;
+  /// The columns less their projection on J: what landmarks and poses leave of them. Call after
+  /// factorise.
+  [[nodiscard]] Eigen::MatrixXd free_of_nodes(Eigen::MatrixXd columns) const;
   /// J's part of a measurement by the nodes that it touches: nodes of normal_equations().
   struct NodeRows {
     int node = -1;

@@ -26,9 +26,8 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
   Eigen::MatrixXd columns(system.rows(), M.cols() + nuisance.cols());
   columns.leftCols(M.cols()) = M;
   columns.rightCols(nuisance.cols()) = nuisance;
-  Q_ = columns;
+  Q_ = system.free_of_nodes(std::move(columns));
   if (Q_.cols() > 0) {
-    Q_ -= system.times(system.solve_nodes(system.transposed_times(columns)));
     // Each with the same say in what depends on what.
     for (Eigen::Index c = 0; c < Q_.cols(); ++c) {
       if (Q_.col(c).norm() > 0.0) Q_.col(c).normalize();
@@ -40,8 +39,7 @@ FitProjection::FitProjection(const FitState& fit, const RecordingProblem& proble
 Eigen::MatrixXd FitProjection::times(Eigen::MatrixXd columns) const {
   for (Eigen::Index first = 0; first < columns.cols(); first += kColumns) {
     auto some = columns.middleCols(first, std::min(kColumns, columns.cols() - first));
-    Eigen::MatrixXd left = some;
-    system_.subtract_times(system_.solve_nodes(system_.transposed_times(left)), left);
+    Eigen::MatrixXd left = system_.free_of_nodes(some);
     if (Q_.cols() > 0) left -= Q_ * (Q_.transpose() * left);
     some = left;
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -22,13 +23,13 @@ class Screening {
  public:
   Screening(const FitState& fit, const NoiseReml& reml) : fit_(fit), reml_(reml) {
     const RecordingSystem& system = reml.system();
-    const FitProjection P(fit, reml.problem(), system, free_of_map(system, reml.nuisance()));
+    const FitProjection P(fit, reml.problem(), system, system.free_of_nodes(reml.nuisance()));
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
     draws_.resize(system.rows(), kDraws + 1);
     for (double& value : draws_.reshaped()) value = normal(random);
     draws_.col(kDraws) = system.residuals();
-    draws_ = P.times(draws_);
+    draws_ = P.times(std::move(draws_));
   }
 
   /// q of each draw and, last, of the residuals; less the draws' mean. Nothing where there is
@@ -48,12 +49,6 @@ class Screening {
   }
 
  private:
-  [[nodiscard]] static Eigen::MatrixXd free_of_map(const RecordingSystem& system,
-                                                   const Eigen::MatrixXd& columns) {
-    if (columns.cols() == 0) return columns;
-    return columns - system.times(system.solve_nodes(system.transposed_times(columns)));
-  }
-
   /// y'V y of each column, V of a white component.
   [[nodiscard]] Eigen::VectorXd quadratic(const std::vector<Matrix4>& added,
                                           const Eigen::MatrixXd& draws) const {

@@ -49,7 +49,8 @@ class FrontalCholesky {
   void solve_columns(Eigen::MatrixXd& x) const;
 
   /// B' A^-1 B, of columns with few entries each: (row, column, value), those of one place are
-  /// added up. Cost: the fronts from the entries up to the root, once for up to 64 columns.
+  /// added up. Cost: the fronts from the entries up to the root, once for
+  /// all columns.
   [[nodiscard]] Eigen::MatrixXd inverse_products(const std::vector<Eigen::Triplet<double>>& b,
                                                  int columns) const;
 
@@ -129,7 +130,6 @@ class FrontalInverse {
   explicit FrontalInverse(const FrontalCholesky& factor);
 
   const FrontalCholesky& factor_;
-  std::vector<int> front_;             ///< of each unknown
   std::unique_ptr<double[]> entries_;  ///< the fronts' first columns, as L's are stored
 };
 

@@ -86,19 +86,16 @@ void FrontalCholesky::copy_rows(const Part& front, const double* parent, int abo
 }
 
 FrontalInverse::FrontalInverse(const FrontalCholesky& factor)
-    : factor_(factor),
-      front_(idx(factor.node_begin_.back())),
-      entries_(std::make_unique_for_overwrite<double[]>(factor.stored_)) {
+    : factor_(factor), entries_(std::make_unique_for_overwrite<double[]>(factor.stored_)) {
   factor.descend([&](std::size_t f, const double* inverse) {
     const FrontalCholesky::Part& front = factor.parts_[f];
     std::copy_n(inverse, area(front.rows, front.width), entries_.get() + front.panel);
-    std::fill_n(front_.begin() + front.unknown, front.width, static_cast<int>(f));
   });
 }
 
 Eigen::MatrixXd FrontalInverse::block(int row, int rows, int column, int columns) const {
   if (row < column) return block(column, columns, row, rows).transpose();
-  const FrontalCholesky::Part& front = factor_.parts_[idx(front_[idx(column)])];
+  const FrontalCholesky::Part& front = factor_.parts_[factor_.front_of(column)];
   int place = row - front.unknown;
   if (place >= front.width) {
     const auto begin = factor_.scalars_.begin() + front.scalars_begin;

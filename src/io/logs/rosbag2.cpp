@@ -102,9 +102,9 @@ fs::path named_file(const fs::path& folder, const fs::path& metadata, const std:
                      "names the file \"" + in_a_line(name) + "\", expected one within the folder");
   }
   if (in_a_line(name) != name) {
-    throw InputError(metadata.string(), 0,
-                     "names the file \"" + in_a_line(name) +
-                         "\", expected a name without control characters");
+    throw InputError(
+        metadata.string(), 0,
+        "names the file \"" + in_a_line(name) + "\", expected a name without control characters");
   }
   std::error_code ignored;
   // Before version 4 paths began with the folder's name.
