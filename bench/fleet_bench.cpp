@@ -10,6 +10,7 @@
 //   drift           one robot's wheel diameter ratio, from day to day
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fleet.hpp"
+#include "trussmap/fleet_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -18,6 +19,7 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <random>
 #include <set>
 #include <string>
@@ -35,6 +37,7 @@ struct Options {
   int robots = 300;
   int days = 3;
   int tours = 2;
+  std::string stores;
 };
 
 constexpr double kCommon = 0.002;
@@ -65,9 +68,8 @@ Truth draw_truth(std::mt19937_64& random, int robots) {
   return truth;
 }
 
-std::vector<FleetRow> drive_fleet(const Options& options, std::uint64_t seed, Truth& truth) {
-  std::mt19937_64 random(seed);
-  truth = draw_truth(random, options.robots);
+std::vector<FleetRow> drive_fleet(const Options& options, std::uint64_t seed,
+                                  std::mt19937_64& random, const Truth& truth) {
   Model model;
   const std::string text = format_model(model);
   const Mesh mesh = even_mesh({3, 3}, kSpacing);
@@ -95,6 +97,20 @@ std::vector<FleetRow> drive_fleet(const Options& options, std::uint64_t seed, Tr
       row.metadata = {{"tyre batch", tyre}, {"floor", floor}, {"software", software}};
       rows.push_back(std::move(row));
     }
+  }
+  return rows;
+}
+
+/// Driven, or read where its store is there.
+std::vector<FleetRow> rows_of(const Options& options, std::uint64_t seed, Truth& truth) {
+  std::mt19937_64 random(seed);
+  truth = draw_truth(random, options.robots);
+  const std::string store =
+      options.stores.empty() ? std::string() : fmt::format("{}{}.db", options.stores, seed);
+  if (!store.empty() && std::filesystem::exists(store)) return read_fleet(store);
+  std::vector<FleetRow> rows = drive_fleet(options, seed, random, truth);
+  if (!store.empty()) {
+    for (const FleetRow& row : rows) add_to_fleet(store, row);
   }
   return rows;
 }
@@ -149,7 +165,7 @@ void run(const Options& options) {
     const auto seed = static_cast<std::uint64_t>(options.first + k);
     const double start = processor_seconds();
     Truth truth;
-    const std::vector<FleetRow> rows = drive_fleet(options, seed, truth);
+    const std::vector<FleetRow> rows = rows_of(options, seed, truth);
     const double driven = processor_seconds();
     const FleetReport report = fleet_report(rows);
     const double done = processor_seconds();
@@ -187,6 +203,8 @@ int main(int argc, char** argv) try {
   app.add_option("--robots", options.robots, "Robots of each")->capture_default_str();
   app.add_option("--days", options.days, "Days of each robot")->capture_default_str();
   app.add_option("--tours", options.tours, "Tours of a day")->capture_default_str();
+  app.add_option("--stores", options.stores,
+                 "Keep each fleet as NAME, its seed, .db; one that is there is read, not driven");
   CLI11_PARSE(app, argc, argv);
   trussmap::bench::run(options);
   return 0;

@@ -5,6 +5,7 @@
 // and backward elimination of what the others explain; then each finding's robots.
 #include "fleet/pooled_sums.hpp"
 #include "fleet/robot_estimates.hpp"
+#include "fleet/worth_of_effects.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/multiple_tests.hpp"
@@ -23,6 +24,8 @@ constexpr std::size_t kMostFindings = 8;
 constexpr double kLeastCosine = 0.95;
 /// Of what is found, in standard deviations, the share that its second order may leave elsewhere.
 constexpr double kRemainder = 0.1;
+/// Chi^2 by which an exchange has to be better: what is less is rounding.
+constexpr double kBetter = 1e-3;
 /// Tests per candidate: all robots alike, robots as a whole, one robot, one robot's slope.
 constexpr double kKinds = 4.0;
 
@@ -183,51 +186,23 @@ class FleetSearch {
     simplify();
   }
 
-  /// How many robots need how many of these effects: of effects that span the same, those are told
-  /// that the fewest robots have.
-  [[nodiscard]] int burden_of(const std::vector<std::size_t>& blocks) const {
-    std::vector<Eigen::Index> all;
-    std::vector<std::vector<Eigen::Index>> own;
-    const auto take = [&](std::size_t block) {
-      std::vector<Eigen::Index> places;
-      for (const Eigen::Index column : fleet_.blocks[block].columns) {
-        places.push_back(static_cast<Eigen::Index>(all.size()));
-        all.push_back(column);
-      }
-      own.push_back(places);
-    };
-    for (const std::size_t one : blocks) take(one);
-    for (const std::size_t one : model_) take(one);
-    int burden = 0;
-    const auto robots = static_cast<double>(members_.members.size());
+  [[nodiscard]] double worth_of(const std::vector<std::size_t>& blocks) const {
+    std::vector<FleetBlock> effects;
+    for (const std::size_t block : blocks) effects.push_back(fleet_.blocks[block]);
+    const double level = level_ / static_cast<double>(members_.members.size());
+    double sum = 0.0;
     for (const FleetMember& member : members_.members) {
-      std::vector<double> sums(blocks.size(), 0.0);
-      std::vector<int> dof(blocks.size(), 0);
-      for (const std::size_t row : member.rows) {
-        const ColumnSums& whole = fleet_.rows[row];
-        const ColumnSums sub{whole.g(all), whole.S(all, all), whole.whole(all), whole.chi2,
-                             whole.dof};
-        ColumnSums after = sub;
-        for (const std::vector<Eigen::Index>& one : own) after.sweep(one);
-        for (std::size_t k = 0; k < blocks.size(); ++k) {
-          ColumnSums without = sub;
-          for (std::size_t other = 0; other < own.size(); ++other) {
-            if (other != k) without.sweep(own[other]);
-          }
-          sums[k] += (without.chi2 - after.chi2) / after.dispersion();
-          dof[k] += without.dof - after.dof;
-        }
-      }
-      for (std::size_t k = 0; k < blocks.size(); ++k) {
-        burden += dof[k] > 0 && sums[k] > chi2_quantile(1.0 - level_ / robots, dof[k]) ? 1 : 0;
-      }
+      std::vector<const ColumnSums*> days;
+      for (const std::size_t row : member.rows) days.push_back(&ground_.rows[row]);
+      sum += worth_of_effects(days, effects, level);
     }
-    return burden;
+    return sum;
   }
 
-  /// Exchanges what is found for its look-alikes, as long as fewer robots need fewer effects.
+  /// Exchanges what is found for its look-alikes, as long as they explain more, or the same with
+  /// fewer robots that need them.
   void simplify() {
-    int least = burden_of(found_);
+    double most = worth_of(found_);
     for (bool better = true; better;) {
       better = false;
       for (std::size_t k = 0; k < found_.size(); ++k) {
@@ -235,9 +210,9 @@ class FleetSearch {
           if (std::find(found_.begin(), found_.end(), rival) != found_.end()) continue;
           std::vector<std::size_t> exchanged = found_;
           exchanged[k] = rival;
-          const int burden = burden_of(exchanged);
-          if (burden >= least) continue;
-          least = burden;
+          const double worth = worth_of(exchanged);
+          if (worth < most + kBetter) continue;
+          most = worth;
           found_ = exchanged;
           better = true;
         }

@@ -99,30 +99,66 @@ void widen(std::vector<Line>& lines) {
   }
 }
 
-void find_drifts(FleetCoefficient& result, const std::vector<Line>& lines, double level,
+/// Slopes of the robots against each other.
+struct Slopes {
+  std::vector<std::size_t> of;  ///< members
+  std::vector<double> p;        ///< of each alone: of the slope that all have
+  std::vector<double> holm;     ///< over all of them
+};
+
+Slopes slopes_of(FleetCoefficient& result, const std::vector<Line>& lines, double level,
                  double tests) {
-  std::vector<MemberEstimate> slopes;
-  std::vector<std::size_t> of;
+  Slopes slopes;
+  std::vector<MemberEstimate> estimates;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     FleetRobot& robot = result.members[k];
     robot.has_slope = lines[k].has_slope;
     if (!robot.has_slope) continue;
     robot.slope = lines[k].slope;
     robot.slope_sd = std::sqrt(lines[k].slope_variance);
-    slopes.push_back({robot.slope, lines[k].slope_variance, 0});
-    of.push_back(k);
+    estimates.push_back({robot.slope, lines[k].slope_variance, 0});
+    slopes.of.push_back(k);
   }
-  if (slopes.empty()) return;
-  const RandomEffects all = random_effects(slopes, 1, level / tests);
+  if (estimates.empty()) return slopes;
+  const RandomEffects all = random_effects(estimates, 1, level / tests);
   result.slope = all.mean;
   result.slope_sd = all.sd;
   result.p_slope = bonferroni(all.p_mean, tests);
-  result.all_drift = slopes.size() > 1 && result.p_slope < level;
-  for (std::size_t k = 0; k < of.size(); ++k) {
-    FleetRobot& robot = result.members[of[k]];
-    robot.p_drifts = bonferroni(all.p_member[k], tests);
-    robot.drifts = robot.p_drifts < level;
+  result.all_drift = estimates.size() > 1 && result.p_slope < level;
+  slopes.holm = all.p_member;
+  for (const MemberEstimate& one : estimates) {
+    const double z2 =
+        (one.value - all.mean) * (one.value - all.mean) / (one.variance + all.tau * all.tau);
+    slopes.p.push_back(chi2_p_value(z2, 1));
   }
+  return slopes;
+}
+
+/// Two families share the level: the slopes of all robots, and of those whose mean differs. That
+/// slope and mean of a robot are independent makes the second one fair (Bourgon, Gentleman & Huber
+/// 2010): to be far off says nothing of the slope.
+constexpr double kFamilies = 2.0;
+
+/// Returns whether there are drifts that were not there before.
+bool find_drifts(FleetCoefficient& result, const Slopes& slopes, const std::vector<bool>& suspects,
+                 double level, double tests) {
+  std::vector<double> p;
+  for (std::size_t k = 0; k < slopes.of.size(); ++k) {
+    if (suspects[slopes.of[k]]) p.push_back(slopes.p[k]);
+  }
+  const std::vector<double> among = holm(p);
+  bool any = false;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < slopes.of.size(); ++k) {
+    FleetRobot& robot = result.members[slopes.of[k]];
+    double least = slopes.holm[k];
+    if (suspects[slopes.of[k]]) least = std::min(least, among[next++]);
+    robot.p_drifts = bonferroni(least, kFamilies * tests);
+    const bool drifts = robot.p_drifts < level;
+    any = any || (drifts && !robot.drifts);
+    robot.drifts = drifts;
+  }
+  return any;
 }
 
 /// Members by the values of a key; those of values that are too few have no group.
@@ -182,6 +218,118 @@ Fitted fitted(const std::vector<Line>& lines, const std::vector<bool>& drifts,
   return result;
 }
 
+/// What the robots' values go with, and the robots by it.
+struct Explanation {
+  std::vector<FleetKey> goes_with;  ///< at most one
+  Grouping grouping;
+  Fitted fit;
+};
+
+double outlying(const Fitted& fit) {
+  return static_cast<double>(
+      std::count(fit.effects.outlying.begin(), fit.effects.outlying.end(), true));
+}
+
+FleetKey key_of(const std::string& key, double p, const Grouping& by, const Fitted& fit,
+                double tests) {
+  FleetKey found{key, p, {}, {}};
+  for (std::size_t g = 0; g < by.values.size(); ++g) {
+    const GroupMean& group = fit.effects.groups[g];
+    found.groups.push_back(
+        {by.values[g], group.members, group.mean, group.sd,
+         bonferroni(group.p_value, tests * static_cast<double>(by.values.size()))});
+  }
+  return found;
+}
+
+/// Of keys that both matter the one that leaves fewer robots that differ and the smaller spread.
+Explanation explanation_of(const FleetMembers& seen, const std::vector<Line>& lines,
+                           const std::vector<bool>& drifts, double remainder, double level,
+                           double tests) {
+  const std::vector<bool> all(lines.size(), true);
+  Explanation best{{}, {{""}, std::vector<int>(lines.size(), 0)}, {}};
+  best.fit = fitted(lines, drifts, best.grouping, level / tests);
+  const double key_tests = tests * static_cast<double>(std::max<std::size_t>(1, seen.keys.size()));
+  double best_p = 1.0;
+  for (const std::string& key : seen.keys) {
+    const Grouping by = grouping_by(key, seen, all);
+    if (by.values.size() < 2) continue;
+    const Fitted one = fitted(lines, drifts, by, level / tests);
+    const double p = bonferroni(one.effects.p_groups, key_tests);
+    const auto [least, most] =
+        std::minmax_element(one.effects.groups.begin(), one.effects.groups.end(),
+                            [](const GroupMean& a, const GroupMean& b) { return a.mean < b.mean; });
+    if (!(p < level) || most->mean - least->mean < 2.0 * remainder) continue;
+    if (!best.goes_with.empty() && by.group == best.grouping.group) {
+      best.goes_with.front().same_as.push_back(key);
+      continue;
+    }
+    const double out = outlying(one);
+    const double had = outlying(best.fit);
+    const bool better =
+        best.goes_with.empty() || out < had ||
+        (out == had && (p < best_p || (p == best_p && one.effects.tau < best.fit.effects.tau)));
+    if (!better) continue;
+    best = {{key_of(key, p, by, one, tests)}, by, one};
+    best_p = p;
+  }
+  return best;
+}
+
+/// What a mean has to be beyond: of nearly every robot, the error that robots may have in common.
+double remainder_of(const std::vector<Line>& lines) {
+  std::vector<double> remainders;
+  for (const Line& one : lines) remainders.push_back(one.remainder);
+  std::sort(remainders.begin(), remainders.end());
+  return remainders[static_cast<std::size_t>(kMostRobots *
+                                             static_cast<double>(remainders.size() - 1))];
+}
+
+void take_means(FleetCoefficient& result, const Explanation& found, double remainder, double level,
+                double tests) {
+  const RandomEffects& effects = found.fit.effects;
+  result.goes_with = found.goes_with;
+  result.mean = effects.mean;
+  result.sd = effects.sd;
+  result.p_common = bonferroni(p_beyond(effects.mean, effects.sd, remainder, effects.Q_dof), tests);
+  result.common = result.p_common < level;
+  if (!result.goes_with.empty()) {
+    const std::vector<FleetGroup>& groups = result.goes_with.front().groups;
+    result.common = std::all_of(groups.begin(), groups.end(), [&](const FleetGroup& one) {
+      return one.p_value < level && (one.mean > 0.0) == (groups.front().mean > 0.0);
+    });
+  }
+  result.tau = effects.tau;
+  result.p_tau = bonferroni(effects.p_tau, tests);
+  result.Q = effects.Q;
+  result.Q_dof = effects.Q_dof;
+}
+
+void take_robots(FleetCoefficient& result, const Explanation& found, const std::vector<Line>& lines,
+                 double tests) {
+  const RandomEffects& effects = found.fit.effects;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    FleetRobot& robot = result.members[k];
+    robot.value = robot.drifts ? lines[k].first : lines[k].mean;
+    robot.sd = std::sqrt(robot.drifts ? lines[k].first_variance : lines[k].mean_variance);
+    robot.shrunken = robot.value;
+    robot.shrunken_sd = robot.sd;
+  }
+  for (std::size_t at = 0; at < found.fit.of.size(); ++at) {
+    const std::size_t k = found.fit.of[at];
+    FleetRobot& robot = result.members[k];
+    robot.p_differs = bonferroni(effects.p_member[at], tests);
+    robot.differs = effects.outlying[at];
+    if (robot.differs) continue;
+    const GroupMean& group = effects.groups[static_cast<std::size_t>(found.grouping.group[k])];
+    const double tau2 = effects.tau * effects.tau;
+    const double share = tau2 / (tau2 + robot.sd * robot.sd);
+    robot.shrunken = group.mean + share * (robot.value - group.mean);
+    robot.shrunken_sd = std::sqrt(share * robot.sd * robot.sd +
+                                  (1.0 - share) * (1.0 - share) * group.sd * group.sd);
+  }
+}
+
 }  // namespace
 
 FleetMembers fleet_members(const std::vector<FleetRow>& rows) {
@@ -221,110 +369,33 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
                                      double tests) {
   FleetCoefficient result;
   std::vector<Line> lines;
-  std::vector<bool> there;
+  FleetMembers seen{{}, fleet.keys};
   for (const FleetMember& member : fleet.members) {
     const Line line = line_of(member, days);
-    there.push_back(line.days > 0);
     if (line.days == 0) continue;
-    ++result.robots;
+    seen.members.push_back(member);
+    lines.push_back(line);
+    result.members.push_back({member.robot, line.days});
   }
-  FleetMembers seen{{}, fleet.keys};
-  for (std::size_t k = 0; k < there.size(); ++k) {
-    if (!there[k]) continue;
-    seen.members.push_back(fleet.members[k]);
-    lines.push_back(line_of(fleet.members[k], days));
-    result.members.push_back({fleet.members[k].robot, lines.back().days});
-  }
+  result.robots = static_cast<int>(lines.size());
   if (lines.empty()) return result;
   widen(lines);
-  double remainder = 0.0;  // at most, of any robot
-  std::vector<double> remainders;
-  for (const Line& one : lines) remainders.push_back(one.remainder);
-  std::sort(remainders.begin(), remainders.end());
-  remainder = remainders[static_cast<std::size_t>(kMostRobots *
-                                                  static_cast<double>(remainders.size() - 1))];
-  find_drifts(result, lines, level, tests);
-  std::vector<bool> drifts;
-  for (const FleetRobot& one : result.members) drifts.push_back(one.drifts);
-
-  const std::vector<bool> all(lines.size(), true);
-  Grouping grouping{{""}, std::vector<int>(lines.size(), 0)};
-  Fitted fit = fitted(lines, drifts, grouping, level / tests);
-  const double key_tests = tests * static_cast<double>(std::max<std::size_t>(1, fleet.keys.size()));
-  std::vector<std::pair<std::string, Grouping>> chosen;
-  double best_p = 1.0;
-  for (const std::string& key : fleet.keys) {
-    Grouping by = grouping_by(key, seen, all);
-    if (by.values.size() < 2) continue;
-    const Fitted one = fitted(lines, drifts, by, level / tests);
-    const double p = bonferroni(one.effects.p_groups, key_tests);
-    const auto [least, most] =
-        std::minmax_element(one.effects.groups.begin(), one.effects.groups.end(),
-                            [](const GroupMean& a, const GroupMean& b) { return a.mean < b.mean; });
-    if (!(p < level) || most->mean - least->mean < 2.0 * remainder) continue;
-    if (!chosen.empty() && by.group == chosen.front().second.group) {
-      result.goes_with.front().same_as.push_back(key);
-      continue;
+  const double remainder = remainder_of(lines);
+  const Slopes slopes = slopes_of(result, lines, level, tests);
+  std::vector<bool> suspects(lines.size(), false);
+  find_drifts(result, slopes, suspects, level, tests);
+  for (;;) {
+    std::vector<bool> drifts;
+    for (const FleetRobot& one : result.members) drifts.push_back(one.drifts);
+    const Explanation found = explanation_of(seen, lines, drifts, remainder, level, tests);
+    for (std::size_t at = 0; at < found.fit.of.size(); ++at) {
+      if (found.fit.effects.outlying[at]) suspects[found.fit.of[at]] = true;
     }
-    // Of keys that both matter the one that leaves the smaller spread and fewer robots that differ.
-    const auto left = [](const Fitted& f) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < f.effects.outlying.size(); ++k) sum += f.effects.outlying[k];
-      return sum;
-    };
-    const bool better = chosen.empty() || left(one) < left(fit) ||
-                        (left(one) == left(fit) &&
-                         (p < best_p || (p == best_p && one.effects.tau < fit.effects.tau)));
-    if (!better) continue;
-    chosen = {{key, by}};
-    best_p = p;
-    fit = one;
-    FleetKey found{key, p, {}, {}};
-    for (std::size_t g = 0; g < by.values.size(); ++g) {
-      const GroupMean& group = one.effects.groups[g];
-      found.groups.push_back(
-          {by.values[g], group.members, group.mean, group.sd,
-           bonferroni(group.p_value, tests * static_cast<double>(by.values.size()))});
-    }
-    result.goes_with = {found};
+    if (find_drifts(result, slopes, suspects, level, tests)) continue;
+    take_means(result, found, remainder, level, tests);
+    take_robots(result, found, lines, tests);
+    return result;
   }
-  if (!chosen.empty()) grouping = chosen.front().second;
-
-  const RandomEffects& effects = fit.effects;
-  result.mean = effects.mean;
-  result.sd = effects.sd;
-  result.p_common = bonferroni(p_beyond(effects.mean, effects.sd, remainder, effects.Q_dof), tests);
-  result.common = result.p_common < level;
-  if (!result.goes_with.empty()) {
-    const std::vector<FleetGroup>& groups = result.goes_with.front().groups;
-    result.common = std::all_of(groups.begin(), groups.end(), [&](const FleetGroup& one) {
-      return one.p_value < level && (one.mean > 0.0) == (groups.front().mean > 0.0);
-    });
-  }
-  result.tau = effects.tau;
-  result.p_tau = bonferroni(effects.p_tau, tests);
-  result.Q = effects.Q;
-  result.Q_dof = effects.Q_dof;
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    FleetRobot& robot = result.members[k];
-    robot.value = drifts[k] ? lines[k].first : lines[k].mean;
-    robot.sd = std::sqrt(drifts[k] ? lines[k].first_variance : lines[k].mean_variance);
-    robot.shrunken = robot.value;
-    robot.shrunken_sd = robot.sd;
-  }
-  for (std::size_t at = 0; at < fit.of.size(); ++at) {
-    FleetRobot& robot = result.members[fit.of[at]];
-    robot.p_differs = bonferroni(effects.p_member[at], tests);
-    robot.differs = effects.outlying[at];
-    if (robot.differs) continue;
-    const GroupMean& group = effects.groups[static_cast<std::size_t>(grouping.group[fit.of[at]])];
-    const double tau2 = effects.tau * effects.tau;
-    const double share = tau2 / (tau2 + robot.sd * robot.sd);
-    robot.shrunken = group.mean + share * (robot.value - group.mean);
-    robot.shrunken_sd = std::sqrt(share * robot.sd * robot.sd +
-                                  (1.0 - share) * (1.0 - share) * group.sd * group.sd);
-  }
-  return result;
 }
 
 }  // namespace trussmap
