@@ -52,6 +52,7 @@
 #include "trussmap/survey_comparison.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"
+#include "trussmap/threads.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/truss.hpp"
 #include "trussmap/umbmark.hpp"
