@@ -10,7 +10,6 @@
 //   drift           one robot's wheel diameter ratio, from day to day
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fleet.hpp"
-#include "trussmap/fleet_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/simulation.hpp"
 

@@ -9,7 +9,6 @@
 #include "terminal.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
-#include "trussmap/fleet_store.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
@@ -88,7 +87,8 @@ void run_add(const AddCommand& options) {
 void run_merge(const MergeCommand& options) {
   const std::size_t rows =
       merge_fleets(options.out, {options.shards.begin(), options.shards.end()});
-  fmt::print("{}: {} days of robots\n", escaped_controls(options.out), rows);
+  fmt::print("{}: {} {}\n", escaped_controls(options.out), rows,
+             rows == 1 ? "day of a robot" : "days of robots");
 }
 
 ordered_json json(const FleetRobot& one) {
@@ -97,12 +97,12 @@ ordered_json json(const FleetRobot& one) {
           {"value", one.value},
           {"sd", one.sd},
           {"shrunken", one.shrunken},
-          {"shrunken_sd", one.shrunken_sd},
+          {"sd_shrunken", one.shrunken_sd},
           {"differs", one.differs},
           {"p_differs", one.p_differs},
           {"drifts", one.drifts},
           {"slope_per_day", one.has_slope ? ordered_json(one.slope) : ordered_json(nullptr)},
-          {"slope_sd", one.slope_sd},
+          {"sd_slope_per_day", one.has_slope ? ordered_json(one.slope_sd) : ordered_json(nullptr)},
           {"p_drifts", one.p_drifts}};
 }
 
@@ -111,7 +111,7 @@ ordered_json json(const FleetCoefficient& one) {
       {"shape", one.shape},     {"robots", one.robots},       {"mean", one.mean},
       {"sd", one.sd},           {"p_common", one.p_common},   {"common", one.common},
       {"tau", one.tau},         {"p_tau", one.p_tau},         {"Q", one.Q},
-      {"Q_dof", one.Q_dof},     {"slope_per_day", one.slope}, {"slope_sd", one.slope_sd},
+      {"Q_dof", one.Q_dof},     {"slope_per_day", one.slope}, {"sd_slope_per_day", one.slope_sd},
       {"p_slope", one.p_slope}, {"all_drift", one.all_drift}};
   ordered_json keys = ordered_json::array();
   for (const FleetKey& key : one.goes_with) {
@@ -189,16 +189,17 @@ void setup_fleet_add(const Command& fleet) {
       .required()
       .type_name("FILE");
   command.add_option("ROBOT", options->robot, "The robot's name").required().type_name("NAME");
-  add_model_recordings(command, options->input);
+  add_fitted_recordings(command, options->input);
   command.add_option("--date", options->date, "Its day (YYYY-MM-DD; else today, UTC)")
       .type_name("DATE");
   command
       .add_option("--meta", options->metadata,
-                  "What effects may go with: tyre, floor, software; service=DATE: drift counts "
-                  "from there")
+                  "What effects may go with (tyre, floor, software); service=DATE: days of drift "
+                  "count from there")
       .one_value_each()
       .type_name("KEY=VALUE");
-  command.add_flag("--replace", options->replace, "Replace that robot's day");
+  command.add_flag("--replace", options->replace,
+                   "Replace that robot's day where it is there already");
   command.callback([options] { run_add(*options); });
 }
 

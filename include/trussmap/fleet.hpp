@@ -4,7 +4,7 @@
 // Many robots of one model: what all of them have, which differ, which drift, and what that goes
 // with. From sums that are kept per robot and day, never from their recordings again.
 //
-//   recordings of a robot's day --fleet_row--> FleetRow --store (fleet_store.hpp)--> rows
+//   recordings of a robot's day --fleet_row--> FleetRow --add_to_fleet, read_fleet--> rows
 //   rows --fleet_report--> FleetReport           rows --pooled_tests--> score tests of all
 //
 //   M   whitened columns, landmarks and poses projected out, of the model's effects and of all
@@ -28,6 +28,7 @@
 
 #include <compare>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -78,6 +79,27 @@ struct FleetRow {
 /// Days from 1970-01-01. Throws InputError unless it is YYYY-MM-DD.
 [[nodiscard]] int day_number(const std::string& date);
 
+// ----------------------------------------
+// Rows in a database: one per robot and day, all of one model (link trussmap::store). Programs that
+// add at the same time wait for each other; none loses a row. Merged stores hold the same whatever
+// the order of the shards.
+
+/// Makes the store where it is not there. Throws InputError where it is no fleet store, has another
+/// model, or has that robot's day already (unless `replace`).
+void add_to_fleet(const std::filesystem::path& file, const FleetRow& row, bool replace = false);
+
+/// By robot and date. Throws InputError where it is none, or is damaged.
+[[nodiscard]] std::vector<FleetRow> read_fleet(const std::filesystem::path& file);
+
+/// All rows of the shards, written as a new store whole or not at all (one that is there is
+/// replaced). A row may be in several shards if it is the same in all; else InputError, as where
+/// models differ. Returns how many rows there are.
+std::size_t merge_fleets(const std::filesystem::path& out,
+                         const std::vector<std::filesystem::path>& shards);
+
+// ----------------------------------------
+// What they say together.
+
 /// A score test of all rows together.
 struct PooledTest {
   bool of_model = false;
@@ -107,7 +129,7 @@ struct FleetRobot {
   bool has_slope = false;
   double slope = 0.0;  ///< per day
   double slope_sd = 0.0;
-  double p_drifts = 1.0;  ///< likewise
+  double p_drifts = 1.0;  ///< likewise; of one that differs Holm over these; two families
   bool drifts = false;
 };
 

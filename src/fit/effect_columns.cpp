@@ -99,6 +99,10 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   return variables_.emplace(key, made()).first->second;
 }
 
+void ShapeContext::prepare(Instant at) const {
+  for (std::size_t s = 0; s < recordings_.size(); ++s) static_cast<void>(variables(s, at));
+}
+
 std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instant at) const {
   std::vector<std::vector<double>> result;
   result.reserve(recordings_.size());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/fleet_store.hpp"
+#include "trussmap/fleet.hpp"
 
 #include "store/database.hpp"
 #include "text/number_text.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Stores of fleets: nothing is lost, and shards merge to the same whatever their order.
-#include "trussmap/fleet_store.hpp"
+#include "trussmap/fleet.hpp"
 
 #include "child_process.hpp"
 #include "scratch_folder.hpp"

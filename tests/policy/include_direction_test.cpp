@@ -30,11 +30,11 @@ using testing::text_of;
 
 /// From the foundations up; a room includes from itself and from those before it.
 const std::vector<std::string> kRooms = {
-    "geometry",   "text",       "statistics",  "linalg",     "recording",  "effects",
-    "odometry",   "truss",      "map",         "store",      "estimation", "fit",
-    "pose_graph", "build_map",  "calibration", "validation", "criticism",  "fleet",
-    "wording",    "check",      "simulation",  "experiment", "plot",       "report",
-    "io",         "distributed"};
+    "parallel", "geometry",   "text",       "statistics",  "linalg",     "recording",
+    "effects",  "odometry",   "truss",      "map",         "store",      "estimation",
+    "fit",      "pose_graph", "build_map",  "calibration", "validation", "criticism",
+    "fleet",    "wording",    "check",      "simulation",  "experiment", "plot",
+    "report",   "io",         "distributed"};
 
 /// Rooms that must not know of all before them. A simulator that shared the estimators' formulas
 /// would prove nothing about them; the truss is structural mechanics and knows no robots.
@@ -42,11 +42,12 @@ const std::map<std::string, std::set<std::string>> kOnly = {
     {"simulation", {"geometry", "text", "statistics", "recording", "effects", "simulation"}},
     {"truss", {"geometry", "text", "linalg", "truss"}},
     {"store", {"geometry", "text", "linalg", "truss", "map", "store"}},
-    {"linalg", {"geometry", "linalg"}},
+    {"linalg", {"parallel", "geometry", "linalg"}},
 };
 
 /// The room that each public header belongs to.
-const std::map<std::string, std::string> kDoors = {{"error", "geometry"},
+const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
+                                                   {"error", "geometry"},
                                                    {"gate", "geometry"},
                                                    {"planar", "geometry"},
                                                    {"recording", "recording"},
@@ -76,7 +77,6 @@ const std::map<std::string, std::string> kDoors = {{"error", "geometry"},
                                                    {"discover", "criticism"},
                                                    {"evidence", "criticism"},
                                                    {"fleet", "fleet"},
-                                                   {"fleet_store", "fleet"},
                                                    {"wording", "wording"},
                                                    {"check", "check"},
                                                    {"simulation", "simulation"},
@@ -221,8 +221,8 @@ TEST(IncludeDirection, PublicHeadersIncludePublicHeadersAlone) {
   }
 }
 
-TEST(IncludeDirection, ThereAreAtMostFortyTwoPublicHeadersBesideTheUmbrella) {
-  EXPECT_LE(source_files({"include"}).size(), 42U + 1U);
+TEST(IncludeDirection, ThereAreAtMostFortyFourPublicHeadersBesideTheUmbrella) {
+  EXPECT_LE(source_files({"include"}).size(), 44U + 1U);
 }
 
 TEST(IncludeDirection, ApplicationsUsePublicHeadersAlone) {
