@@ -205,9 +205,13 @@ void setup_fleet_add(const Command& fleet) {
 
 void setup_fleet_merge(const Command& fleet) {
   auto options = std::make_shared<MergeCommand>();
-  const Command command = fleet.add_subcommand("merge", "Merge stores into a new one");
-  command.add_option("OUT", options->out, "The new store").required().type_name("FILE");
-  command.add_option("SHARD", options->shards, "Stores to be merged").required().type_name("FILE");
+  const Command command = fleet.add_subcommand("merge", "Add all days of other stores to a store");
+  command.add_option("FLEET", options->out, "Store of the fleet, made where it is not there")
+      .required()
+      .type_name("FILE");
+  command.add_option("SHARD", options->shards, "Stores whose days it gets, all or none")
+      .required()
+      .type_name("FILE");
   command.callback([options] { run_merge(*options); });
 }
 

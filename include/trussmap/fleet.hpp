@@ -91,9 +91,9 @@ void add_to_fleet(const std::filesystem::path& file, const FleetRow& row, bool r
 /// By robot and date. Throws InputError where it is none, or is damaged.
 [[nodiscard]] std::vector<FleetRow> read_fleet(const std::filesystem::path& file);
 
-/// All rows of the shards, written as a new store whole or not at all (one that is there is
-/// replaced). A row may be in several shards if it is the same in all; else InputError, as where
-/// models differ. Returns how many rows there are.
+/// Adds all rows of the shards to a store, made where it is not there: all or none. A row may be in
+/// several if it is the same in all; else InputError, as where models differ. Returns how many rows
+/// the store then has.
 std::size_t merge_fleets(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& shards);
 

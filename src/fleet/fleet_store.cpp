@@ -1,19 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/fleet.hpp"
-
 #include "store/database.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/fleet.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <tuple>
-#include <unistd.h>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -246,6 +245,45 @@ void in_turn(const Database& database, const Call& call) {
   }
 }
 
+/// Within a transaction: makes what is fresh, and refuses what is no store, or of another model.
+void expect_model(const Database& database, const fs::path& file, const FleetRow& row) {
+  const bool fresh = database.number("SELECT count(*) FROM sqlite_schema") == 0 &&
+                     database.number("PRAGMA application_id") == 0;
+  if (fresh) {
+    make(database);
+    Statement model(database, "INSERT INTO model VALUES (1, ?)");
+    model.bind(0, row.model).run();
+  }
+  check_kind(database, file);
+  if (model_in(database) == row.model) return;
+  throw InputError(file.string(), 0,
+                   joined("is of another model than robot ", row.robot, " on ", row.date,
+                          ", and these do not pool, expected the same model"));
+}
+
+using DayKey = std::pair<std::string, std::string>;  // robot, date
+
+struct ShardRow {
+  FleetRow row;
+  fs::path shard;
+};
+
+/// Takes rows that are new; throws where one that is known is other than before.
+void gather(std::map<DayKey, ShardRow>& rows, const fs::path& shard, std::vector<FleetRow> more) {
+  for (FleetRow& row : more) {
+    if (!rows.empty() && rows.begin()->second.row.model != row.model) {
+      throw InputError(shard.string(), 0,
+                       joined("is of another model than ", rows.begin()->second.shard.string(),
+                              ", and these do not pool, expected the same model"));
+    }
+    const auto [found, is_new] = rows.try_emplace({row.robot, row.date}, ShardRow{row, shard});
+    if (is_new || is_same(found->second.row, row)) continue;
+    throw InputError(shard.string(), 0,
+                     joined("has other figures for robot ", row.robot, " on ", row.date, " than ",
+                            found->second.shard.string(), ", expected the same or only one"));
+  }
+}
+
 }  // namespace
 
 void add_to_fleet(const fs::path& file, const FleetRow& row, bool replace) {
@@ -253,19 +291,7 @@ void add_to_fleet(const fs::path& file, const FleetRow& row, bool replace) {
   naming(file, [&] {
     const Database database(place, Database::Access::write);
     in_turn(database, [&] {
-      const bool fresh = database.number("SELECT count(*) FROM sqlite_schema") == 0 &&
-                         database.number("PRAGMA application_id") == 0;
-      if (fresh) {
-        make(database);
-        Statement model(database, "INSERT INTO model VALUES (1, ?)");
-        model.bind(0, row.model).run();
-      }
-      check_kind(database, file);
-      if (model_in(database) != row.model) {
-        throw InputError(file.string(), 0,
-                         joined("is of another model than robot ", row.robot, " on ", row.date,
-                                ", and these do not pool, expected the same model"));
-      }
+      expect_model(database, file, row);
       Statement there(database, "SELECT 1 FROM days WHERE robot = ? AND date = ?");
       there.bind(0, row.robot).bind(1, row.date);
       const bool known = there.step();
@@ -291,49 +317,28 @@ std::vector<FleetRow> read_fleet(const fs::path& file) {
 }
 
 std::size_t merge_fleets(const fs::path& out, const std::vector<fs::path>& shards) {
-  std::map<std::pair<std::string, std::string>, std::pair<FleetRow, fs::path>> rows;
-  for (const fs::path& shard : shards) {
-    for (FleetRow& row : read_fleet(shard)) {
-      if (!rows.empty() && rows.begin()->second.first.model != row.model) {
-        throw InputError(shard.string(), 0,
-                         joined("is of another model than ", rows.begin()->second.second.string(),
-                                ", and these do not pool, expected the same model"));
-      }
-      std::pair<std::string, std::string> key{row.robot, row.date};
-      const auto found = rows.find(key);
-      if (found == rows.end()) {
-        rows.emplace(std::move(key), std::make_pair(std::move(row), shard));
-      } else if (!is_same(found->second.first, row)) {
-        throw InputError(
-            shard.string(), 0,
-            joined("has other figures for robot ", row.robot, " on ", row.date, " than ",
-                   found->second.second.string(), ", expected the same or only one"));
-      }
-    }
-  }
-  if (rows.empty())
+  std::map<DayKey, ShardRow> rows;
+  for (const fs::path& shard : shards) gather(rows, shard, read_fleet(shard));
+  if (rows.empty()) {
     throw InputError(out.string(), 0, "would have no rows, expected some in shards");
-  const fs::path place = place_of(out);
-  fs::path part = place;
-  part += joined(".", ::getpid(), ".trussmap-part");
-  std::error_code ignored;
-  try {
-    naming(out, [&] {
-      fs::remove(part, ignored);
-      const Database database(part, Database::Access::write);
-      in_turn(database, [&] {
-        make(database);
-        Statement model(database, "INSERT INTO model VALUES (1, ?)");
-        model.bind(0, rows.begin()->second.first.model).run();
-        for (const auto& [key, row] : rows) put(database, row.first);
-      });
-    });
-    fs::rename(part, place);
-  } catch (...) {
-    fs::remove(part, ignored);
-    throw;
   }
-  return rows.size();
+  const fs::path place = place_of(out);
+  return naming(out, [&] {
+    const Database database(place, Database::Access::write);
+    std::size_t count = 0;
+    in_turn(database, [&] {
+      expect_model(database, out, rows.begin()->second.row);
+      std::vector<FleetRow> had = rows_in(database);
+      std::set<DayKey> known;
+      for (const FleetRow& row : had) known.emplace(row.robot, row.date);
+      gather(rows, out, std::move(had));
+      for (const auto& [key, one] : rows) {
+        if (!known.contains(key)) put(database, one.row);
+      }
+      count = rows.size();
+    });
+    return count;
+  });
 }
 
 }  // namespace trussmap

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // trussmap fleet, as a user meets it.
-#include "child_process.hpp"
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <future>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -51,6 +51,29 @@ TEST(FleetCommand, AddsMergesAndReports) {
         "fleet report " + at + "none.db", "fleet report " + at + "s1/drive.csv"}) {
     EXPECT_EQ(run_trussmap(wrong).status, 2) << wrong;
   }
+}
+
+TEST(FleetCommand, TwoThatAddAtOnceLoseNothing) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --tours 1 --seed 1 --out " + at + "s").status, 0);
+  constexpr int kDays = 4;
+  const auto complaints_of = [&at](const std::string& robot) {
+    std::string complaints;
+    for (int day = 1; day <= kDays; ++day) {
+      const testing::Ran ran =
+          run_trussmap("fleet add " + at + "f.db " + robot + " " + at + "s --model " + at +
+                       "s/model.toml --date 2026-03-0" + std::to_string(day));
+      if (ran.status != 0) complaints += ran.output;
+    }
+    return complaints;
+  };
+  // Each call is a process of its own.
+  auto other = std::async(std::launch::async, complaints_of, "R2");
+  EXPECT_EQ(complaints_of("R1"), "");
+  EXPECT_EQ(other.get(), "");
+  const testing::Ran report = run_trussmap("fleet report " + at + "f.db");
+  EXPECT_NE(report.output.find("2 robots, 8 days"), std::string::npos) << report.output;
 }
 
 }  // namespace

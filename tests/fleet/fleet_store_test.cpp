@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Stores of fleets: nothing is lost, and shards merge to the same whatever their order.
-#include "trussmap/fleet.hpp"
-
 #include "child_process.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/fleet.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>
@@ -119,6 +118,22 @@ TEST(FleetStore, ShardsMergeToTheSameInAnyOrder) {
       },
       "other figures for robot R2 on 2026-03-02");
   EXPECT_FALSE(std::filesystem::exists(scratch.path() / "c.db"));
+}
+
+TEST(FleetStore, MergingIntoAStoreKeepsWhatItHas) {
+  const ScratchFolder scratch;
+  const auto fleet = scratch.path() / "fleet.db";
+  const auto shard = scratch.path() / "shard.db";
+  add_to_fleet(fleet, made_row("R1", "2026-03-01"));
+  add_to_fleet(shard, made_row("R1", "2026-03-01"));
+  add_to_fleet(shard, made_row("R2", "2026-03-01"));
+  EXPECT_EQ(merge_fleets(fleet, {shard}), 2U);
+  EXPECT_EQ(merge_fleets(fleet, {shard}), 2U);
+  EXPECT_EQ(read_fleet(fleet).size(), 2U);
+  add_to_fleet(shard, made_row("R3", "2026-03-01"));
+  add_to_fleet(shard, made_row("R1", "2026-03-01", 2.0), true);
+  expect_complaint([&] { static_cast<void>(merge_fleets(fleet, {shard})); }, "other figures");
+  EXPECT_EQ(read_fleet(fleet).size(), 2U);
 }
 
 TEST(FleetStore, WhatIsNoneIsSaidInOneLine) {
