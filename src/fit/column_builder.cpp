@@ -67,6 +67,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     if (is_driven(one.kind)) count += problem.segments[one.source].size();
   }
   segment_rows_->reserve(count);
+  struct Driven {
+    const std::vector<SegmentRow>* rows;
+    std::vector<const std::vector<DrivePattern>*> patterns;
+    Matrix4 W;
+    std::size_t first;
+  };
+  std::vector<Driven> driven;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
@@ -78,13 +85,11 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
         patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
       }
       const std::vector<SegmentRow>& rows = problem.segments[one.source];
-      const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
-      Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, false};
-      for (std::size_t row = 0; row < rows.size(); ++row) {
-        segment_rows_->push_back({rows[row].row, -(W * influences[row])});
-      }
-      segment.row_end = segment_rows_->size();
-      segments_.push_back(segment);
+      const std::size_t first = segment_rows_->size();
+      segments_.push_back(
+          {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false});
+      segment_rows_->resize(first + rows.size());
+      driven.push_back({&rows, std::move(patterns), W, first});
     } else if (one.session >= 0 && one.kind != MeasurementKind::loop) {
       const ViewPattern view = view_of(border, offsets, one);
       const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
@@ -94,6 +99,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     rows_ += one.rows;
   }
   rows_ += static_cast<int>(problem.noise_states.size());
+  parallel_for(driven.size(), [&](std::size_t k) {
+    const Driven& one = driven[k];
+    const std::vector<Matrix4> influences = row_influences(*one.rows, one.patterns, offsets);
+    for (std::size_t row = 0; row < influences.size(); ++row) {
+      (*segment_rows_)[one.first + row] = {(*one.rows)[row].row, -(one.W * influences[row])};
+    }
+  });
   take_training_segments();
 }
 
