@@ -188,6 +188,7 @@ class FleetSearch {
 
   [[nodiscard]] double worth_of(const std::vector<std::size_t>& blocks) const {
     std::vector<FleetBlock> effects;
+    effects.reserve(blocks.size());
     for (const std::size_t block : blocks) effects.push_back(fleet_.blocks[block]);
     const double level = level_ / static_cast<double>(members_.members.size());
     double sum = 0.0;

@@ -269,8 +269,9 @@ struct ShardRow {
 };
 
 /// Takes rows that are new; throws where one that is known is other than before.
-void gather(std::map<DayKey, ShardRow>& rows, const fs::path& shard, std::vector<FleetRow> more) {
-  for (FleetRow& row : more) {
+void gather(std::map<DayKey, ShardRow>& rows, const fs::path& shard,
+            const std::vector<FleetRow>& more) {
+  for (const FleetRow& row : more) {
     if (!rows.empty() && rows.begin()->second.row.model != row.model) {
       throw InputError(shard.string(), 0,
                        joined("is of another model than ", rows.begin()->second.shard.string(),
@@ -331,7 +332,7 @@ std::size_t merge_fleets(const fs::path& out, const std::vector<fs::path>& shard
       std::vector<FleetRow> had = rows_in(database);
       std::set<DayKey> known;
       for (const FleetRow& row : had) known.emplace(row.robot, row.date);
-      gather(rows, out, std::move(had));
+      gather(rows, out, had);
       for (const auto& [key, one] : rows) {
         if (!known.contains(key)) put(database, one.row);
       }

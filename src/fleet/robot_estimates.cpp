@@ -279,6 +279,7 @@ Explanation explanation_of(const FleetMembers& seen, const std::vector<Line>& li
 /// What a mean has to be beyond: of nearly every robot, the error that robots may have in common.
 double remainder_of(const std::vector<Line>& lines) {
   std::vector<double> remainders;
+  remainders.reserve(lines.size());
   for (const Line& one : lines) remainders.push_back(one.remainder);
   std::sort(remainders.begin(), remainders.end());
   return remainders[static_cast<std::size_t>(kMostRobots *
