@@ -9,6 +9,7 @@
 #include <future>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace trussmap {
@@ -21,23 +22,21 @@ TEST(FleetCommand, AddsMergesAndReports) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
   for (int k = 1; k <= 3; ++k) {
-    const std::string n = std::to_string(k);
-    ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --tours 2 --effect wheelbase=0.03 --seed " + n +
-                           " --out " + at + "s" + n)
-                  .status,
-              0);
-    const testing::Ran ran =
-        run_trussmap("fleet add " + at + (k < 3 ? "a.db" : "b.db") + " R" + n + " " + at + "s" + n +
-                     " --model " + at + "s1/model.toml --date 2026-03-01 --meta tyre=A");
+    const std::string draw = fmt::format(
+        "simulate --mesh 3x3 --tours 2 --effect wheelbase=0.03 --seed {1} --out {0}s{1}", at, k);
+    ASSERT_EQ(run_trussmap(draw).status, 0);
+    const testing::Ran ran = run_trussmap(fmt::format(
+        "fleet add {0}{2} R{1} {0}s{1} --model {0}s1/model.toml --date 2026-03-01 --meta tyre=A",
+        at, k, k < 3 ? "a.db" : "b.db"));
     ASSERT_EQ(ran.status, 0) << ran.output;
   }
-  const testing::Ran again = run_trussmap("fleet add " + at + "a.db R1 " + at + "s1 --model " + at +
-                                          "s1/model.toml --date 2026-03-01");
+  const testing::Ran again = run_trussmap(
+      fmt::format("fleet add {0}a.db R1 {0}s1 --model {0}s1/model.toml --date 2026-03-01", at));
   EXPECT_EQ(again.status, 2);
   EXPECT_NE(again.output.find("--replace"), std::string::npos) << again.output;
-  ASSERT_EQ(run_trussmap("fleet merge " + at + "c.db " + at + "b.db " + at + "a.db").status, 0);
+  ASSERT_EQ(run_trussmap(fmt::format("fleet merge {0}c.db {0}b.db {0}a.db", at)).status, 0);
   const testing::Ran report =
-      run_trussmap("fleet report " + at + "c.db --json " + at + "c.json --html " + at + "c.html");
+      run_trussmap(fmt::format("fleet report {0}c.db --json {0}c.json --html {0}c.html", at));
   ASSERT_EQ(report.status, 0) << report.output;
   EXPECT_NE(report.output.find("3 robots, 3 days"), std::string::npos) << report.output;
   EXPECT_NE(report.output.find("wheelbase"), std::string::npos) << report.output;
@@ -45,25 +44,25 @@ TEST(FleetCommand, AddsMergesAndReports) {
   EXPECT_EQ(json["robots"], 3);
   ASSERT_FALSE(json["findings"].empty());
   EXPECT_NE(read_file(at + "c.html").find("R3"), std::string::npos);
-  for (const std::string& wrong :
-       {"fleet add " + at + "a.db R9 " + at + "s1 --model " + at + "s1/model.toml --date today",
-        "fleet add " + at + "a.db R9 " + at + "s1 --model " + at + "s1/model.toml --meta tyre",
-        "fleet report " + at + "none.db", "fleet report " + at + "s1/drive.csv"}) {
-    EXPECT_EQ(run_trussmap(wrong).status, 2) << wrong;
+  for (const char* wrong : {"fleet add {0}a.db R9 {0}s1 --model {0}s1/model.toml --date today",
+                            "fleet add {0}a.db R9 {0}s1 --model {0}s1/model.toml --meta tyre",
+                            "fleet report {0}none.db", "fleet report {0}s1/drive.csv"}) {
+    EXPECT_EQ(run_trussmap(fmt::format(fmt::runtime(wrong), at)).status, 2) << wrong;
   }
 }
 
 TEST(FleetCommand, TwoThatAddAtOnceLoseNothing) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
-  ASSERT_EQ(run_trussmap("simulate --mesh 3x3 --tours 1 --seed 1 --out " + at + "s").status, 0);
+  ASSERT_EQ(
+      run_trussmap(fmt::format("simulate --mesh 3x3 --tours 1 --seed 1 --out {}s", at)).status, 0);
   constexpr int kDays = 4;
   const auto complaints_of = [&at](const std::string& robot) {
     std::string complaints;
     for (int day = 1; day <= kDays; ++day) {
-      const testing::Ran ran =
-          run_trussmap("fleet add " + at + "f.db " + robot + " " + at + "s --model " + at +
-                       "s/model.toml --date 2026-03-0" + std::to_string(day));
+      const testing::Ran ran = run_trussmap(
+          fmt::format("fleet add {0}f.db {1} {0}s --model {0}s/model.toml --date 2026-03-0{2}", at,
+                      robot, day));
       if (ran.status != 0) complaints += ran.output;
     }
     return complaints;
