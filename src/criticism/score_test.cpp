@@ -197,11 +197,12 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates,
 std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
                                         const std::vector<Effect>& candidates) const {
   const RecordingSystem& system = *clean_system_;
+  const std::size_t sessions = context().recordings().size();
   std::vector<Score> scores;
   for (std::size_t first = 0; first < candidates.size();) {
     std::size_t next = first;
     for (std::size_t count = 0; next < candidates.size() && count < idx(batch()); ++next) {
-      count += builder.count(candidates[next]);
+      count += coefficient_count(candidates[next], sessions);
     }
     const std::span<const Effect> some = std::span(candidates).subspan(first, next - first);
     std::vector<Eigen::MatrixXd> parts = builder.columns(some);

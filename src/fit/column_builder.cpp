@@ -188,15 +188,18 @@ std::size_t ColumnBuilder::make_ready(const std::vector<Job>& jobs, std::size_t 
   std::size_t end = begin;
   for (; end < jobs.size(); ++end) {
     const Job& job = jobs[end];
-    std::map<Evaluation, const Effect*> more = shapes;
-    for (const Instant at : instants_of(job.effect.channel))
-      more.emplace(Evaluation(job.shape, at), &job.effect);
-    std::set<Channel> more_channels = channels;
-    if (acts_on(job.effect.channel) != ActsOn::views) more_channels.insert(job.effect.channel);
-    const bool fits = more.size() <= most_shapes && more_channels.size() <= most_bases;
+    const Channel channel = job.effect.channel;
+    std::map<Evaluation, const Effect*> own;
+    for (const Instant at : instants_of(channel)) {
+      const Evaluation one(job.shape, at);
+      if (!shapes.contains(one)) own.emplace(one, &job.effect);
+    }
+    const bool own_basis = acts_on(channel) != ActsOn::views && !channels.contains(channel);
+    const bool fits = shapes.size() + own.size() <= most_shapes &&
+                      channels.size() + (own_basis ? 1 : 0) <= most_bases;
     if (!fits && end > begin) break;
-    shapes = std::move(more);
-    channels = std::move(more_channels);
+    shapes.merge(own);
+    if (own_basis) channels.insert(channel);
   }
   if (values_.size() + shapes.size() > most_shapes) {
     std::erase_if(values_, [&shapes](const auto& one) { return !shapes.contains(one.first); });
@@ -331,10 +334,6 @@ std::vector<Eigen::MatrixXd> ColumnBuilder::columns(std::span<const Effect> effe
     begin = end;
   }
   return result;
-}
-
-std::size_t ColumnBuilder::count(const Effect& effect) const {
-  return parts_of(effect, context_.recordings().size()).size();
 }
 
 std::vector<double> ColumnBuilder::largest(const Effect& effect) {

@@ -41,8 +41,6 @@ class ColumnBuilder {
   [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) {
     return std::move(columns(std::span(&effect, 1)).front());
   }
-  /// So many they are.
-  [[nodiscard]] std::size_t count(const Effect& effect) const;
   /// |f| at most, per coefficient.
   [[nodiscard]] std::vector<double> largest(const Effect& effect);
 

@@ -92,6 +92,9 @@ class ShapeContext {
 /// Whether the channel's columns are about a reference by which recordings are laid out.
 [[nodiscard]] bool is_laid_out(Channel channel);
 
+/// One per shape, or per shape and session.
+[[nodiscard]] std::size_t coefficient_count(const Effect& effect, std::size_t sessions);
+
 /// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
 /// std::invalid_argument where their number is wrong for so many sessions, or there is no shape.
 [[nodiscard]] std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions);

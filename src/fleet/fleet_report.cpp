@@ -75,6 +75,7 @@ class FleetSearch {
         report.findings.push_back(finding(block, tests));
       }
     }
+    report.tests = pooled_tests(fleet_);
     report.keys = members_.keys;
     report.robots = members_.members.size();
   }
@@ -323,7 +324,6 @@ FleetReport fleet_report(std::vector<FleetRow> rows, double level) {
   FleetReport report;
   report.level = level;
   report.days = rows.size();
-  report.tests = pooled_tests(rows);
   std::map<std::string, std::pair<double, int>> squares;
   for (const FleetRow& row : rows) {
     report.chi2 += row.chi2;

@@ -181,7 +181,10 @@ PooledTest pooled_test(const FleetSums& fleet, const ColumnSums& sums, const Fle
 }
 
 std::vector<PooledTest> pooled_tests(const std::vector<FleetRow>& rows) {
-  const FleetSums fleet = fleet_sums(rows);
+  return pooled_tests(fleet_sums(rows));
+}
+
+std::vector<PooledTest> pooled_tests(const FleetSums& fleet) {
   ColumnSums left = fleet.all;
   for (const FleetBlock& block : fleet.blocks) {
     if (block.of_model) left.sweep(block.columns);

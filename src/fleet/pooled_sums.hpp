@@ -60,4 +60,7 @@ struct FleetSums {
 [[nodiscard]] PooledTest pooled_test(const FleetSums& fleet, const ColumnSums& sums,
                                      const FleetBlock& block, double phi);
 
+/// Of every candidate by itself.
+[[nodiscard]] std::vector<PooledTest> pooled_tests(const FleetSums& fleet);
+
 }  // namespace trussmap

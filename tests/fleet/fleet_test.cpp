@@ -32,15 +32,25 @@ Recording recording_of(std::uint64_t seed, const std::vector<Effect>& effects) {
   return drive.recording;
 }
 
-TEST(Fleet, SumsSayWhatAllRecordingsTogetherSay) {
-  const Model model;
+struct Robots {
   std::vector<Recording> recordings;
   std::vector<FleetRow> rows;
+};
+
+/// Of seeds 1 to 3, all with one wheelbase that is off.
+Robots three_robots(const Model& model) {
+  Robots robots;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    recordings.push_back(recording_of(seed, {catalogue_effect("wheelbase", {0.004})}));
-    rows.push_back(
-        fleet_row("R" + std::to_string(seed), "2026-03-01", {recordings.back()}, model, "model"));
+    robots.recordings.push_back(recording_of(seed, {catalogue_effect("wheelbase", {0.004})}));
+    robots.rows.push_back(fleet_row("R" + std::to_string(seed), "2026-03-01",
+                                    {robots.recordings.back()}, model, "model"));
   }
+  return robots;
+}
+
+TEST(Fleet, SumsSayWhatAllRecordingsTogetherSay) {
+  const Model model;
+  const auto [recordings, rows] = three_robots(model);
   const std::vector<PooledTest> pooled = pooled_tests(rows);
   // A fit of all ends where its worst segment is still; so far that only the sums are compared.
   FitterOptions how = fitter_options({});
@@ -76,13 +86,7 @@ TEST(Fleet, SumsSayWhatAllRecordingsTogetherSay) {
 TEST(Fleet, OneStepFromTheStatedCoefficientsIsTheFit) {
   Model model;
   model.effects = {catalogue_effect("wheelbase", {0.004})};
-  std::vector<Recording> recordings;
-  std::vector<FleetRow> rows;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    recordings.push_back(recording_of(seed, {catalogue_effect("wheelbase", {0.004})}));
-    rows.push_back(
-        fleet_row("R" + std::to_string(seed), "2026-03-01", {recordings.back()}, model, "model"));
-  }
+  const auto [recordings, rows] = three_robots(model);
   const ModelFit fit = fit_model(recordings, model);
   const FleetReport report = fleet_report(rows);
   ASSERT_EQ(report.findings.front().effect, "wheelbase");
