@@ -4,7 +4,8 @@
 # The script that draws the charts of a page: src/report/page together with Vega, bundled and
 # minified by esbuild. Both come from the system (Debian: esbuild, libjs-vega).
 #
-# trussmap_page_script(VARIABLE) sets VARIABLE to the script's path, and makes a rule for it.
+# trussmap_page_script(VARIABLE NAME) sets VARIABLE to the path of the script that begins with
+# NAME.js, and makes a rule for it.
 find_program(ESBUILD esbuild)
 find_path(VEGA_DIR vega-view.min.js
           PATHS /usr/share/javascript/vega /usr/share/nodejs/vega /usr/local/share/javascript/vega)
@@ -14,9 +15,10 @@ if(NOT ESBUILD OR NOT VEGA_DIR)
     "(or set ESBUILD and VEGA_DIR). The library alone needs neither: -D TRUSSMAP_BUILD_APPS=OFF.")
 endif()
 
-function(trussmap_page_script variable)
+function(trussmap_page_script variable name)
   set(source ${PROJECT_SOURCE_DIR}/src/report/page)
-  set(script ${CMAKE_CURRENT_BINARY_DIR}/page.min.js)
+  file(GLOB scripts CONFIGURE_DEPENDS ${source}/*.js)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}.min.js)
   foreach(module canvas dataflow encode event-selector expression format functions interpreter
                  loader parser runtime scale scenegraph statistics time transforms util view view-transforms)
     list(APPEND aliases --alias:vega-${module}=${VEGA_DIR}/vega-${module}.min.js)
@@ -25,12 +27,11 @@ function(trussmap_page_script variable)
   list(APPEND aliases --alias:vega-selections=${VEGA_DIR}/vega-selection.min.js)
   add_custom_command(
     OUTPUT ${script}
-    COMMAND ${ESBUILD} ${source}/page.js --bundle --minify --format=iife --target=es2021
+    COMMAND ${ESBUILD} ${source}/${name}.js --bundle --minify --format=iife --target=es2021
             --charset=ascii --legal-comments=inline --log-level=warning ${aliases}
             --outfile=${script}
-    DEPENDS ${source}/page.js ${source}/spec.js ${source}/vega.js ${source}/notice.js
-            ${source}/zoom.js
-    COMMENT "Bundling the script of the pages"
+    DEPENDS ${scripts}
+    COMMENT "Bundling ${name}.js for the pages"
     VERBATIM)
   set(${variable} ${script} PARENT_SCOPE)
 endfunction()

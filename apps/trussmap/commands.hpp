@@ -26,6 +26,7 @@ void setup_fleet(const Command& app);
 void setup_merge(const Command& app);
 void setup_noise(const Command& app);
 void setup_reveal(const Command& app);
+void setup_serve(const Command& app);
 void setup_simulate(const Command& app);
 void setup_tour(const Command& app);
 void setup_umbmark(const Command& app);

@@ -98,6 +98,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);
+  trussmap::app::setup_serve(commands);
   trussmap::app::setup_simulate(commands);
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);

@@ -2,18 +2,24 @@
 // SPDX-License-Identifier: MIT
 #include "page_runtime.hpp"
 
-// Both files as they are, each between two names.
+// The files as they are, each between two names.
 #define TRUSSMAP_EMBED(name, file)                                               \
   __asm__(".pushsection .rodata\n.global " #name "\n" #name ":\n.incbin \"" file \
           "\"\n.global " #name "_end\n" #name "_end:\n.byte 0\n.popsection\n")
 TRUSSMAP_EMBED(trussmap_page_script, TRUSSMAP_PAGE_SCRIPT);
 TRUSSMAP_EMBED(trussmap_page_style, TRUSSMAP_PAGE_STYLE);
+TRUSSMAP_EMBED(trussmap_workbench_script, TRUSSMAP_WORKBENCH_SCRIPT);
+TRUSSMAP_EMBED(trussmap_workbench_style, TRUSSMAP_WORKBENCH_STYLE);
 
 extern "C" {
 extern const char trussmap_page_script[];
 extern const char trussmap_page_script_end[];
 extern const char trussmap_page_style[];
 extern const char trussmap_page_style_end[];
+extern const char trussmap_workbench_script[];
+extern const char trussmap_workbench_script_end[];
+extern const char trussmap_workbench_style[];
+extern const char trussmap_workbench_style_end[];
 }
 
 namespace trussmap::app {
@@ -21,6 +27,13 @@ namespace trussmap::app {
 PageRuntime page_runtime() {
   return {{trussmap_page_style, trussmap_page_style_end},
           {trussmap_page_script, trussmap_page_script_end}};
+}
+
+PageRuntime workbench_runtime() {
+  static const std::string style =
+      std::string(trussmap_page_style, trussmap_page_style_end) +
+      std::string(trussmap_workbench_style, trussmap_workbench_style_end);
+  return {style, {trussmap_workbench_script, trussmap_workbench_script_end}};
 }
 
 void add_html_option(const Command& command, PageOptions& options) {

@@ -16,6 +16,8 @@
 namespace trussmap::app {
 
 [[nodiscard]] PageRuntime page_runtime();
+/// Of the workbench's page.
+[[nodiscard]] PageRuntime workbench_runtime();
 
 /// --html FILE and --plots DIR.
 struct PageOptions {

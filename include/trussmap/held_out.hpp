@@ -36,9 +36,11 @@ struct LegPrediction {
   std::string to;
   double t = 0.0;                           ///< s, at its end
   Vector2 arrival_error = Vector2::Zero();  ///< predicted - true, m
-  double stretch_error = 0.0;               ///< |s - s0|/s0
-  double orientation_error = 0.0;           ///< |theta - theta0|, rad
-  bool has_chord = true;  ///< false: shorter than 0.1 m, counts for the arrival only
+  /// m, the root mean square of |arrival_error| that the model's noise lets one expect.
+  double expected_error = 0.0;
+  double stretch_error = 0.0;      ///< |s - s0|/s0
+  double orientation_error = 0.0;  ///< |theta - theta0|, rad
+  bool has_chord = true;           ///< false: shorter than 0.1 m, counts for the arrival only
 };
 
 struct HeldOutMetrics {
@@ -48,6 +50,9 @@ struct HeldOutMetrics {
 };
 
 struct HeldOut : HeldOutMetrics {
+  /// m; what `arrival_rms` would be if the model were right and its noise as large as it states:
+  /// no effect takes the error below it.
+  double expected_rms = 0.0;
   std::vector<LegPrediction> legs;
 };
 

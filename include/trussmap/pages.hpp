@@ -33,6 +33,8 @@ struct FitEvidence;
 struct FleetReport;
 struct PageContent;
 struct TourResult;
+struct EffectPreview;
+class Workbench;
 
 /// Copies share the content, which nothing changes: threads may use them at once.
 class Page {
@@ -103,6 +105,15 @@ struct TruthCalibration {
 /// steered in these recordings (wheels taken in). Of two wheels the page as it is.
 [[nodiscard]] Page with_drive(const Page& page, const Robot& robot,
                               const std::vector<Recording>& recordings);
+
+/// The page of a workbench: it asks the program that serves it for what it shows. Its content
+/// security policy lets this script run and no other, and ask no other program.
+[[nodiscard]] std::string workbench_page(const PageRuntime& runtime);
+/// What that page shows, as JSON: verdict, cards, charts, steps (docs/workbench.md).
+[[nodiscard]] std::string workbench_json(const Workbench& bench, const std::string& subject);
+/// The same of an effect that is looked at: "+ name" beside the present model's error `arrival_rms`
+/// [m]. Of one that the model has, without figures of what it would save.
+[[nodiscard]] std::string preview_json(const EffectPreview& preview, double arrival_rms);
 
 /// Pictures as SVG files: the map before and after, over its survey where there is one; where runs
 /// round a square of this side [m] ended, a cluster per direction and round; end errors with the

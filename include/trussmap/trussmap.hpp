@@ -59,4 +59,5 @@
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 #include "trussmap/wording.hpp"
+#include "trussmap/workbench.hpp"
 #include "trussmap/write_files.hpp"

@@ -3,8 +3,8 @@
 #include "trussmap/evidence.hpp"
 
 #include "criticism/comparison.hpp"
+#include "criticism/effect_evidence.hpp"
 #include "criticism/response.hpp"
-#include "effects/place.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/slow_covariates.hpp"
 #include "trussmap/error.hpp"
@@ -68,49 +68,13 @@ std::vector<EffectEvidence> effect_evidence(const FitState& without,
                                             const std::vector<Seen>& effects) {
   std::vector<EffectEvidence> result;
   for (const Seen& seen : effects) {
-    const Effect& effect = seen.estimate.effect;
     ScoreTest tests(without);
     for (const Seen& other : effects) {
       if (&other != &seen) tests.condition_on(tests.columns(other.estimate.effect));
     }
-    EffectEvidence one{seen.estimate, {}, range_of(effect, tests.context()), {}};
-    one.rivals = drawn_rivals(seen.rivals, tests);
-    const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
-    if (!variable.empty()) {
-      one.response = response_along(variable, effect, without, tests, one.rivals);
-    }
-    if (one.response.curve.empty() && !one.response.bins.empty()) {
-      one.response.curve =
-          effect_curve(effect, variable, one.response.bins.front().at, one.response.bins.back().at);
-    }
-    result.push_back(std::move(one));
+    result.push_back(seen_effect(seen.estimate, drawn_rivals(seen.rivals, tests), without, tests));
   }
   return result;
-}
-
-/// The smallest size that would have been seen, as the largest |g| that it makes; 0 where none
-/// would have been.
-double seen_from(const Finding& finding, ShapeRanges& ranges) {
-  Effect effect = finding.effect;
-  double most = 0.0;
-  for (std::size_t k = 0; k < finding.minimal_detectable.size(); ++k) {
-    if (!std::isfinite(finding.minimal_detectable[k])) return 0.0;
-    std::vector<double> alone(effect.coefficients.size(), 0.0);
-    alone.at(k) = finding.minimal_detectable[k];
-    effect.coefficients = std::move(alone);
-    const EffectRange range = ranges.of(effect);
-    most = std::max({most, std::abs(range.least), std::abs(range.most)});
-  }
-  return most;
-}
-
-std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis, const ShapeContext& context) {
-  ShapeRanges ranges(context);
-  std::vector<FindingSize> sizes;
-  for (const Finding& one : diagnosis.findings) {
-    sizes.push_back({ranges.of(one.effect), seen_from(one, ranges)});
-  }
-  return sizes;
 }
 
 /// The model with what is missing added and fitted; with the first alone where not all can be.

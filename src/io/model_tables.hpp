@@ -15,4 +15,7 @@ namespace trussmap {
 /// does; `file` is for messages.
 [[nodiscard]] Model model_of(const toml::table& root, const std::string& file);
 
+/// Of a model file's text.
+[[nodiscard]] Model model_from_text(const std::string& text, const std::string& file);
+
 }  // namespace trussmap

@@ -556,16 +556,19 @@ Model model_of(const toml::table& root, const std::string& file) {
   return ModelReader(file).read(root);
 }
 
-Model read_model(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
+Model model_from_text(const std::string& text, const std::string& file) {
   try {
-    return model_of(toml::parse(text), file.string());
+    return model_of(toml::parse(text), file);
   } catch (const toml::parse_error& error) {
-    throw InputError(file.string(), error.source().begin.line,
+    throw InputError(file, error.source().begin.line,
                      "no TOML: " + std::string(error.description()));
   } catch (const TomlAssertion&) {
-    throw InputError(file.string(), 0, "no TOML: keys or values are malformed");
+    throw InputError(file, 0, "no TOML: keys or values are malformed");
   }
+}
+
+Model read_model(const std::filesystem::path& file) {
+  return model_from_text(read_file(file), file.string());
 }
 
 std::string format_model(const Model& model) {

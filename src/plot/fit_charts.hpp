@@ -4,6 +4,7 @@
 // The charts that pages on a model's fit have in common.
 //
 //   truss_chart     the map: bars by their force, landmarks with 95 % ellipses, the path
+//   route_chart     the map: routes by how far off their legs end
 //   response_chart  the signature: a channel's error along a variable, with curves
 //   ladder_chart    what each step takes off the held-out legs' error
 //   source_chart    is each source of noise as large as stated?
@@ -30,6 +31,23 @@ namespace trussmap {
                                 double loudest);
 /// For one map alone: its strongest force, but so that mere noise looks calm.
 [[nodiscard]] double loudest_force(const Comparison& comparison);
+
+/// A route's legs, as a comparison has them (`worst`): how far off they end.
+struct RouteError {
+  std::string from;
+  std::string to;
+  int legs = 0;
+  double rms = 0.0;    ///< m
+  double along = 0.0;  ///< m, mean, + is measured too long
+  double left = 0.0;   ///< m, mean, + is measured too far to the left
+};
+/// Of all routes between landmarks of the map, the worst first.
+[[nodiscard]] std::vector<RouteError> route_errors(const std::vector<LegMisfit>& legs,
+                                                   const FittedMap& map);
+/// `worst`: the error that has the strongest colour, m.
+[[nodiscard]] Chart route_chart(const std::string& id, const std::string& title,
+                                const FittedMap& map, const std::vector<RouteError>& routes,
+                                double worst);
 
 /// A curve beside the response's own: a rival's, say.
 struct NamedCurve {

@@ -44,6 +44,10 @@ class HeldOutFilter {
   [[nodiscard]] const Pose& pose(int node) const {
     return state_.poses[idx(node - problem_.landmark_count())];
   }
+  /// Of the present pose: x and y, m^2, heading, rad^2.
+  [[nodiscard]] const Matrix3& pose_covariance() const { return P_; }
+  /// Of a landmark (2 x 2, m^2) or an orientation (1 x 1, rad^2).
+  [[nodiscard]] Eigen::MatrixXd covariance(int node) const;
   /// Along a segment: its compass innovation first, which shares noise with its motion.
   FilterStep drive(std::size_t segment);
   /// A sighting of a known landmark, a yaw of one with a known orientation, or a truth row.
@@ -53,8 +57,6 @@ class HeldOutFilter {
 
  private:
   [[nodiscard]] bool is_known(int node) const;
-  /// m^2 or rad^2.
-  [[nodiscard]] Eigen::MatrixXd covariance(int node) const;
   Pose& at(int node) { return state_.poses[idx(node - problem_.landmark_count())]; }
 
   const RecordingProblem& problem_;

@@ -84,6 +84,7 @@ Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,
 HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
   HeldOut result;
   double squares = 0.0;
+  double expected = 0.0;
   int chords = 0;
   for (std::size_t k = 0; k < legs_.size(); ++k) {
     const PredictedLeg& leg = legs_[k];
@@ -104,10 +105,12 @@ HeldOut HeldOutLegs::moved(const Eigen::VectorXd& change) const {
       ++chords;
     }
     squares += one.arrival_error.squaredNorm();
+    expected += one.expected_error * one.expected_error;
     result.legs.push_back(std::move(one));
   }
   if (result.legs.empty()) return result;
   result.arrival_rms = std::sqrt(squares / static_cast<double>(result.legs.size()));
+  result.expected_rms = std::sqrt(expected / static_cast<double>(result.legs.size()));
   result.stretch_error /= std::max(1, chords);
   result.orientation_error /= std::max(1, chords);
   return result;

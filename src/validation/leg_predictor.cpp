@@ -210,7 +210,19 @@ std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
   leg.prediction.has_chord = leg.chord.norm() >= kLeastChord;  // not where the start is not known
   leg.from = end_of(legs_[k].from, filter_);
   leg.to = end_of(legs_[k].to, ahead);
+  leg.prediction.expected_error = expected_error(leg.to, ahead);
   return leg;
+}
+
+/// Whitened rows have unit variances. Pose and landmark are taken as independent: what the filter
+/// has seen of the landmark on earlier visits is forgotten by the time it has driven a leg.
+double LegPredictor::expected_error(const LegEnd& end, const HeldOutFilter& filter) {
+  Matrix2 covariance = end.by_rows * end.by_rows.transpose() +
+                       end.by_pose * filter.pose_covariance() * end.by_pose.transpose();
+  if (end.landmark >= 0) {
+    covariance += end.by_landmark * filter.covariance(end.landmark) * end.by_landmark.transpose();
+  }
+  return std::sqrt(covariance.trace());
 }
 
 LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter) const {

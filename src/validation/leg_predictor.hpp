@@ -71,6 +71,8 @@ class LegPredictor {
   void begin_session(std::size_t pose);
   [[nodiscard]] std::optional<PredictedLeg> predicted(std::size_t leg) const;
   [[nodiscard]] LegEnd end_of(std::size_t measurement, const HeldOutFilter& filter) const;
+  /// m, root mean square of the arrival error.
+  [[nodiscard]] static double expected_error(const LegEnd& end, const HeldOutFilter& filter);
   [[nodiscard]] std::optional<Vector2> seen_by(std::size_t measurement,
                                                const HeldOutFilter& filter) const;
   /// NaN where it is not known.

@@ -11,6 +11,7 @@
 #include "validation/leg_spans.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -306,6 +307,29 @@ TEST(HeldOut, TheRightModelPredictsBetterThanTheWrongOne) {
     EXPECT_GT(right.arrival_rms, 0.005) << name;
     EXPECT_LT(right.arrival_rms, 0.1) << name;
   }
+}
+
+TEST(HeldOut, ExpectedErrorsAreAsLargeAsThoseOfTheRightModel) {
+  double measured = 0.0, expected = 0.0;
+  for (const std::uint64_t seed : {71, 72, 73, 74, 75, 76, 77, 78}) {
+    DisturbedCase one = case_of("wheelbase");
+    one.options.noisy = true;
+    const Recording recording = invert(one.disturbance, one.options, seed).recording;
+    const HeldOut held_out =
+        predicted({recording}, inverted_model({catalogue_effect("wheelbase")}));
+    double squares = 0.0;
+    for (const LegPrediction& leg : held_out.legs) {
+      measured += leg.arrival_error.squaredNorm();
+      squares += std::pow(leg.expected_error, 2);
+    }
+    const auto legs = static_cast<double>(held_out.legs.size());
+    ASSERT_GT(legs, 0.0);
+    EXPECT_NEAR(held_out.expected_rms, std::sqrt(squares / legs), 1e-12);
+    expected += squares;
+  }
+  // Some 80 legs, an error of one leading component each: the ratio of the sums has an sd of
+  // (2/80)^(1/2) = 0.16.
+  EXPECT_NEAR(measured / expected, 1.0, 0.01);
 }
 
 TEST(HeldOut, LegsBetweenTruthRowsArePredictedToo) {

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "bench_exports.hpp"
+
+#include "page_runtime.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace trussmap::app {
+namespace {
+
+/// One word of a shell's command line, whatever is in it.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string("._/-+:,=").find(c) != std::string::npos;
+  });
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool is_of_catalogue(const Effect& effect) {
+  try {
+    const Effect known = catalogue_effect(effect.name);
+    return known.channel == effect.channel && known.shape == effect.shape;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+std::string commands(const BenchView& view, const BenchOrigin& origin) {
+  std::vector<std::string> folders;
+  for (const std::string& one : origin.recordings) folders.push_back(quoted(one));
+  const std::string recordings = fmt::format("{}", fmt::join(folders, " "));
+  const Model& given = view.log.steps.front().model;
+  std::string text =
+      "#!/bin/sh\n# What was done in the workbench, by commands. The noise is estimated anew by "
+      "the "
+      "fit, so\n# that coefficients agree to a small part of their standard errors.\nset -e\n";
+  std::string model = quoted(origin.model);
+  std::size_t number = 0;
+  const auto had = [&given](const Effect& effect) {
+    return std::any_of(given.effects.begin(), given.effects.end(),
+                       [&effect](const Effect& one) { return one.name == effect.name; });
+  };
+  const std::vector<Effect>& present = view.log.steps[view.log.at].model.effects;
+  const bool all_there =
+      std::all_of(given.effects.begin(), given.effects.end(), [&](const Effect& one) {
+        return std::any_of(present.begin(), present.end(),
+                           [&one](const Effect& other) { return other.name == one.name; });
+      });
+  if (!all_there) {
+    text += "# Effects that the model had were removed: no command does that, take model.toml.\n";
+  }
+  for (const Effect& effect : present) {
+    if (had(effect)) continue;
+    const std::string out = fmt::format("step{}.toml", ++number);
+    text += fmt::format("trussmap add {} {}", model, quoted(effect.name));
+    if (!is_of_catalogue(effect)) {
+      text += fmt::format(" --channel {} --shape", trussmap::name_of(effect.channel));
+      for (const std::string& shape : texts_of(effect.shape)) text += " " + quoted(shape);
+    }
+    text += fmt::format(" --out {}\n", out);
+    model = out;
+  }
+  if (!present.empty()) {
+    text += fmt::format("trussmap fit {} --model {} --noise --out model.toml\n", recordings, model);
+    model = "model.toml";
+  }
+  return text + fmt::format("trussmap diagnose {} --model {}\n", recordings, model);
+}
+
+std::string odometry(const BenchView& view) {
+  const Robot& robot = view.now.fit().model.robot;
+  const Recording& first = view.now.recordings().front();
+  std::vector<std::string> covariates;
+  for (const Covariate& one : first.drive.covariates) covariates.push_back("\"" + one.name + "\"");
+  const bool two = robot.drive == DriveKind::differential;
+  return fmt::format(
+      "// Odometry corrected by model.toml, row by row. Link trussmap::trussmap.\n"
+      "#include <trussmap/corrected_odometry.hpp>\n#include <trussmap/model_file.hpp>\n\n"
+      "#include <cstdio>\n\nint main() {{\n"
+      "  const trussmap::Model model = trussmap::read_model(\"model.toml\");\n"
+      "  trussmap::CorrectedOdometry odometry(\n"
+      "      model, {{.covariates = {{{}}}, .compass = {}, .gyro = {}}});\n"
+      "  trussmap::WheelRow row;\n"
+      "  row.duration = 0.1;  // s\n{}"
+      "{}"
+      "  const trussmap::Pose pose = odometry.pose().pose;\n"
+      "  std::printf(\"%.4f %.4f %.4f\\n\", pose.x, pose.y, pose.heading);\n}}\n",
+      fmt::join(covariates, ", "), first.drive.has_compass(), first.drive.has_gyro(),
+      two ? "  row.left = 0.05;      // m, travel of the left wheel\n"
+            "  row.right = 0.05;     // m\n"
+          : fmt::format("  row.readings = std::vector<double>({});  // the model's columns\n",
+                        robot.columns.size()),
+      covariates.empty()
+          ? std::string("  odometry.drive(row);\n")
+          : fmt::format("  const double covariates[] = {{{}}};  // what they read, in that order\n"
+                        "  odometry.drive(row, covariates);\n",
+                        fmt::join(std::vector<std::string>(covariates.size(), "0.0"), ", ")));
+}
+
+}  // namespace
+
+std::optional<LocalReply> bench_export(const std::string& name, const BenchView& view,
+                                       const BenchOrigin& origin) {
+  const char* text = "text/plain; charset=utf-8";
+  if (name == "model.toml") return LocalReply{200, text, format_model(view.now.fit().model), name};
+  if (name == "commands.sh") return LocalReply{200, text, commands(view, origin), name};
+  if (name == "odometry.cpp") return LocalReply{200, text, odometry(view), name};
+  if (name != "report.html") return std::nullopt;
+  const Page page = diagnosis_page(
+      view.now.diagnosis(),
+      evidence_of(view.now.recordings(), view.now.fit(), view.now.diagnosis(), view.now.options()),
+      subject_of(origin.recordings, origin.model));
+  return LocalReply{200, "text/html; charset=utf-8", render_page(page, page_runtime()), name};
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "bench_requests.hpp"
+
+#include "bench_exports.hpp"
+#include "page_runtime.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/pages.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kLongestFormula = 200;
+constexpr int kDeepest = 12;
+constexpr std::size_t kMostShapes = 8;
+constexpr std::size_t kLongestName = 80;
+constexpr std::size_t kMostRivals = 3;
+
+/// An answer that is none.
+struct Refusal {
+  unsigned status;
+  std::string why;
+};
+
+LocalReply refusal(unsigned status, const std::string& why) {
+  const json body = {{"error", why}};
+  return {status, "application/json", body.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+std::shared_ptr<const BenchView> shown(const BenchWork& work) {
+  std::shared_ptr<const BenchView> view = work.view();
+  if (!view) throw Refusal{503, "the first model is still being fitted"};
+  return view;
+}
+
+std::size_t finding_of(const json& asked, const BenchView& view) {
+  const auto finding = asked.at("finding").get<std::size_t>();
+  const std::size_t count = view.now.diagnosis().findings.size();
+  if (finding >= count)
+    throw Refusal{400, fmt::format("there is no finding {} of {}", finding, count)};
+  return finding;
+}
+
+Effect own_effect(const json& asked) {
+  Effect effect;
+  effect.name = asked.at("name").get<std::string>();
+  if (effect.name.empty() || effect.name.size() > kLongestName) {
+    throw Refusal{400, fmt::format("an effect needs a name of up to {} bytes", kLongestName)};
+  }
+  effect.channel = channel_named(asked.at("channel").get<std::string>());
+  const json& shapes = asked.at("shape");
+  if (shapes.empty() || shapes.size() > kMostShapes) {
+    throw Refusal{400, fmt::format("an effect needs 1 to {} shapes", kMostShapes)};
+  }
+  for (const json& one : shapes) {
+    const auto formula = one.get<std::string>();
+    if (const std::string fault = fault_of_formula(formula); !fault.empty()) {
+      throw Refusal{400, fault};
+    }
+    effect.shape.emplace_back(formula);
+  }
+  return effect;
+}
+
+/// A finding, with its values where some are given, or an effect of the user's own.
+Effect effect_of(const json& asked, const BenchView& view) {
+  if (asked.contains("effect")) return own_effect(asked.at("effect"));
+  const std::size_t finding = finding_of(asked, view);
+  if (asked.contains("values")) {
+    return view.now.moved(finding, asked.at("values").get<std::vector<double>>());
+  }
+  Effect effect = view.now.diagnosis().findings[finding].effect;
+  effect.coefficients.clear();
+  return effect;
+}
+
+LocalReply preview(const json& asked, const BenchView& view) {
+  const Effect effect = effect_of(asked, view);
+  std::vector<Effect> rivals;
+  for (const json& rival : asked.value("rivals", json::array())) {
+    if (rivals.size() == kMostRivals) break;
+    const std::size_t finding = finding_of({{"finding", rival}}, view);
+    rivals.push_back(view.now.diagnosis().findings[finding].effect);
+    rivals.back().coefficients.clear();
+  }
+  return {.body = preview_json(view.now.preview(effect, rivals),
+                               view.now.diagnosis().held_out.arrival_rms)};
+}
+
+LocalReply best(const json& asked, const BenchView& view) {
+  const std::size_t finding = finding_of(asked, view);
+  const json body = {
+      {"values", view.now.best_near(finding, asked.at("values").get<std::vector<double>>())}};
+  return {.body = body.dump()};
+}
+
+LocalReply shown_effect(const json& asked, const BenchView& view) {
+  const auto effect = asked.at("effect").get<std::size_t>();
+  if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
+  EffectPreview preview;
+  preview.evidence = view.now.shown(effect);
+  preview.dof = 1;
+  return {.body = preview_json(preview, view.now.diagnosis().held_out.arrival_rms)};
+}
+
+BenchWork::Step step_of(const json& asked, const BenchView& view) {
+  const auto what = asked.at("do").get<std::string>();
+  if (what == "add") {
+    return
+        [effect = effect_of(asked, view)](Workbench& bench, const Workbench::Progress& progress) {
+          bench.add(effect, progress);
+        };
+  }
+  if (what == "remove") {
+    const auto effect = asked.at("effect").get<std::size_t>();
+    if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
+    return [effect](Workbench& bench, const Workbench::Progress& progress) {
+      bench.remove(effect, progress);
+    };
+  }
+  if (what == "go") {
+    const auto step = asked.at("step").get<std::size_t>();
+    if (step >= view.log.steps.size()) throw Refusal{400, "there is no such step"};
+    return [step](Workbench& bench, const Workbench::Progress& progress) {
+      bench.go_to(step, progress);
+    };
+  }
+  throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove or go", what)};
+}
+
+LocalReply step(const json& asked, BenchWork& work, const BenchView& view) {
+  switch (work.begin(asked.at("version").get<std::size_t>(), step_of(asked, view))) {
+    case BenchWork::Taken::yes:
+      return {202, "application/json", "{}"};
+    case BenchWork::Taken::busy:
+      return refusal(409, "a step is under way already");
+    case BenchWork::Taken::outdated:
+      break;
+  }
+  return refusal(409, "the model has changed in another window; this one shows it now");
+}
+
+LocalReply answer_get(const LocalRequest& request, const BenchWork& work,
+                      const BenchOrigin& origin) {
+  if (request.path.empty()) {
+    const std::string page = workbench_page(workbench_runtime());
+    return {.type = "text/html; charset=utf-8", .body = page, .policy = "frame-ancestors 'none'"};
+  }
+  if (request.path == "status") return {.body = work.status()};
+  if (request.path == "state") return {.body = shown(work)->json};
+  constexpr std::string_view kExport = "export/";
+  if (request.path.starts_with(kExport)) {
+    if (auto file = bench_export(request.path.substr(kExport.size()), *shown(work), origin)) {
+      return *file;
+    }
+  }
+  return refusal(404, "there is nothing here");
+}
+
+LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
+  const std::shared_ptr<const BenchView> view = shown(work);
+  const json asked = json::parse(request.body);
+  if (request.path == "preview") return preview(asked, *view);
+  if (request.path == "best") return best(asked, *view);
+  if (request.path == "shown") return shown_effect(asked, *view);
+  if (request.path == "step") return step(asked, work, *view);
+  return refusal(404, "there is nothing here");
+}
+
+}  // namespace
+
+std::string fault_of_formula(const std::string& formula) {
+  if (formula.empty() || formula.size() > kLongestFormula) {
+    return fmt::format("a formula has 1 to {} characters, this one {}", kLongestFormula,
+                       formula.size());
+  }
+  int depth = 0, deepest = 0;
+  for (const char c : formula) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    deepest = std::max(deepest, depth);
+  }
+  if (deepest <= kDeepest) return "";
+  return fmt::format("the formula's brackets are {} deep, expected at most {}", deepest, kDeepest);
+}
+
+LocalReply bench_reply(const LocalRequest& request, BenchWork& work, const BenchOrigin& origin) {
+  try {
+    return request.post ? answer_post(request, work) : answer_get(request, work, origin);
+  } catch (const Refusal& one) {
+    return refusal(one.status, one.why);
+  } catch (const json::exception&) {
+    return refusal(400, "the request is not the JSON that is expected");
+  } catch (const std::invalid_argument& error) {
+    return refusal(400, error.what());
+  } catch (const std::exception& error) {
+    return refusal(422, error.what());
+  }
+}
+
+}  // namespace trussmap::app

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "bench_work.hpp"
+
+#include "trussmap/error.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+constexpr const char* kLog = "steps.json";
+constexpr const char* kModel = "model.toml";
+
+std::vector<ProgressStep> stages() {
+  return {{"fitting the map", 5}, {"looking for what is missing", 50}, {"comparing", 10}};
+}
+
+std::optional<WorkbenchLog> log_in(const BenchJob& job) {
+  const std::filesystem::path file = job.folder / kLog;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  WorkbenchLog log = read_workbench_log(file, job.recordings);
+  if (format_model(log.steps.front().model) != format_model(job.model)) {
+    throw InputError(file.string(), 0,
+                     "the work began with another model, expected the same (or another --work)");
+  }
+  return log;
+}
+
+}  // namespace
+
+BenchWork::BenchWork(BenchJob job) : job_(std::move(job)), log_(log_in(job_)) {
+  thread_ = std::thread([this] { run(); });
+}
+
+BenchWork::~BenchWork() {
+  {
+    const std::scoped_lock lock(mutex_);
+    ends_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+std::shared_ptr<const BenchView> BenchWork::view() const {
+  const std::scoped_lock lock(mutex_);
+  return view_;
+}
+
+BenchWork::Taken BenchWork::begin(std::size_t version, Step step) {
+  const std::scoped_lock lock(mutex_);
+  if (busy_) return Taken::busy;
+  if (!view_ || view_->version != version) return Taken::outdated;
+  next_ = std::move(step);
+  busy_ = true;
+  failed_.clear();
+  wake_.notify_all();
+  return Taken::yes;
+}
+
+double BenchWork::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+std::string BenchWork::status() const {
+  const std::scoped_lock lock(mutex_);
+  nlohmann::ordered_json result = {{"version", view_ ? view_->version : 0},
+                                   {"busy", busy_},
+                                   {"failed", failed_},
+                                   {"note", note_}};
+  if (busy_ && clock_) {
+    result["doing"] = clock_->line(std::floor(seconds()));
+    const std::optional<double> left = clock_->left(std::floor(seconds()));
+    result["left"] = left ? nlohmann::ordered_json(std::ceil(*left)) : nullptr;
+  }
+  return result.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Workbench::Progress BenchWork::reporter() {
+  const std::scoped_lock lock(mutex_);
+  clock_.emplace(stages());
+  began_ = std::chrono::steady_clock::now();
+  return [this](TryingStage) {
+    const std::scoped_lock inner(mutex_);
+    clock_->next(seconds());
+  };
+}
+
+/// On disk first: what is shown is never lost.
+void BenchWork::publish(const Workbench& bench) {
+  const WorkbenchLog& log = bench.log();
+  write_files({}, {{job_.folder,
+                    {{kLog, format_workbench_log(log, job_.recordings)},
+                     {kModel, format_model(bench.now().fit().model)}},
+                    {}}});
+  std::string json = workbench_json(bench, job_.subject);
+  const std::scoped_lock lock(mutex_);
+  const std::size_t version = view_ ? view_->version + 1 : 1;
+  view_ = std::make_shared<const BenchView>(BenchView{version, bench.now(), log, std::move(json)});
+}
+
+void BenchWork::work(const Step& step) {
+  std::string failed;
+  try {
+    step(*bench_, reporter());
+    publish(*bench_);
+  } catch (const std::exception& error) {
+    failed = error.what();
+  }
+  const std::scoped_lock lock(mutex_);
+  failed_ = std::move(failed);
+  busy_ = false;
+}
+
+void BenchWork::run() {
+  const auto first = [this](Workbench&, const Workbench::Progress& progress) {
+    bench_ = log_
+                 ? std::make_unique<Workbench>(job_.recordings, *log_, job_.options, progress)
+                 : std::make_unique<Workbench>(job_.recordings, job_.model, job_.options, progress);
+  };
+  work(first);
+  while (true) {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [this] { return ends_ || next_; });
+    if (ends_) return;
+    const Step step = std::move(*next_);
+    next_.reset();
+    lock.unlock();
+    work(step);
+  }
+}
+
+}  // namespace trussmap::app

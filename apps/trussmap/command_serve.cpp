@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap serve: a workbench in the browser.
+#include "bench_requests.hpp"
+#include "bench_work.hpp"
+#include "commands.hpp"
+#include "local_server.hpp"
+#include "model_recordings.hpp"
+#include "option_checks.hpp"
+#include "page_runtime.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <spawn.h>
+
+#include <fmt/format.h>
+
+extern char** environ;
+
+namespace trussmap::app {
+namespace {
+
+struct ServeCommand {
+  ModelRecordingsOptions input;
+  std::string work;
+  int port = 0;
+  bool no_browser = false;
+};
+
+/// In the user's browser, where there is a screen; whether that works or not.
+void open_in_browser(const std::string& address) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  std::string program = "xdg-open";
+  std::string argument = address;
+  char* arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", 1, 0);  // for writing
+  posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", 1, 0);
+  posix_spawnp(&child, program.c_str(), &quiet, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&quiet);
+}
+
+/// "riddle.workbench" for maps/riddle/.
+std::string usual_folder(const std::string& recording) {
+  std::filesystem::path path = std::filesystem::path(recording).lexically_normal();
+  if (path.filename().empty()) path = path.parent_path();
+  return path.filename().string() + ".workbench";
+}
+
+void run_serve(const ServeCommand& options) {
+  ModelRecordings input = read_model_recordings(options.input);
+  for (Effect& effect : input.model.effects) effect.coefficients.clear();  // they are fitted
+  LocalServer server(static_cast<std::uint16_t>(options.port));
+  const std::string folder =
+      options.work.empty() ? usual_folder(options.input.recordings.front()) : options.work;
+  BenchWork work({std::move(input.recordings), std::move(input.model),
+                  diagnose_options(options.input),
+                  subject_of(options.input.recordings, options.input.model), folder});
+  const BenchOrigin origin{options.input.recordings, options.input.model};
+  fmt::print(
+      "{}\nOpen this address in a browser on this machine. Steps are kept in {}; Ctrl-C "
+      "ends it.\n",
+      server.address(), folder);
+  for (const std::string& note : input.notes) fmt::print("{}\n", note);
+  std::fflush(stdout);
+  if (!options.no_browser) open_in_browser(server.address());
+  server.run([&](const LocalRequest& request) { return bench_reply(request, work, origin); },
+             [&work] { return work.status(); });
+}
+
+}  // namespace
+
+void setup_serve(const Command& app) {
+  auto options = std::make_shared<ServeCommand>();
+  const Command command =
+      app.add_subcommand("serve", "Try effects out in the browser and watch the error fall");
+  add_fitted_recordings(command, options->input);
+  add_stated_noise(command, options->input);
+  command
+      .add_option("--work", options->work,
+                  "Folder that keeps the steps (default: NAME.workbench, of the first recording)")
+      .type_name("DIR");
+  command.add_option("--port", options->port, "Port on 127.0.0.1 (default: any that is free)")
+      .type_name("PORT")
+      .check(between(0, 65535));
+  command.add_flag("--no-browser", options->no_browser, "Open no browser");
+  command.footer(
+      "Serves a page to this machine alone, under an address that holds a secret. Every step is\n"
+      "kept when it is done: the same command goes on where it ended.");
+  command.callback([options] { run_serve(*options); });
+}
+
+}  // namespace trussmap::app

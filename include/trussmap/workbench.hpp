@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A workbench for models: effects are looked at before they are added, added, taken off again.
+//
+//   recordings, model --> TriedModel: fit, diagnosis, what each candidate would save
+//                           preview(effect)   its curve, and what it would leave of the error:
+//                                             score tests, no fit
+//                           shown(effect)     one that the model has, as the recordings show it
+//                                             where the model lacks it alone
+//
+//   Workbench   the steps: given --add--> + hard iron --add--> + wheelbase
+//                                             '------remove--> ...
+//               Each is a model without fitted coefficients, which follow from it and the
+//               recordings alone: a step that is returned to has the same figures to the last
+//               digit.
+//
+// Held-out legs are the same at every step, and no fit sees them.
+#pragma once
+
+#include "trussmap/diagnose.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/noise_fit.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// An effect that a model does not have, as it would be.
+struct EffectPreview {
+  EffectEvidence evidence;  ///< coefficients as a score test estimates them
+  double score = 0.0;       ///< chi^2 that adding it would take away
+  int dof = 0;              ///< coefficients that can be seen; 0: these recordings do not show it
+  double p_value = 1.0;     ///< of this effect alone, as if no other had been tried
+  /// Of the held-out legs with it; none where that cannot be foretold (an effect that changes the
+  /// order of what was measured).
+  std::optional<HeldOutMetrics> predicted;
+  /// The same of each rival that was asked for.
+  std::vector<std::optional<HeldOutMetrics>> rivals_predicted;
+};
+
+/// A number within an effect that no fit estimates, and how far a search may move it.
+struct EffectParameter {
+  ShapeParameter parameter;
+  double step = 0.0;  ///< between values that are worth telling apart
+  double least = 0.0;
+  double most = 0.0;
+};
+
+/// What a model is being tried for at the moment.
+enum class TryingStage { fitting, searching, comparing };
+
+/// A model with all that a workbench shows of it. Copies share everything. Calls from several
+/// threads wait for each other.
+class TriedModel {
+ public:
+  /// The model's effects are fitted whether or not they have coefficients. Throws like fit_model.
+  TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
+             const DiagnoseOptions& options = {},
+             const std::function<void(TryingStage)>& progress = {});
+
+  [[nodiscard]] const std::vector<Recording>& recordings() const;
+  [[nodiscard]] const DiagnoseOptions& options() const;
+  /// By the noise that it is judged by: estimated, where the options say so.
+  [[nodiscard]] const ModelFit& fit() const;
+  [[nodiscard]] const Diagnosis& diagnosis() const;
+  [[nodiscard]] const std::vector<FindingSize>& sizes() const;  ///< one per finding
+  [[nodiscard]] const Comparison& comparison() const;
+  [[nodiscard]] const FittedMap& map() const;
+  [[nodiscard]] const std::vector<NoiseBudget>& budget() const;
+
+  /// What a finding (its place in the diagnosis) has that can be moved; may be empty.
+  [[nodiscard]] std::vector<EffectParameter> parameters(std::size_t finding) const;
+  /// The finding's effect with other values of these; without coefficients. Throws
+  /// std::invalid_argument where they are not as many.
+  [[nodiscard]] Effect moved(std::size_t finding, const std::vector<double>& values) const;
+  /// The values near these that explain the most.
+  [[nodiscard]] std::vector<double> best_near(std::size_t finding,
+                                              const std::vector<double>& values) const;
+
+  /// Throws std::invalid_argument, in a sentence, on an effect that cannot be applied to these
+  /// recordings (a variable that they do not have, a value that is not finite).
+  [[nodiscard]] EffectPreview preview(const Effect& effect,
+                                      const std::vector<Effect>& rivals = {}) const;
+
+  /// An effect of the model by its place there. One more fit, kept. Throws std::out_of_range.
+  [[nodiscard]] EffectEvidence shown(std::size_t effect) const;
+
+ private:
+  struct Tried;
+  std::shared_ptr<const Tried> tried_;
+};
+
+/// One model on the way.
+struct WorkbenchStep {
+  enum class Kind { given, add, remove };
+  Kind kind = Kind::given;
+  std::string effect;         ///< that was added or removed
+  std::size_t from = 0;       ///< the step that it began at; of the first its own
+  Model model;                ///< what was added has no coefficients
+  double arrival_rms = 0.0;   ///< m, of the held-out legs; 0 without any
+  double expected_rms = 0.0;  ///< m, likewise, by the noise
+  std::optional<double> predicted_rms = std::nullopt;  ///< m, before the fit
+  double chi2 = 0.0;
+  int dof = 0;
+};
+
+/// Steps, and at which of them the work is.
+struct WorkbenchLog {
+  std::vector<WorkbenchStep> steps;  ///< the first is the model given
+  std::size_t at = 0;
+};
+
+/// From the given model to this step, by `from`.
+[[nodiscard]] std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step);
+
+class Workbench {
+ public:
+  using Progress = std::function<void(TryingStage)>;
+
+  /// Begins with the model as given.
+  Workbench(std::vector<Recording> recordings, const Model& model,
+            const DiagnoseOptions& options = {}, const Progress& progress = {});
+  /// Goes on where a log ends. Throws std::invalid_argument on a log without steps or with steps
+  /// that come from none.
+  Workbench(std::vector<Recording> recordings, WorkbenchLog log,
+            const DiagnoseOptions& options = {}, const Progress& progress = {});
+
+  [[nodiscard]] const TriedModel& now() const { return *now_; }
+  [[nodiscard]] const WorkbenchLog& log() const { return log_; }
+
+  // Each makes a step, or throws like fit_model (std::invalid_argument: an effect of this name is
+  // there already, or cannot be applied; std::out_of_range) and leaves all as it was.
+
+  void add(const Effect& effect, const Progress& progress = {});
+  void remove(std::size_t effect, const Progress& progress = {});
+  /// Back, or on, to a step that was made.
+  void go_to(std::size_t step, const Progress& progress = {});
+
+ private:
+  [[nodiscard]] TriedModel tried(const Model& model, const Progress& progress) const;
+  void take(WorkbenchStep step, const Progress& progress);
+
+  std::shared_ptr<const std::vector<Recording>> recordings_;
+  DiagnoseOptions options_;
+  WorkbenchLog log_;
+  std::optional<TriedModel> now_;
+  /// The last few, so that undoing takes no time: step and what it came to.
+  std::vector<std::pair<std::size_t, TriedModel>> kept_;
+};
+
+}  // namespace trussmap

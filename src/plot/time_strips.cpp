@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/time_strips.hpp"
+
+#include "wording/channel_words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr double kPoints = 600.0;  // in all
+constexpr std::size_t kMostStrips = 5;
+
+/// A value of a row with how long the row took; none where there is nothing to show.
+using RowValue = std::function<double(const Drive& drive, std::size_t row)>;
+using RowValues = std::function<std::optional<RowValue>(const Recording&)>;
+
+double length_of(const Drive& drive) {
+  return drive.rows() > 0 ? drive.t.back() - drive.start() : 0.0;
+}
+
+struct Strip {
+  std::vector<double> t;
+  std::vector<double> value;
+};
+
+Strip strip_of(const std::vector<Recording>& recordings, const RowValues& values) {
+  double whole = 0.0;
+  for (const Recording& one : recordings) whole += length_of(one.drive);
+  const double share = std::max(whole / kPoints, 1e-9);
+  Strip strip;
+  double before = 0.0;
+  for (const Recording& recording : recordings) {
+    const Drive& drive = recording.drive;
+    const std::optional<RowValue> value = values(recording);
+    double sum = 0.0, time = 0.0;
+    for (std::size_t row = 0; value && row < drive.rows(); ++row) {
+      const double duration = drive.duration(row);
+      sum += (*value)(drive, row) * duration;
+      time += duration;
+      if (time < share && row + 1 < drive.rows()) continue;
+      strip.t.push_back(before + drive.t[row] - drive.start() - 0.5 * time);
+      strip.value.push_back(time > 0.0 ? sum / time : 0.0);
+      sum = time = 0.0;
+    }
+    before += length_of(drive);
+    strip.t.push_back(before);
+    strip.value.push_back(kAbsent);
+  }
+  return strip;
+}
+
+Chart chart_of(const std::string& id, const std::string& title, Strip strip) {
+  Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.caption = "In time, sessions one after the other.";
+  chart.x.title = "t [s]";
+  chart.height = 70.0;
+  ChartLayer line{
+      LayerKind::line, "", {{"t [s]", std::move(strip.t)}, {title, std::move(strip.value)}}};
+  line.size = 1.2;
+  chart.layers.push_back(std::move(line));
+  return chart;
+}
+
+bool varies(const Strip& strip) {
+  double least = 1e300, most = -1e300;
+  for (const double value : strip.value) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return most > least;
+}
+
+std::optional<std::size_t> place_of(const Recording& recording, const std::string& covariate) {
+  const auto& all = recording.drive.covariates;
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Covariate& one) { return one.name == covariate; });
+  if (found == all.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+}  // namespace
+
+std::vector<Chart> time_strips(const std::vector<Recording>& recordings) {
+  std::vector<Chart> strips;
+  if (recordings.empty()) return strips;
+  const RowValue speed = [](const Drive& drive, std::size_t row) {
+    return 0.5 * (drive.left[row] + drive.right[row]) / drive.duration(row);
+  };
+  strips.push_back(chart_of("strip-speed", "speed [m/s]",
+                            strip_of(recordings, [&speed](const Recording&) { return speed; })));
+  for (const Covariate& one : recordings.front().drive.covariates) {
+    if (strips.size() == kMostStrips) break;
+    const bool everywhere = std::all_of(
+        recordings.begin(), recordings.end(),
+        [&one](const Recording& recording) { return place_of(recording, one.name).has_value(); });
+    if (!everywhere) continue;
+    Strip strip = strip_of(recordings, [&one](const Recording& recording) {
+      const std::vector<double>& values =
+          recording.drive.covariates[*place_of(recording, one.name)].values;
+      return RowValue([&values](const Drive&, std::size_t row) { return values[row]; });
+    });
+    if (!varies(strip)) continue;
+    strips.push_back(chart_of("strip-" + std::to_string(strips.size()), variable_in_words(one.name),
+                              std::move(strip)));
+  }
+  return strips;
+}
+
+}  // namespace trussmap

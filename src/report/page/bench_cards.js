@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The workbench's cards: the effects that the model has, and those that it could have, by part and
+// by what each would save. Look-alikes are stacked in one card.
+import {make} from './figure.js';
+
+const SHOWN = 4;  // of a part, before "more"
+const open = new Set();  // parts whose cards are all shown
+
+const saving = mm => (mm > 0 ? '\u2212' : '+') + Math.abs(mm).toFixed(Math.abs(mm) < 10 ? 1 : 0) + ' mm';
+
+/// What pointing, focusing and pressing do; the same for each card.
+function card(name, more, does) {
+  const title = make('button', {type: 'button', className: 'name', textContent: name});
+  const item = make('li', {className: 'card'}, make('div', {className: 'line'}, title, ...more));
+  title.addEventListener('click', () => does.pin());
+  title.addEventListener('focus', () => does.look());
+  item.addEventListener('pointerenter', () => does.look());
+  item.addEventListener('pointerleave', () => does.leave());
+  return item;
+}
+
+function act(text, label, busy, run) {
+  const button = make('button', {type: 'button', className: 'act', textContent: text, disabled: busy});
+  button.setAttribute('aria-label', label);
+  button.addEventListener('click', run);
+  return button;
+}
+
+const tag = (text, kind) => make('span', {className: 'tag ' + kind, textContent: text});
+
+function tagOf(one) {
+  if (one.status === 'missing') return tag('missing', 'bad');
+  if (one.implausible) return tag('implausibly large', 'plain');
+  if (one.status === 'negligible') return tag('too small to matter', 'plain');
+  return one.significant ? tag('goes with it', 'plain') : tag('as chance', 'plain');
+}
+
+/// Cards with those that look like them inside, each in one place.
+function stacked(cards) {
+  const inner = new Map();
+  for (const one of cards) {
+    for (const name of one.looks_like) if (!inner.has(name)) inner.set(name, one.id);
+  }
+  const byName = new Map(cards.map(one => [one.id, one]));
+  return cards.filter(one => !inner.has(one.id) || one.looks_like.length)
+      .map(one => ({...one, stack: one.looks_like.filter(name => inner.get(name) === one.id)
+                                      .map(name => byName.get(name)).filter(Boolean)}));
+}
+
+export function showOn(list, state, busy, does) {
+  list.replaceChildren(...state.on.map(one => {
+    const item = card(one.name, [act('Remove', `Remove ${one.name}`, busy, () => does.remove(one))], {
+      look: () => does.lookOn(one), leave: does.leave, pin: () => does.pinOn(one)});
+    item.dataset.effect = one.id;
+    item.append(make('p', {textContent: one.words}),
+                ...one.not_fitted.map(why => make('p', {className: 'failed', textContent: why})));
+    return item;
+  }));
+  if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
+}
+
+function candidate(one, busy, does) {
+  const item = card(one.name, [
+    make('span', {className: 'save', textContent: saving(one.saves_mm)}),
+    act('Add', `Add ${one.name}`, busy, () => does.add(one))], {
+      look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
+  item.dataset.effect = one.id;
+  item.dataset.finding = one.finding;
+  item.append(make('p', {}, tagOf(one), ' ' + one.words));
+  if (one.stack?.length) {
+    item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
+                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, busy, does))));
+  }
+  return item;
+}
+
+export function showCandidates(box, state, busy, does) {
+  const cards = stacked(state.cards.filter(one => one.saves_mm > 0 || one.status === 'missing'));
+  const parts = new Map();
+  for (const one of cards) {
+    if (!parts.has(one.part)) parts.set(one.part, []);
+    parts.get(one.part).push(one);
+  }
+  const again = () => showCandidates(box, state, busy, does);
+  box.replaceChildren(...[...parts].map(([part, all]) => {
+    const shown = open.has(part) ? all : all.slice(0, SHOWN);
+    const list = make('ul', {className: 'cards'}, ...shown.map(one => candidate(one, busy, does)));
+    const section = make('section', {className: 'part'}, make('h4', {textContent: part}), list);
+    section.dataset.part = part;
+    if (all.length > shown.length) {
+      const more = act(`${all.length - shown.length} more`, `More of ${part}`, false,
+                       () => { open.add(part); again(); });
+      section.append(more);
+    }
+    return section;
+  }));
+  if (!cards.length) {
+    box.append(make('p', {textContent: 'None would make the error of held-out legs smaller.'}));
+  }
+}

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The workbench's verdict, map, error, steps and strips of time, as a state has them.
+import {make, showChart} from './figure.js';
+
+const by = id => document.getElementById(id);
+
+function say(id, text) {
+  by(id).textContent = text || '';
+  by(id).hidden = !text;
+}
+
+/// A chart in its figure.
+export function showFigure(id, chart) {
+  const figure = by(id);
+  figure.hidden = !chart;
+  if (!chart) return;
+  figure.querySelector('h3').textContent = chart.title;
+  figure.querySelector('figcaption').textContent = chart.caption;
+  showChart(figure, chart);
+}
+
+function showVerdict(state) {
+  by('subject').textContent = state.subject;
+  by('verdict').textContent = state.verdict.text;
+  by('head').className = state.verdict.tone;
+  say('unsure', state.verdict.unsure);
+  say('drive', state.verdict.drive);
+  const notes = [...state.verdict.others, ...state.verdict.warnings];
+  by('others').hidden = !notes.length;
+  by('others').replaceChildren(...notes.map(textContent => make('li', {textContent})));
+  document.title = 'trussmap: ' + state.verdict.text;
+}
+
+function showError(state) {
+  const figure = state.figure;
+  by('figure-now').textContent = figure ? figure.now : '\u2013';
+  by('figure-more').textContent = figure
+      ? `at the end of a leg that no fit has seen (root mean square of ${figure.legs}). ` +
+        `The middle one ${figure.median}, the worst ${figure.worst}` +
+        (figure.worst_leg ? ` (${figure.worst_leg})` : '') +
+        `. Noise alone would leave ${figure.floor}.`
+      : 'There are no legs to be held out of the fit.';
+  showFigure('staircase', figure ? state.staircase : null);
+}
+
+function showSteps(state, busy, go) {
+  const now = state.steps[state.at];
+  by('steps').replaceChildren(...state.steps.map(step => {
+    const here = step.step === state.at;
+    const less = step.mm - now.mm;
+    const button = make('button', {
+      type: 'button', disabled: busy || here, className: 'step' + (step.on_way ? ' way' : ''),
+      textContent: step.name});
+    button.dataset.step = step.step;
+    button.addEventListener('click', () => go(step.step));
+    const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)})`;
+    const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
+    const item = make('li', {}, button, ` ${step.mm.toFixed(1)} mm${foretold}${beside}`);
+    if (here) item.setAttribute('aria-current', 'step');
+    return item;
+  }));
+}
+
+function showNoise(state) {
+  by('noise').replaceChildren(
+      ...state.noise.lines.map(textContent => make('p', {textContent})));
+}
+
+function showStrips(state) {
+  const box = by('time');
+  if (box.dataset.shown === state.subject) return;  // recordings stay what they are
+  box.dataset.shown = state.subject;
+  for (const chart of state.strips) {
+    const figure = make('figure', {className: 'chart strip', id: chart.id},
+                        make('h3'), make('div', {className: 'picture'}), make('figcaption'));
+    box.append(figure);
+    showFigure(chart.id, chart);
+  }
+}
+
+function showUnseen(state) {
+  by('unseen').hidden = !state.unseen.length;
+  by('unseen').querySelector('ul').replaceChildren(...state.unseen.map(one =>
+      make('li', {textContent: `${one.name}: ${one.why}; ${one.drive}`})));
+}
+
+export function showState(state, busy, go) {
+  showVerdict(state);
+  showFigure('map', state.map);
+  showError(state);
+  showSteps(state, busy, go);
+  showNoise(state);
+  showUnseen(state);
+  showStrips(state);
+}

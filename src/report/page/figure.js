@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A chart in its place on a page: drawn, and made to answer: hover, arrow keys, saving.
+import {rowsOf, specOf} from './spec.js';
+import {viewOf} from './vega.js';
+import {addZoom} from './zoom.js';
+
+const MOST_TABLE_ROWS = 500;
+export const tip = document.getElementById('tip');
+const said = document.getElementById('said');
+/// All that are drawn.
+export const charts = [];
+
+export function make(name, properties = {}, ...children) {
+  const element = document.createElement(name);
+  Object.assign(element, properties);
+  element.append(...children);
+  return element;
+}
+
+const shown = value => typeof value === 'number' ? String(+value.toPrecision(4)) : value ?? '';
+
+/// "name: value" for all that a mark knows; coordinates come last.
+function linesOf(layer, row) {
+  const order = layer.columns.map((_, c) => c);
+  const named = [...order.slice(layer.places), ...order.slice(0, layer.places)];
+  return named.filter(c => layer.columns[c].name && row['c' + c] !== null)
+      .map(c => `${layer.columns[c].name}: ${shown(row['c' + c])}`);
+}
+
+function showTip(lines, title, x, y) {
+  tip.replaceChildren(...(title ? [make('b', {textContent: title})] : []),
+                      ...lines.map(line => make('span', {textContent: line})));
+  tip.hidden = false;
+  const box = tip.getBoundingClientRect();
+  tip.style.left = Math.max(4, Math.min(x + 14, innerWidth - box.width - 8)) + 'px';
+  tip.style.top = Math.max(4, Math.min(y + 14, innerHeight - box.height - 8)) + 'px';
+}
+
+const layerOf = (chart, item) => chart.layers[Number(item.mark.name.slice(5))];
+
+function onTooltip(chart, event, item, value) {
+  if (!value || !item?.mark?.name) {
+    tip.hidden = true;
+    return;
+  }
+  const layer = layerOf(chart, item);
+  showTip(linesOf(layer, value), layer.key ? '' : layer.name, event.clientX, event.clientY);
+}
+
+/// Arrow keys go from mark to mark; what it says is read out.
+function walkMarks(entry, event) {
+  const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
+  if (event.key === 'Escape') tip.hidden = true;
+  if (!step) return;
+  event.preventDefault();
+  const frame = entry.view.scenegraph().root.items[0];
+  const items = frame.items.filter(mark => /^layer/.test(mark.name || ''))
+      .flatMap(mark => mark.items).filter(item => item.tooltip);
+  if (!items.length) return;
+  entry.at = entry.at === undefined ? (step > 0 ? 0 : items.length - 1)
+                                    : (entry.at + step + items.length) % items.length;
+  const item = items[entry.at];
+  const layer = layerOf(entry.chart, item);
+  const origin = entry.view.origin();
+  const box = entry.picture.getBoundingClientRect();
+  const lines = linesOf(layer, item.tooltip);
+  showTip(lines, layer.name, box.left + origin[0] + (item.bounds.x1 + item.bounds.x2) / 2,
+          box.top + origin[1] + (item.bounds.y1 + item.bounds.y2) / 2);
+  said.textContent = [layer.name, ...lines].join(', ');
+}
+
+const quoted = cell => /[",\r\n]/.test(cell) ? '"' + cell.replaceAll('"', '""') + '"' : cell;
+
+export function csvOf(chart) {
+  return chart.layers.map(layer => [
+    ['layer', ...layer.columns.map(column => column.name)],
+    ...rowsOf(layer).map(row => [layer.name,
+                                 ...layer.columns.map((_, c) => String(row['c' + c] ?? ''))])
+  ]).flat().map(row => row.map(quoted).join(',') + '\r\n').join('');
+}
+
+/// The picture by itself, in the colours for paper.
+export async function svgOf({chart, view}) {
+  const paper = getComputedStyle(document.querySelector('.paper'));
+  const plain = (await view.toSVG())
+      .replaceAll(/var\((--[\w-]+)\)/g, (_, name) => paper.getPropertyValue(name).trim());
+  const title = new XMLSerializer().serializeToString(make('span', {textContent: chart.title}))
+      .replace(/^<[^>]*>|<\/[^>]*>$/g, '');
+  return plain.replace(/<svg[^>]*>/, open => open + `<title>${title}</title>` +
+                       '<rect width="100%" height="100%" fill="#ffffff"/>');
+}
+
+function save(name, type, content) {
+  const url = URL.createObjectURL(new Blob([content], {type}));
+  make('a', {href: url, download: name}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+function tableOf(layer) {
+  const rows = rowsOf(layer);
+  const head = make('tr', {}, ...layer.columns.map(column =>
+      make('th', {scope: 'col', textContent: column.name})));
+  const body = rows.slice(0, MOST_TABLE_ROWS).map(row =>
+      make('tr', {}, ...layer.columns.map((_, c) => make('td', {
+        textContent: shown(row['c' + c]),
+        className: typeof row['c' + c] === 'number' ? 'number' : ''}))));
+  const table = make('table', {}, make('caption', {
+    textContent: layer.name + (rows.length > MOST_TABLE_ROWS
+        ? ` (first ${MOST_TABLE_ROWS} of ${rows.length}; the CSV file has all)` : '')}),
+                     make('thead', {}, head), make('tbody', {}, ...body));
+  return make('div', {className: 'table', tabIndex: 0}, table);
+}
+
+function addTools(figure, entry) {
+  const {chart} = entry;
+  figure.querySelector('.tools')?.remove();
+  const svg = make('button', {type: 'button', textContent: 'Save SVG'});
+  svg.addEventListener('click', async () =>
+      save(chart.id + '.svg', 'image/svg+xml', await svgOf(entry)));
+  svg.setAttribute('aria-label', `Save the chart "${chart.title}" as SVG`);
+  const csv = make('button', {type: 'button', textContent: 'Save CSV'});
+  csv.addEventListener('click', () => save(chart.id + '.csv', 'text/csv', csvOf(chart)));
+  csv.setAttribute('aria-label', `Save the data of "${chart.title}" as CSV`);
+  const details = make('details', {}, make('summary', {textContent: 'Data as a table'}));
+  details.addEventListener('toggle', () => {
+    if (details.open && details.children.length === 1) {
+      details.append(...chart.layers.filter(layer => layer.kind !== 'labels').map(tableOf));
+    }
+  });
+  entry.zoom ??= chart.equal ? addZoom(entry, make) : [];
+  figure.append(make('div', {className: 'tools'}, ...entry.zoom, svg, csv, details));
+}
+
+export function draw(entry) {
+  const width = Math.max(240, entry.picture.clientWidth);
+  entry.width = width;
+  entry.at = undefined;
+  entry.view?.finalize();
+  entry.picture.replaceChildren();
+  entry.view = viewOf(specOf(entry.chart, width), {
+    renderer: 'svg', container: entry.picture, hover: true,
+    tooltip: (_, event, item, value) => onTooltip(entry.chart, event, item, value)});
+  entry.view.run();
+  const root = entry.picture;
+  root.tabIndex = 0;
+  root.setAttribute('role', 'img');
+  root.setAttribute('aria-label', `${entry.chart.title}. ${entry.chart.caption} ` +
+                    'Arrow keys go through the marks.' +
+                    (entry.chart.equal ? ' Plus, minus and 0 zoom.' : ''));
+}
+
+/// Draws a chart in a figure that has a place for its picture; again, with another chart, in the
+/// same place.
+export function showChart(figure, chart) {
+  let entry = charts.find(one => one.figure === figure);
+  const fresh = !entry;
+  if (fresh) charts.push(entry = {figure, picture: figure.querySelector('.picture')});
+  entry.chart = chart;
+  try {
+    draw(entry);
+  } catch (error) {
+    entry.picture.replaceChildren(make('p', {
+      className: 'failed', textContent: 'This chart could not be drawn: ' + error.message}));
+    console.error(error);
+    return entry;
+  }
+  if (fresh) {
+    entry.picture.addEventListener('keydown', event => walkMarks(entry, event));
+    entry.picture.addEventListener('blur', () => { tip.hidden = true; });
+  }
+  addTools(figure, entry);
+  return entry;
+}
+
+/// Charts follow the width of the window.
+export function followWidth() {
+  let waiting = 0;
+  addEventListener('resize', () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => charts.forEach(entry => {
+      if (entry.view && Math.abs(entry.picture.clientWidth - entry.width) > 1) draw(entry);
+    }), 150);
+  });
+  addEventListener('scroll', () => { tip.hidden = true; }, {passive: true});
+}

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/fit_charts.hpp"
+#include "report/page_words.hpp"
+#include "report/view_json.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/pages.hpp"
+#include "trussmap/workbench.hpp"
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using nlohmann::ordered_json;
+
+Chart chart_of(const EffectPreview& preview) {
+  const EffectEvidence& evidence = preview.evidence;
+  std::vector<NamedCurve> rivals;
+  for (std::size_t k = 0; k < evidence.rivals.size() && k < evidence.response.rivals.size(); ++k) {
+    rivals.push_back({name_in_words(evidence.rivals[k]), evidence.response.rivals[k]});
+  }
+  const std::string name = name_in_words(evidence.estimate.effect);
+  return response_chart("plot", "The error against its cause",
+                        "Dots with 95 % intervals: the error that the model leaves, as the "
+                        "recordings show it. The line: " +
+                            name + (rivals.empty() ? "." : "; dashed: what it is set against."),
+                        evidence.response, name, rivals);
+}
+
+ordered_json rivals_json(const EffectPreview& preview) {
+  ordered_json list = ordered_json::array();
+  const std::vector<Effect>& rivals = preview.evidence.rivals;
+  for (std::size_t k = 0; k < rivals.size(); ++k) {
+    const auto predicted =
+        k < preview.rivals_predicted.size() ? preview.rivals_predicted[k] : std::nullopt;
+    list.push_back({{"name", name_in_words(rivals[k])},
+                    {"leaves_mm", millimetres(predicted)},
+                    {"apart", separating_drive(preview.evidence.estimate.effect, rivals[k], {})}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string preview_json(const EffectPreview& preview, double arrival_rms) {
+  const EffectEvidence& evidence = preview.evidence;
+  const Effect& effect = evidence.estimate.effect;
+  ordered_json result = effect_view(effect);
+  result["seen"] = preview.dof > 0;
+  result["words"] = preview.dof > 0
+                        ? sized_in_words(evidence)
+                        : "These recordings do not show it: map, poses or what the model "
+                          "has already absorb it.";
+  result["now_mm"] = 1e3 * arrival_rms;
+  result["leaves_mm"] = millimetres(preview.predicted);
+  result["chi2_less"] = preview.score;
+  result["dof"] = preview.dof;
+  result["p"] = chance_text(preview.p_value);
+  result["rivals"] = rivals_json(preview);
+  result["chart"] = evidence.response.bins.empty() && evidence.response.curve.empty()
+                        ? ordered_json(nullptr)
+                        : chart_view(chart_of(preview));
+  return safe_text(result);
+}
+
+}  // namespace trussmap

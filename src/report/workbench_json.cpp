@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "plot/fit_charts.hpp"
+#include "plot/time_strips.hpp"
+#include "recording/row_variables.hpp"
+#include "report/effect_parts.hpp"
+#include "report/page_words.hpp"
+#include "report/view_json.hpp"
+#include "statistics/median.hpp"
+#include "trussmap/pages.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/workbench.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostCards = 240;
+
+std::string step_name(const WorkbenchStep& step) {
+  Effect effect;
+  effect.name = step.effect;
+  for (const Effect& one : step.model.effects) {
+    if (one.name == step.effect) effect = one;
+  }
+  switch (step.kind) {
+    case WorkbenchStep::Kind::add:
+      return "+ " + name_in_words(effect);
+    case WorkbenchStep::Kind::remove:
+      return "\u2212 " + step.effect;
+    case WorkbenchStep::Kind::given:
+      break;
+  }
+  return "as given";
+}
+
+ordered_json step_json(const WorkbenchLog& log, std::size_t k,
+                       const std::vector<std::size_t>& way) {
+  const WorkbenchStep& step = log.steps[k];
+  const bool on_way = std::find(way.begin(), way.end(), k) != way.end();
+  return {{"step", k},
+          {"from", step.from},
+          {"name", step_name(step)},
+          {"on_way", on_way},
+          {"effects", step.model.effects.size()},
+          {"mm", 1e3 * step.arrival_rms},
+          {"predicted_mm",
+           step.predicted_rms ? ordered_json(1e3 * *step.predicted_rms) : ordered_json(nullptr)},
+          {"chi2_per_dof", step.chi2 / std::max(1, step.dof)}};
+}
+
+/// The ladder of the steps, with what was predicted, and the floor that noise alone makes.
+Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
+  std::vector<LadderStep> ladder;
+  ChartColumn predicted{"predicted [mm]"};
+  ChartColumn of{"step"};
+  for (const std::size_t k : way) {
+    const WorkbenchStep& step = log.steps[k];
+    // Names are places on an axis: an effect that was added twice has two.
+    std::string name = step_name(step);
+    const auto same = [&name](const LadderStep& one) { return one.name == name; };
+    while (std::any_of(ladder.begin(), ladder.end(), same)) name += " ";
+    ladder.push_back({name, step.arrival_rms, step.chi2, step.dof});
+    if (!step.predicted_rms) continue;
+    of.texts.push_back(name);
+    predicted.numbers.push_back(1e3 * *step.predicted_rms);
+  }
+  Chart chart = ladder_chart("staircase", ladder);
+  const double floor = 1e3 * log.steps[way.back()].expected_rms;
+  chart.layers.push_back(
+      {LayerKind::upright, "noise alone", {{"noise alone [mm]", {floor}}}, "ink", 0.0, true});
+  if (!predicted.numbers.empty()) {
+    chart.layers.push_back({LayerKind::intervals,
+                            "as predicted",
+                            {of, predicted, {"", predicted.numbers}, {"", predicted.numbers}},
+                            "2"});
+  }
+  chart.caption +=
+      " The dashed line is what this robot's noise alone would leave; no effect goes "
+      "below it by more than chance.";
+  return chart;
+}
+
+/// Held-out legs: how far off in all, the middle one, the worst.
+ordered_json figure_json(const TriedModel& now) {
+  const HeldOut& held_out = now.diagnosis().held_out;
+  if (held_out.legs.empty()) return nullptr;
+  std::vector<double> off;
+  const LegPrediction* worst = &held_out.legs.front();
+  for (const LegPrediction& leg : held_out.legs) {
+    off.push_back(leg.arrival_error.norm());
+    if (leg.arrival_error.norm() > worst->arrival_error.norm()) worst = &leg;
+  }
+  const double most = worst->arrival_error.norm();
+  ordered_json result = {{"now", distance_text(held_out.arrival_rms)},
+                         {"now_mm", 1e3 * held_out.arrival_rms},
+                         {"floor", distance_text(held_out.expected_rms)},
+                         {"floor_mm", 1e3 * held_out.expected_rms},
+                         {"median", distance_text(median(std::move(off)))},
+                         {"worst", distance_text(most)},
+                         {"legs", held_out.legs.size()}};
+  if (!worst->from.empty()) {
+    result["worst_leg"] =
+        fmt::format("{} \u2192 {} at t = {:.0f} s", worst->from, worst->to, worst->t);
+  }
+  return result;
+}
+
+ordered_json card_json(const TriedModel& now, std::size_t k) {
+  const Diagnosis& diagnosis = now.diagnosis();
+  const Finding& one = diagnosis.findings[k];
+  const EffectRange& range = now.sizes().at(k).range;
+  ordered_json card = effect_view(one.effect);
+  card["finding"] = k;
+  card["words"] = typeset(size_in_words(one.effect, range.least, range.most));
+  card["status"] = name_of(one.status);
+  card["implausible"] = one.implausible;
+  card["saves_mm"] = 1e3 * (diagnosis.held_out.arrival_rms - one.held_out.arrival_rms);
+  card["leaves_mm"] = 1e3 * one.held_out.arrival_rms;
+  card["p"] = chance_text(one.p_adjusted);
+  card["significant"] = one.p_adjusted < kSignificance;
+  ordered_json looks_like = ordered_json::array();
+  for (const LookAlike& rival : one.look_alikes) looks_like.push_back(rival.effect.name);
+  card["looks_like"] = std::move(looks_like);
+  ordered_json parameters = ordered_json::array();
+  for (const EffectParameter& parameter : now.parameters(k)) {
+    parameters.push_back({{"name", parameter.parameter.name},
+                          {"value", parameter.parameter.value},
+                          {"step", parameter.step},
+                          {"least", parameter.least},
+                          {"most", parameter.most}});
+  }
+  card["parameters"] = std::move(parameters);
+  return card;
+}
+
+/// What is missing first, as the diagnosis has it; then by what each would save. A free form that
+/// saves hardly more than the catalogue's best of its part has nothing to say for itself.
+std::vector<std::size_t> order_of_cards(const std::vector<Finding>& findings, double now) {
+  constexpr double kHardlyMore = 0.02;  // of what the catalogue's best saves
+  const auto is_missing = [&findings](std::size_t k) {
+    return findings[k].status == Status::missing || findings[k].status == Status::negligible;
+  };
+  const auto saves = [&findings, now](std::size_t k) {
+    return now - findings[k].held_out.arrival_rms;
+  };
+  std::map<EffectPart, double> best;
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    if (findings[k].catalogue) {
+      double& most = best[part_of(findings[k].effect)];
+      most = std::max(most, saves(k));
+    }
+  }
+  const auto weight = [&](std::size_t k) {
+    const double most = best[part_of(findings[k].effect)];
+    const bool hardly = !findings[k].catalogue && most > 0.0 &&
+                        saves(k) < (1.0 + kHardlyMore) * most && saves(k) > 0.0;
+    return hardly ? (1.0 - kHardlyMore) * saves(k) / (1.0 + kHardlyMore) : saves(k);
+  };
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < findings.size(); ++k) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (is_missing(a) != is_missing(b)) return is_missing(a);
+    return !is_missing(a) && weight(a) > weight(b);
+  });
+  return order;
+}
+
+ordered_json cards_json(const TriedModel& now) {
+  const Diagnosis& diagnosis = now.diagnosis();
+  std::vector<std::size_t> order =
+      order_of_cards(diagnosis.findings, diagnosis.held_out.arrival_rms);
+  if (order.size() > kMostCards) order.resize(kMostCards);
+  ordered_json cards = ordered_json::array();
+  for (const std::size_t k : order) cards.push_back(card_json(now, k));
+  return cards;
+}
+
+ordered_json on_json(const TriedModel& now) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t k = 0; k < now.fit().effects.size(); ++k) {
+    const EffectEstimate& one = now.fit().effects[k];
+    ordered_json card = effect_view(one.effect);
+    card["effect"] = k;
+    card["words"] = typeset(in_words(one.effect, one.sd));
+    ordered_json unfitted = ordered_json::array();
+    for (const UnfittedCoefficient& why : one.not_fitted) unfitted.push_back(in_words(one, why));
+    card["not_fitted"] = std::move(unfitted);
+    list.push_back(std::move(card));
+  }
+  return list;
+}
+
+ordered_json unseen_json(const Diagnosis& diagnosis) {
+  ordered_json list = ordered_json::array();
+  for (const Unobservable& one : diagnosis.unobservable) {
+    const Advice advice = advice_on(one);
+    list.push_back(
+        {{"name", name_in_words(one.effect)}, {"why", advice.why}, {"drive", advice.drive}});
+  }
+  return list;
+}
+
+/// What a shape may speak of in all of these.
+std::vector<std::string> shape_variables(const std::vector<Recording>& recordings) {
+  std::vector<std::string> names = reserved_variables();
+  for (const Covariate& one : recordings.front().drive.covariates) {
+    const auto has = [&one](const Recording& recording) {
+      const auto& all = recording.drive.covariates;
+      return std::any_of(all.begin(), all.end(),
+                         [&one](const Covariate& other) { return other.name == one.name; });
+    };
+    if (std::all_of(recordings.begin(), recordings.end(), has)) names.push_back(one.name);
+  }
+  return names;
+}
+
+ordered_json channels_json() {
+  ordered_json list = ordered_json::array();
+  for (const ChannelFacts& one : channels()) {
+    list.push_back({{"name", one.name}, {"unit", one.unit}, {"words", one.does_what}});
+  }
+  return list;
+}
+
+/// What is said above all else.
+ordered_json verdict_json(const TriedModel& now) {
+  const Diagnosis& diagnosis = now.diagnosis();
+  ordered_json result = {
+      {"text", capitalised(typeset(verdict_in_words(diagnosis)))},
+      {"tone", diagnosis.verdict == Diagnosis::Verdict::nothing_missing ? "good" : "bad"}};
+  if (diagnosis.verdict == Diagnosis::Verdict::missing) {
+    const Finding& first = diagnosis.findings.front();
+    result["unsure"] =
+        first.look_alikes.empty() ? "" : rivals_note(first.effect, first.look_alikes);
+  }
+  result["drive"] = diagnosis.next_drive
+                        ? "To tell them apart, " + in_words(diagnosis.next_drive) + "."
+                    : !diagnosis.lacks.empty() ? advised_drive(advice_on(diagnosis.lacks.front()))
+                                               : "";
+  result["others"] = others_notes(diagnosis);
+  result["warnings"] = diagnosis.warnings;
+  return result;
+}
+
+ordered_json noise_json(const TriedModel& now) {
+  ordered_json lines = ordered_json::array();
+  for (const NoiseBudget& one : now.budget())
+    lines.push_back(capitalised(typeset(in_words(one))) + ".");
+  ordered_json shares = ordered_json::array();
+  if (!now.budget().empty()) {
+    for (const NoiseShare& one : now.budget().front().shares) {
+      shares.push_back({{"source", one.source}, {"share", one.share}});
+    }
+  }
+  return {{"lines", std::move(lines)}, {"shares", std::move(shares)}};
+}
+
+}  // namespace
+
+std::string workbench_json(const Workbench& bench, const std::string& subject) {
+  const TriedModel& now = bench.now();
+  const WorkbenchLog& log = bench.log();
+  const std::vector<std::size_t> way = way_to(log, log.at);
+  ordered_json steps = ordered_json::array();
+  for (std::size_t k = 0; k < log.steps.size(); ++k) steps.push_back(step_json(log, k, way));
+  const std::vector<RouteError> routes = route_errors(now.comparison().worst, now.map());
+  const double worst = routes.empty() ? 0.0 : routes.front().rms;
+  ordered_json strips = ordered_json::array();
+  for (const Chart& strip : time_strips(now.recordings())) strips.push_back(chart_view(strip));
+  const Chart map = routes.empty() ? truss_chart("map", "The map", now.map(), {}, 1.0)
+                                   : route_chart("map", "The map, routes by what is left",
+                                                 now.map(), routes, worst);
+  return safe_text({{"subject", subject},
+                    {"at", log.at},
+                    {"steps", std::move(steps)},
+                    {"verdict", verdict_json(now)},
+                    {"figure", figure_json(now)},
+                    {"fit", fit_in_words(now.diagnosis().chi2, now.diagnosis().dof,
+                                         now.diagnosis().coefficients)},
+                    {"tried", now.diagnosis().tried},
+                    {"on", on_json(now)},
+                    {"cards", cards_json(now)},
+                    {"unseen", unseen_json(now.diagnosis())},
+                    {"noise", noise_json(now)},
+                    {"variables", shape_variables(now.recordings())},
+                    {"channels", channels_json()},
+                    {"map", chart_view(map)},
+                    {"staircase", chart_view(staircase(log, way))},
+                    {"strips", std::move(strips)}});
+}
+
+}  // namespace trussmap

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "report/content_hash.hpp"
+#include "trussmap/pages.hpp"
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+/// The frame; the script fills it in (page/workbench.js).
+// clang-format off
+constexpr const char* kBody = R"html(<header id="head">
+<p class="command">trussmap serve <span id="subject"></span></p>
+<h1 id="verdict">Fitting the map &#8230;</h1>
+<p id="unsure" hidden></p>
+<p id="drive" hidden></p>
+<ul id="others" class="notes" hidden></ul>
+<div id="doing" role="status" hidden><progress aria-label="Step under way"></progress> <span></span></div>
+<p id="failed" class="failed" role="alert" hidden></p>
+<div class="acts">
+<button type="button" id="undo" disabled>Undo</button>
+<button type="button" id="redo" disabled>Redo</button>
+<span class="takes">Take along:
+<a href="export/model.toml" download>model.toml</a>
+<a href="export/commands.sh" download>commands</a>
+<a href="export/odometry.cpp" download>C++</a>
+<a href="export/report.html" download>report</a></span>
+</div>
+</header>
+<main class="bench">
+<section id="effects" aria-labelledby="effects-title" tabindex="0">
+<h2 id="effects-title">Effects</h2>
+<h3>In the model</h3>
+<ul id="on" class="cards"></ul>
+<h3>What each would save</h3>
+<div id="parts"></div>
+<details id="own"><summary>An effect of your own</summary>
+<form id="own-form">
+<label>Name <input id="own-name" maxlength="80" value="my effect" autocomplete="off"></label>
+<label>Acts on <select id="own-channel"></select></label>
+<p id="own-does" class="hint"></p>
+<label>Goes with <input id="own-shape" maxlength="200" placeholder="max(0, speed-0.5)"
+ autocomplete="off" spellcheck="false" list="own-words" aria-describedby="own-fault"></label>
+<datalist id="own-words"></datalist>
+<p id="own-fault" class="failed" role="status"></p>
+<p class="hint">+ - * / ^ ( ), sin cos tan abs sign min max exp log sqrt, and:
+<span id="own-variables"></span></p>
+<button type="submit" id="own-add">Add it</button>
+</form></details>
+<details id="unseen"><summary>What these recordings cannot show</summary><ul></ul></details>
+</section>
+<section id="view" aria-label="Map and plot">
+<figure class="chart" id="map"><h3></h3><div class="picture tall-480"></div>
+<figcaption></figcaption></figure>
+<div id="looked" aria-live="polite">
+<h2 id="looked-name">Point at an effect</h2>
+<p id="looked-words">Its curve appears here before anything is fitted.</p>
+<p id="looked-saves" class="saves"></p>
+<div id="sliders"></div>
+<p id="duel-line" hidden><label>Set against <select id="duel"></select></label>
+<span id="duel-words"></span></p>
+<p id="looked-why"></p>
+<button type="button" id="add" hidden>Add it to the model</button>
+</div>
+<figure class="chart" id="plot" hidden><h3></h3><div class="picture tall-260"></div>
+<figcaption></figcaption></figure>
+</section>
+<section id="error" aria-labelledby="error-title">
+<h2 id="error-title">Dead reckoning is off by</h2>
+<p id="figure"><span id="figure-now">&#8211;</span></p>
+<p id="figure-more"></p>
+<figure class="chart" id="staircase"><h3></h3><div class="picture"></div>
+<figcaption></figcaption></figure>
+<h3>Steps</h3>
+<ol id="steps"></ol>
+<h3>Noise</h3>
+<div id="noise"></div>
+</section>
+<section id="time" aria-label="In time"></section>
+</main>
+<div id="tip" role="tooltip" hidden></div>
+<div id="said" class="unseen" aria-live="polite"></div>
+<div class="paper" hidden></div>
+)html";
+// clang-format on
+
+}  // namespace
+
+std::string workbench_page(const PageRuntime& runtime) {
+  const std::string style = fmt::format(
+      "\n{}.tall-480 {{ min-height: 480px; }}\n.tall-260 {{ min-height: 260px; }}\n",
+      runtime.style);
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "script-src '{}'; style-src '{}'; connect-src 'self'; base-uri 'none'; form-action "
+      "'none'\">\n"
+      "<title>trussmap workbench</title>\n<style>{}</style>\n</head>\n<body>\n{}"
+      "<script>{}</script>\n</body>\n</html>\n",
+      content_hash(runtime.script), content_hash(style), style, kBody, runtime.script);
+}
+
+}  // namespace trussmap

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/candidates.hpp"
+#include "criticism/comparison.hpp"
+#include "criticism/diagnosis.hpp"
+#include "criticism/effect_evidence.hpp"
+#include "criticism/score_test.hpp"
+#include "fit/fit_state.hpp"
+#include "trussmap/workbench.hpp"
+#include "validation/held_out_legs.hpp"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// Metrics of the held-out legs with an effect as its score has it.
+std::optional<HeldOutMetrics> predicted_by(const HeldOutLegs& legs, const FitState& fit,
+                                           const Score& score) {
+  if (score.dof == 0 || !legs.same_layout(fit.problem)) return std::nullopt;
+  const Eigen::VectorXd moved =
+      legs.slopes(score.columns, score.landmarks) *
+      Eigen::Map<const Eigen::VectorXd>(score.coefficients.data(),
+                                        static_cast<Eigen::Index>(score.coefficients.size()));
+  return legs.moved(moved);
+}
+
+ModelFit judged_fit(const Diagnosis& diagnosis, const ModelFit& fit) {
+  return diagnosis.under ? diagnosis.under->fit : fit;
+}
+
+void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
+  if (progress) progress(stage);
+}
+
+}  // namespace
+
+struct TriedModel::Tried {
+  Tried(std::shared_ptr<const std::vector<Recording>> recordings_given, const Model& model,
+        DiagnoseOptions how, const std::function<void(TryingStage)>& progress)
+      : recordings(std::move(recordings_given)), options(std::move(how)) {
+    say(progress, TryingStage::fitting);
+    const ModelFit first = fit_model(*recordings, model, options.fit);
+    say(progress, TryingStage::searching);
+    run = run_diagnosis(*recordings, first, model.noise, options);
+    fit = judged_fit(run.result, first);
+    say(progress, TryingStage::comparing);
+    tests.emplace(*fit.state);
+    legs.emplace(*recordings, *fit.state, fitter_options(fit.options), options.legs);
+    comparison = compare(*recordings, fit, {options.fit, options.legs, options.level}, *tests,
+                         {run.result.missing, legs->metrics()});
+    sizes = sizes_of(run.result, tests->context());
+    map = fitted_map(fit);
+    budget = noise_budget(*recordings, fit.model);
+  }
+
+  [[nodiscard]] const Candidate& candidate(std::size_t finding) const {
+    return run.candidates.at(finding);
+  }
+
+  std::shared_ptr<const std::vector<Recording>> recordings;
+  DiagnoseOptions options;
+  DiagnosisRun run;
+  ModelFit fit;
+  Comparison comparison;
+  std::vector<FindingSize> sizes;
+  FittedMap map;
+  std::vector<NoiseBudget> budget;
+  // Score tests keep what they make.
+  mutable std::mutex mutex;
+  std::optional<ScoreTest> tests;
+  std::optional<HeldOutLegs> legs;
+  mutable std::map<std::size_t, EffectEvidence> shown;
+};
+
+TriedModel::TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
+                       const DiagnoseOptions& options,
+                       const std::function<void(TryingStage)>& progress)
+    : tried_(std::make_shared<const Tried>(std::move(recordings), model, options, progress)) {}
+
+const std::vector<Recording>& TriedModel::recordings() const {
+  return *tried_->recordings;
+}
+const DiagnoseOptions& TriedModel::options() const {
+  return tried_->options;
+}
+const ModelFit& TriedModel::fit() const {
+  return tried_->fit;
+}
+const Diagnosis& TriedModel::diagnosis() const {
+  return tried_->run.result;
+}
+const std::vector<FindingSize>& TriedModel::sizes() const {
+  return tried_->sizes;
+}
+const Comparison& TriedModel::comparison() const {
+  return tried_->comparison;
+}
+const FittedMap& TriedModel::map() const {
+  return tried_->map;
+}
+const std::vector<NoiseBudget>& TriedModel::budget() const {
+  return tried_->budget;
+}
+
+std::vector<EffectParameter> TriedModel::parameters(std::size_t finding) const {
+  const Candidate& candidate = tried_->candidate(finding);
+  std::vector<EffectParameter> result;
+  for (std::size_t k = 0; k < candidate.parameters.size(); ++k) {
+    const SearchRange& range = candidate.search[k];
+    result.push_back({candidate.parameters[k], range.step, range.least, range.most});
+  }
+  return result;
+}
+
+Effect TriedModel::moved(std::size_t finding, const std::vector<double>& values) const {
+  const Candidate& candidate = tried_->candidate(finding);
+  if (values.size() != candidate.parameters.size()) {
+    throw std::invalid_argument("effect \"" + candidate.effect.name + "\" has " +
+                                std::to_string(candidate.parameters.size()) +
+                                " values that can be moved, not " + std::to_string(values.size()));
+  }
+  Effect effect = with_parameters(candidate, values).effect;
+  effect.coefficients.clear();
+  return effect;
+}
+
+std::vector<double> TriedModel::best_near(std::size_t finding,
+                                          const std::vector<double>& values) const {
+  static_cast<void>(moved(finding, values));
+  const Candidate& candidate = tried_->candidate(finding);
+  const std::scoped_lock lock(tried_->mutex);
+  const Candidate best = refined(*tried_->tests, with_parameters(candidate, values));
+  std::vector<double> result;
+  for (const ShapeParameter& one : best.parameters) result.push_back(one.value);
+  return result;
+}
+
+EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect>& rivals) const {
+  const FitState& fit = *tried_->fit.state;
+  const std::scoped_lock lock(tried_->mutex);
+  std::vector<Effect> asked{effect};
+  asked.insert(asked.end(), rivals.begin(), rivals.end());
+  const std::vector<Score> scores = tried_->tests->test(asked);
+  EffectPreview result;
+  const Score& score = scores.front();
+  result.score = score.score;
+  result.dof = score.dof;
+  result.p_value = score.p_value;
+  for (std::size_t k = 0; k < asked.size(); ++k) asked[k].coefficients = scores[k].coefficients;
+  result.predicted = predicted_by(*tried_->legs, fit, score);
+  for (std::size_t k = 1; k < scores.size(); ++k) {
+    result.rivals_predicted.push_back(predicted_by(*tried_->legs, fit, scores[k]));
+  }
+  const EffectEstimate estimate{asked.front(), score.sd, {}};
+  result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests);
+  return result;
+}
+
+EffectEvidence TriedModel::shown(std::size_t effect) const {
+  const ModelFit& fit = tried_->fit;
+  const EffectEstimate& estimate = fit.effects.at(effect);
+  const std::scoped_lock lock(tried_->mutex);
+  if (const auto known = tried_->shown.find(effect); known != tried_->shown.end()) {
+    return known->second;
+  }
+  Model model = fit.model;
+  model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+  const ModelFit without = refit(*tried_->recordings, model, fit);
+  return tried_->shown
+      .emplace(effect, seen_effect(estimate, {}, *without.state, ScoreTest(*without.state)))
+      .first->second;
+}
+
+}  // namespace trussmap
