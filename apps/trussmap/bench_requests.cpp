@@ -3,11 +3,11 @@
 #include "bench_requests.hpp"
 
 #include "bench_exports.hpp"
+#include "formula_limits.hpp"
 #include "page_runtime.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/pages.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -19,8 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestFormula = 200;
-constexpr int kDeepest = 12;
 constexpr std::size_t kMostShapes = 8;
 constexpr std::size_t kLongestName = 80;
 constexpr std::size_t kMostRivals = 3;
@@ -177,20 +175,6 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
 }
 
 }  // namespace
-
-std::string fault_of_formula(const std::string& formula) {
-  if (formula.empty() || formula.size() > kLongestFormula) {
-    return fmt::format("a formula has 1 to {} characters, this one {}", kLongestFormula,
-                       formula.size());
-  }
-  int depth = 0, deepest = 0;
-  for (const char c : formula) {
-    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
-    deepest = std::max(deepest, depth);
-  }
-  if (deepest <= kDeepest) return "";
-  return fmt::format("the formula's brackets are {} deep, expected at most {}", deepest, kDeepest);
-}
 
 LocalReply bench_reply(const LocalRequest& request, BenchWork& work, const BenchOrigin& origin) {
   try {

@@ -27,9 +27,6 @@ struct BenchOrigin {
   std::string model;
 };
 
-/// A formula that is too long, or nested too deeply, in words; empty where there is nothing to say.
-[[nodiscard]] std::string fault_of_formula(const std::string& formula);
-
 [[nodiscard]] LocalReply bench_reply(const LocalRequest& request, BenchWork& work,
                                      const BenchOrigin& origin);
 

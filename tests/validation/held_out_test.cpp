@@ -329,7 +329,7 @@ TEST(HeldOut, ExpectedErrorsAreAsLargeAsThoseOfTheRightModel) {
   }
   // Some 80 legs, an error of one leading component each: the ratio of the sums has an sd of
   // (2/80)^(1/2) = 0.16.
-  EXPECT_NEAR(measured / expected, 1.0, 0.01);
+  EXPECT_NEAR(measured / expected, 1.0, 0.4);
 }
 
 TEST(HeldOut, LegsBetweenTruthRowsArePredictedToo) {

@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "apps/served_bench.hpp"
+#include "formula_limits.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/model_file.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+using testing::HttpAnswer;
+using testing::Ran;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+using testing::sent_to;
+using testing::ServedBench;
+
+const std::string kRiddle = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
+
+std::vector<std::string> riddle(const ScratchFolder& scratch) {
+  return {kRiddle, "--model", kRiddle + "/model.toml", "--work",
+          (scratch.path() / "work").string()};
+}
+
+std::size_t finding_named(const json& state, const std::string& id) {
+  for (const json& card : state.at("cards")) {
+    if (card.at("id") == id) return card.at("finding").get<std::size_t>();
+  }
+  throw std::runtime_error("no card " + id);
+}
+
+TEST(ServeCommand, FromMisfitToModelByRequests) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  EXPECT_EQ(bench.settled().at("version"), 1);
+  const json given = bench.state();
+  EXPECT_EQ(given.at("cards").at(0).at("id"), "hard iron");
+  const std::size_t finding = finding_named(given, "hard iron");
+  const HttpAnswer preview = bench.post("preview", json{{"finding", finding}}.dump());
+  ASSERT_EQ(preview.status, 200) << preview.body;
+  const double promised = json::parse(preview.body).at("leaves_mm").get<double>();
+  EXPECT_EQ(
+      bench.post("step", json{{"version", 1}, {"do", "add"}, {"finding", finding}}.dump()).status,
+      202);
+  const json after = bench.settled();
+  EXPECT_EQ(after.at("failed"), "");
+  const json with = bench.state();
+  EXPECT_LT(with.at("figure").at("now_mm").get<double>(),
+            0.15 * given.at("figure").at("now_mm").get<double>());
+  EXPECT_EQ(with.at("steps").at(1).at("predicted_mm").get<double>(), promised);
+  EXPECT_EQ(with.at("verdict").at("tone"), "good");
+  // What can be taken along.
+  const auto file = scratch.write("model.toml", bench.get("export/model.toml").body);
+  const Model model = read_model(file);
+  ASSERT_EQ(model.effects.size(), 1U);
+  EXPECT_NEAR(model.effects[0].coefficients.at(0), 0.04, 0.002);
+  EXPECT_NE(bench.get("export/odometry.cpp").body.find("CorrectedOdometry"), std::string::npos);
+  EXPECT_NE(bench.get("export/report.html").body.find("</html>"), std::string::npos);
+  EXPECT_EQ(bench.get("export/../../etc/passwd").status, 404);
+}
+
+TEST(ServeCommand, ItsCommandsDoTheSameWorkAgain) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  static_cast<void>(bench.settled());
+  const json own = {{"version", 1},
+                    {"do", "add"},
+                    {"effect",
+                     {{"name", "it's mine; rm -rf"},
+                      {"channel", "compass"},
+                      {"shape", {"sin(heading)", "cos(heading)"}}}}};
+  ASSERT_EQ(bench.post("step", own.dump()).status, 202);
+  ASSERT_EQ(bench.settled().at("failed"), "");
+  const auto script = scratch.write("commands.sh", bench.get("export/commands.sh").body);
+  const std::string command = "cd " + scratch.path().string() + " && ln -s " + TRUSSMAP_COMMAND +
+                              " trussmap && PATH=.:$PATH sh " + script.string() + " > out 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const Model again = read_model(scratch.path() / "model.toml");
+  const Model here = read_model(scratch.write("here.toml", bench.get("export/model.toml").body));
+  ASSERT_EQ(again.effects.size(), 1U);
+  EXPECT_EQ(again.effects[0].name, "it's mine; rm -rf");
+  for (std::size_t k = 0; k < 2; ++k) {  // standard errors are 0.6 mrad
+    EXPECT_NEAR(again.effects[0].coefficients.at(k), here.effects[0].coefficients.at(k), 1e-4);
+  }
+}
+
+TEST(ServeCommand, AnswersItsOwnPageAlone) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  const auto asked = [&bench](const std::string& path, const std::string& headers) {
+    return sent_to(bench.port(), "GET " + path + " HTTP/1.1\r\n" + headers + "\r\n\r\n");
+  };
+  const std::string here = "Host: " + bench.host();
+  const std::string there = bench.path() + "status";
+  EXPECT_EQ(asked(there, here).status, 200);
+  EXPECT_EQ(asked(there, "Host: localhost:" + std::to_string(bench.port())).status, 200);
+  EXPECT_EQ(asked(there, here + "\r\nOrigin: http://" + bench.host()).status, 200);
+  // Names of elsewhere that lead here, pages of elsewhere, no token, a wrong one, half of one.
+  EXPECT_EQ(asked(there, "Host: evil.example").status, 403);
+  EXPECT_EQ(asked(there, "Host: evil.example:" + std::to_string(bench.port())).status, 403);
+  EXPECT_EQ(asked(there, here + "\r\nOrigin: https://evil.example").status, 403);
+  EXPECT_EQ(asked(there, here + "\r\nOrigin: null").status, 403);
+  EXPECT_EQ(asked(there, here + "\r\nSec-Fetch-Site: cross-site").status, 403);
+  EXPECT_EQ(asked("/status", here).status, 403);
+  EXPECT_EQ(asked("/" + std::string(32, '0') + "/status", here).status, 403);
+  EXPECT_EQ(asked(bench.path().substr(0, 10) + "/status", here).status, 403);
+  EXPECT_EQ(asked("/", here).body.find(bench.path().substr(1, 32)), std::string::npos);
+  // A form of elsewhere can send no JSON.
+  const HttpAnswer form =
+      sent_to(bench.port(), "POST " + bench.path() + "step HTTP/1.1\r\n" + here +
+                                "\r\nContent-Type: text/plain\r\nContent-Length: 2\r\n\r\n{}");
+  EXPECT_EQ(form.status, 415);
+  const std::string head = bench.get("").head;
+  EXPECT_NE(head.find("nosniff"), std::string::npos);
+  EXPECT_NE(head.find("frame-ancestors 'none'"), std::string::npos);
+}
+
+TEST(ServeCommand, ListensToThisMachineAlone) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  // /proc/net/tcp has the local address of whatever listens: 0100007F is 127.0.0.1.
+  std::ostringstream text;
+  text << std::ifstream("/proc/net/tcp").rdbuf();
+  char place[32];
+  std::snprintf(place, sizeof(place), "0100007F:%04X 00000000:0000 0A", bench.port());
+  EXPECT_NE(text.str().find(place), std::string::npos);
+  std::snprintf(place, sizeof(place), "00000000:%04X", bench.port());
+  EXPECT_EQ(text.str().find(place), std::string::npos);
+}
+
+TEST(ServeCommand, AThousandMalformedRequestsLeaveItRunning) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  static_cast<void>(bench.settled());
+  std::mt19937_64 random(11);
+  const std::vector<std::string> bodies{
+      "",
+      "{",
+      "[]",
+      "null",
+      "{\"finding\":-1}",
+      "3",
+      "{\"do\":1}",
+      "\"x\"",
+      "{\"finding\":1e99}",
+      "{\"finding\":99999999}",
+      "{\"version\":1,\"do\":\"go\",\"step\":77}",
+      "{\"version\":1,\"do\":\"remove\",\"effect\":5}",
+      "{\"finding\":0,\"values\":[1,2,3,4,5]}",
+      "{\"effect\":{}}",
+      "{\"effect\":{\"name\":\"\",\"channel\":\"turn\",\"shape\":[\"1\"]}}",
+      "{\"effect\":{\"name\":\"a\",\"channel\":\"no\",\"shape\":[\"1\"]}}",
+      "{\"effect\":{\"name\":\"a\",\"channel\":\"turn\",\"shape\":[]}}",
+      "{\"effect\":{\"name\":\"a\",\"channel\":\"turn\",\"shape\":[\"1/0\"]}}",
+      "{\"effect\":{\"name\":\"a\",\"channel\":\"turn\",\"shape\":[\"system(1)\"]}}",
+      "{\"effect\":{\"name\":\"a\\u0000b\",\"channel\":\"turn\",\"shape\":[\"speed\"]}}"};
+  const std::vector<std::string> names{"preview", "best", "shown", "step", "nothing"};
+  for (int k = 0; k < 1000; ++k) {
+    if (k % 4 == 0) {  // no HTTP at all, or half of it
+      std::string bytes = "GET " + bench.path() + "state HTTP/1.1\r\nHost: ";
+      for (int c = 0; c < 40; ++c) bytes += static_cast<char>(random() % 256);
+      if (k % 8 == 0) bytes += "\r\n\r\n";
+      const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
+      sockaddr_in place{};
+      place.sin_family = AF_INET;
+      place.sin_port = htons(bench.port());
+      place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      ASSERT_EQ(::connect(socket, reinterpret_cast<sockaddr*>(&place), sizeof(place)), 0);
+      static_cast<void>(::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL));
+      ::close(socket);
+      continue;
+    }
+    const HttpAnswer answer =
+        bench.post(names[random() % names.size()], bodies[random() % bodies.size()]);
+    // What happens to be right is answered; everything else in one line.
+    EXPECT_TRUE(answer.status == 200 || (answer.status >= 400 && answer.status < 500))
+        << answer.status << " " << answer.body;
+    if (answer.status != 200) {
+      EXPECT_TRUE(json::parse(answer.body).contains("error")) << answer.body;
+    }
+  }
+  const std::string long_header = "GET " + bench.path() +
+                                  "state HTTP/1.1\r\nHost: " + bench.host() +
+                                  "\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n";
+  EXPECT_NE(sent_to(bench.port(), long_header).status, 200);
+  EXPECT_NE(bench.post("preview", std::string(1'000'000, ' ')).status, 200);
+  EXPECT_EQ(bench.settled().at("version"), 1);  // and nothing was changed
+  EXPECT_EQ(bench.get("state").status, 200);
+}
+
+TEST(ServeCommand, FormulasAreShortShallowAndNothingElse) {
+  EXPECT_EQ(app::fault_of_formula("max(0, speed-0.5)"), "");
+  EXPECT_NE(app::fault_of_formula(""), "");
+  EXPECT_NE(app::fault_of_formula(std::string(201, '1')), "");
+  EXPECT_EQ(app::fault_of_formula(std::string(12, '(') + "1" + std::string(12, ')')), "");
+  EXPECT_NE(app::fault_of_formula(std::string(13, '(') + "1" + std::string(13, ')')), "");
+}
+
+TEST(ServeCommand, TwoWindowsDoNotFight) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  static_cast<void>(bench.settled());
+  const std::size_t finding = finding_named(bench.state(), "hard iron");
+  const std::string add = json{{"version", 1}, {"do", "add"}, {"finding", finding}}.dump();
+  EXPECT_EQ(bench.post("step", add).status, 202);
+  const HttpAnswer second = bench.post("step", add);
+  EXPECT_EQ(second.status, 409) << second.body;  // under way, or of a version that is gone
+  static_cast<void>(bench.settled());
+  EXPECT_EQ(bench.post("step", add).status, 409);
+  EXPECT_EQ(bench.state().at("steps").size(), 2U);
+}
+
+TEST(ServeCommand, KilledItGoesOnWhereItsLastStepEnded) {
+  const ScratchFolder scratch;
+  json before;
+  {
+    const ServedBench bench(riddle(scratch));
+    static_cast<void>(bench.settled());
+    const std::size_t finding = finding_named(bench.state(), "hard iron");
+    EXPECT_EQ(
+        bench.post("step", json{{"version", 1}, {"do", "add"}, {"finding", finding}}.dump()).status,
+        202);
+    static_cast<void>(bench.settled());
+    before = bench.state();
+    const std::size_t next = finding_named(before, "wheelbase");
+    EXPECT_EQ(
+        bench.post("step", json{{"version", 2}, {"do", "add"}, {"finding", next}}.dump()).status,
+        202);
+    bench.kill();  // SIGKILL, in the midst of a step
+  }
+  const ServedBench again(riddle(scratch));
+  static_cast<void>(again.settled());
+  json after = again.state();
+  EXPECT_GE(after.at("steps").size(), 2U);
+  if (after.at("steps").size() == 2U) {  // the last step was not done yet
+    EXPECT_EQ(after, before);
+  }
+}
+
+TEST(ServeCommand, OtherWorkIsNotGoneOnWith) {
+  const ScratchFolder scratch;
+  {
+    const ServedBench bench(riddle(scratch));
+    static_cast<void>(bench.settled());
+  }
+  const auto model = scratch.write("other.toml", "[robot]\nwheelbase = 0.4\n");
+  const Ran other = run_trussmap("serve " + kRiddle + " --no-browser --model " + model.string() +
+                                 " --work " + (scratch.path() / "work").string());
+  EXPECT_EQ(other.status, 2) << other.output;
+  EXPECT_NE(other.output.find("began with another model"), std::string::npos) << other.output;
+  EXPECT_EQ(
+      run_trussmap("serve " + kRiddle + " --no-browser --model " + model.string() + " --port 70000")
+          .status,
+      2);
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The workbench as a person uses it: a real browser, real pointer and keys.
+#include "apps/chrome.hpp"
+#include "apps/served_bench.hpp"
+#include "scratch_folder.hpp"
+#include "trussmap/model_file.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+using nlohmann::json;
+using testing::Chrome;
+using testing::run_trussmap;
+using testing::ScratchFolder;
+using testing::ServedBench;
+
+const std::string kRiddle = std::string(TRUSSMAP_SOURCE_DIR) + "/maps/riddle";
+
+std::vector<std::string> served(const ScratchFolder& scratch, const std::string& recording,
+                                const std::string& model) {
+  return {recording, "--model", model, "--work", (scratch.path() / "work").string()};
+}
+
+std::string version_is(int version) {
+  return "document.documentElement.dataset.version === '" + std::to_string(version) + "'";
+}
+std::string looked_at(const std::string& effect) {
+  return "document.documentElement.dataset.looked === " + json(effect).dump();
+}
+std::string card(const std::string& effect) {
+  return "#parts [data-effect=\"" + effect + "\"]";
+}
+
+TEST(WorkbenchInBrowser, FromMisfitToModel) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  EXPECT_NE(chrome.text("#verdict").find("Missing: hard iron"), std::string::npos);
+  const double before = chrome.eval("window.trussmap.state().figure.now_mm").get<double>();
+  // Pointing previews, and fits nothing.
+  chrome.point_at(card("spin loss"));
+  chrome.wait(looked_at("spin loss"));
+  EXPECT_EQ(chrome.text("#looked-name"), "spin loss");
+  chrome.point_at(card("hard iron"));
+  chrome.wait(looked_at("hard iron"));
+  EXPECT_NE(chrome.text("#looked-saves").find("mm with it, as predicted"), std::string::npos);
+  chrome.wait("document.querySelectorAll('#plot .mark-line path').length > 0");
+  EXPECT_EQ(bench.status().at("version"), 1);
+  // A duel with its look-alike.
+  chrome.click(card("hard iron") + " .name");
+  chrome.eval(
+      "(() => { const duel = document.getElementById('duel'); duel.selectedIndex = 1; "
+      "duel.dispatchEvent(new Event('change')); })()");
+  chrome.wait("document.getElementById('duel-words').textContent.includes('To tell them apart')");
+  // Added, the error falls, and the others lose what it took from them.
+  chrome.click(card("hard iron") + " .act");
+  chrome.wait(version_is(2));
+  EXPECT_NE(chrome.text("#verdict").find("Nothing missing"), std::string::npos);
+  const double after = chrome.eval("window.trussmap.state().figure.now_mm").get<double>();
+  EXPECT_LT(after, 0.15 * before);
+  EXPECT_NE(chrome.text("#steps").find("predicted"), std::string::npos);
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('#on .card').length"), 1);
+  EXPECT_TRUE(
+      chrome.eval("document.querySelector('" + card("body tilt") + "') === null").get<bool>());
+  // A reload in the middle keeps everything.
+  chrome.reload();
+  chrome.wait(version_is(2));
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('#steps li').length"), 2);
+  // Undo, redo.
+  chrome.click("#undo");
+  chrome.wait(version_is(3));
+  EXPECT_NE(chrome.text("#verdict").find("Missing: hard iron"), std::string::npos);
+  chrome.click("#redo");
+  chrome.wait(version_is(4));
+  // Taken along.
+  const std::string exported =
+      chrome.eval("fetch('export/model.toml').then(reply => reply.text())").get<std::string>();
+  EXPECT_EQ(read_model(scratch.write("exported.toml", exported)).effects.size(), 1U);
+  // Removed again.
+  chrome.click("#on .card .act");
+  chrome.wait(version_is(5));
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('#on .card').length"), 0);
+  EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
+}
+
+TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  chrome.click("#own summary");
+  chrome.eval("document.getElementById('own-channel').value = 'compass'");
+  chrome.click("#own-shape");
+  chrome.type("sin(headi");
+  chrome.wait("document.getElementById('own-fault').textContent.includes('cannot be read')");
+  EXPECT_TRUE(chrome
+                  .eval("[...document.querySelectorAll('#own-words option')]"
+                        ".some(one => one.value === 'sin(heading')")
+                  .get<bool>());
+  chrome.type("ng)");
+  chrome.wait(looked_at("my effect"));
+  EXPECT_EQ(chrome.text("#own-fault"), "");
+  // A name that would be markup is text.
+  chrome.click("#own-name");
+  chrome.eval("document.getElementById('own-name').value = '<img src=x onerror=alert(1)>'");
+  chrome.type("!");
+  chrome.wait("document.getElementById('looked-name').textContent.includes('<img')");
+  chrome.click("#own-add");
+  chrome.wait(version_is(2));
+  EXPECT_NE(chrome.text("#on").find("<img src=x"), std::string::npos);
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('img').length"), 0);
+  EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
+}
+
+TEST(WorkbenchInBrowser, TwoEffectsOneAfterTheOther) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "two").string();
+  const testing::Ran made = run_trussmap(
+      "simulate --out " + folder +
+      " --mesh 4x4 --spacing 5 --tours 2 --seed 5 --effect \"hard iron=0.05,0.02\" --effect "
+      "wheelbase=0.02");
+  ASSERT_EQ(made.status, 0) << made.output;
+  const ServedBench bench(served(scratch, folder, folder + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  std::vector<std::string> added;
+  for (int step = 2; step <= 3; ++step) {
+    const std::string name =
+        chrome.eval("document.querySelector('#parts .tag.bad').closest('.card').dataset.effect")
+            .get<std::string>();
+    added.push_back(name);
+    chrome.click(card(name) + " .act");
+    chrome.wait(version_is(step));
+  }
+  std::sort(added.begin(), added.end());
+  EXPECT_EQ(added, (std::vector<std::string>{"hard iron", "wheelbase"}));
+  EXPECT_NE(chrome.text("#verdict").find("Nothing missing"), std::string::npos);
+  EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
+}
+
+TEST(WorkbenchInBrowser, WhereNothingIsMissingItSaysSo) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "clean").string();
+  ASSERT_EQ(run_trussmap("simulate --out " + folder + " --mesh 4x4 --spacing 5 --seed 7").status,
+            0);
+  const ServedBench bench(served(scratch, folder, folder + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  EXPECT_NE(chrome.text("#verdict").find("Nothing missing"), std::string::npos);
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('#parts .tag.bad').length"), 0);
+  EXPECT_EQ(chrome.eval("document.getElementById('head').className"), "good");
+}
+
+TEST(WorkbenchInBrowser, TwoTabsShowTheSame) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  const std::size_t other = chrome.open_tab();
+  chrome.go(bench.address());
+  chrome.wait(version_is(1));
+  chrome.click(card("hard iron") + " .act");
+  chrome.wait(version_is(2));
+  chrome.to_tab(other - 1);
+  chrome.wait(version_is(2));
+  EXPECT_EQ(chrome.eval("document.querySelectorAll('#on .card').length"), 1);
+}
+
+}  // namespace
+}  // namespace trussmap

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The workbench on maps/riddle, whose hidden effect is a compass with hard iron.
+#include "trussmap/workbench.hpp"
+
+#include "trussmap/catalogue.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+const std::filesystem::path kRiddle = std::filesystem::path(TRUSSMAP_SOURCE_DIR) / "maps/riddle";
+
+const std::vector<Recording>& riddle() {
+  static const std::vector<Recording> recordings{read_recording(kRiddle)};
+  return recordings;
+}
+
+Model riddle_model() {
+  return read_model(kRiddle / "model.toml");
+}
+
+/// Begun once: tests that make steps take a copy, which shares what is there.
+const Workbench& begun() {
+  static const Workbench bench(riddle(), riddle_model());
+  return bench;
+}
+
+std::size_t finding_named(const TriedModel& model, const std::string& name) {
+  const std::vector<Finding>& findings = model.diagnosis().findings;
+  const auto found = std::find_if(findings.begin(), findings.end(),
+                                  [&name](const Finding& one) { return one.effect.name == name; });
+  if (found == findings.end()) throw std::runtime_error(name);
+  return static_cast<std::size_t>(found - findings.begin());
+}
+
+TEST(Workbench, BeginsWithWhatTheCommandsSayOfTheModelGiven) {
+  const Diagnosis diagnosis = diagnose(riddle(), riddle_model());
+  const TriedModel& now = begun().now();
+  EXPECT_EQ(now.diagnosis().missing, diagnosis.missing);
+  EXPECT_EQ(now.diagnosis().held_out.arrival_rms, diagnosis.held_out.arrival_rms);
+  ASSERT_EQ(now.diagnosis().findings.size(), diagnosis.findings.size());
+  ASSERT_EQ(now.sizes().size(), diagnosis.findings.size());
+  EXPECT_EQ(now.comparison().held_out.arrival_rms, diagnosis.held_out.arrival_rms);
+  EXPECT_EQ(begun().log().steps.size(), 1U);
+  EXPECT_EQ(begun().log().steps[0].arrival_rms, diagnosis.held_out.arrival_rms);
+}
+
+TEST(Workbench, APreviewIsWhatTheDiagnosisFoundOfTheSameEffect) {
+  const TriedModel& now = begun().now();
+  for (const std::string name : {"hard iron", "wheelbase", "spin loss"}) {
+    const Finding& finding = now.diagnosis().findings[finding_named(now, name)];
+    const EffectPreview preview = now.preview(catalogue_effect(name));
+    EXPECT_NEAR(preview.score, finding.score, 1e-6 * finding.score) << name;
+    EXPECT_EQ(preview.dof, finding.dof);
+    ASSERT_TRUE(preview.predicted.has_value());
+    EXPECT_NEAR(preview.predicted->arrival_rms, finding.held_out.arrival_rms, 1e-9) << name;
+    EXPECT_FALSE(preview.evidence.response.bins.empty()) << name;
+  }
+}
+
+TEST(Workbench, AnAddedEffectReachesWhatItsPreviewPromised) {
+  Workbench bench = begun();
+  const double before = bench.now().diagnosis().held_out.arrival_rms;
+  bench.add(catalogue_effect("hard iron"));
+  const WorkbenchStep& step = bench.log().steps.back();
+  EXPECT_EQ(bench.log().at, 1U);
+  EXPECT_EQ(step.from, 0U);
+  // 0.04 and -0.03 rad were simulated (maps/riddle/README.md); standard errors are 0.6 mrad.
+  const std::vector<double>& found = bench.now().fit().effects.at(0).effect.coefficients;
+  EXPECT_NEAR(found.at(0), 0.04, 0.002);
+  EXPECT_NEAR(found.at(1), -0.03, 0.002);
+  ASSERT_TRUE(step.predicted_rms.has_value());
+  EXPECT_LT(step.arrival_rms, 0.15 * before);
+  EXPECT_NEAR(step.arrival_rms, *step.predicted_rms, 0.02 * before);
+  // As good as the noise lets it be: five legs, two values each.
+  EXPECT_LT(step.arrival_rms, 2.0 * step.expected_rms);
+  // The step is the model before any fit: nothing hangs on the way to it.
+  EXPECT_TRUE(step.model.effects.at(0).coefficients.empty());
+}
+
+TEST(Workbench, WhatWasAddedTakesFromWhatLooksLikeIt) {
+  Workbench bench = begun();
+  const auto saves = [&bench](const std::string& name) {
+    const TriedModel& now = bench.now();
+    return now.diagnosis().held_out.arrival_rms -
+           now.diagnosis().findings[finding_named(now, name)].held_out.arrival_rms;
+  };
+  const double before = saves("cross-slope creep");
+  bench.add(catalogue_effect("hard iron"));
+  EXPECT_LT(saves("cross-slope creep"), 0.02 * before);
+}
+
+TEST(Workbench, AStepReturnedToHasTheSameFiguresToTheLastDigit) {
+  Workbench bench = begun();
+  bench.add(catalogue_effect("hard iron"));
+  const double with = bench.now().diagnosis().held_out.arrival_rms;
+  const std::vector<double> found = bench.now().fit().effects.at(0).effect.coefficients;
+  bench.add(catalogue_effect("wheelbase"));
+  bench.remove(1);
+  EXPECT_EQ(bench.log().steps.back().kind, WorkbenchStep::Kind::remove);
+  EXPECT_EQ(bench.log().steps.back().effect, "wheelbase");
+  EXPECT_EQ(bench.now().diagnosis().held_out.arrival_rms, with);
+  bench.go_to(0);
+  EXPECT_EQ(bench.now().diagnosis().held_out.arrival_rms,
+            begun().now().diagnosis().held_out.arrival_rms);
+  // From its log alone, as after a crash.
+  WorkbenchLog log = bench.log();
+  log.at = 1;
+  const Workbench again(riddle(), log);
+  EXPECT_EQ(again.now().diagnosis().held_out.arrival_rms, with);
+  EXPECT_EQ(again.now().fit().effects.at(0).effect.coefficients, found);
+}
+
+TEST(Workbench, TheWayToAStepLeavesOutWhatWasUndone) {
+  WorkbenchLog log;
+  log.steps.resize(5);
+  log.steps[1].from = 0;
+  log.steps[2].from = 1;
+  log.steps[3].from = 1;
+  log.steps[4].from = 3;
+  EXPECT_EQ(way_to(log, 4), (std::vector<std::size_t>{0, 1, 3, 4}));
+  EXPECT_EQ(way_to(log, 0), (std::vector<std::size_t>{0}));
+  EXPECT_THROW(way_to(log, 5), std::out_of_range);
+}
+
+TEST(Workbench, AStepThatFailsLeavesAllAsItWas) {
+  Workbench bench = begun();
+  bench.add(catalogue_effect("hard iron"));
+  const double before = bench.now().diagnosis().held_out.arrival_rms;
+  EXPECT_THROW(bench.add(catalogue_effect("hard iron")), std::invalid_argument);
+  Effect unknown;
+  unknown.name = "goes with nothing";
+  unknown.shape = {"no_such_column"};
+  EXPECT_THROW(bench.add(unknown), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(bench.now().preview(unknown)), std::invalid_argument);
+  EXPECT_THROW(bench.remove(3), std::out_of_range);
+  EXPECT_THROW(bench.go_to(7), std::out_of_range);
+  EXPECT_EQ(bench.log().steps.size(), 2U);
+  EXPECT_EQ(bench.log().at, 1U);
+  EXPECT_EQ(bench.now().diagnosis().held_out.arrival_rms, before);
+}
+
+TEST(Workbench, LogsWithoutAWayAreRefused) {
+  EXPECT_THROW(Workbench(riddle(), WorkbenchLog{}), std::invalid_argument);
+  WorkbenchLog circle;
+  circle.steps.resize(2);
+  circle.steps[1].from = 1;
+  EXPECT_THROW(Workbench(riddle(), circle), std::invalid_argument);
+  WorkbenchLog nowhere;
+  nowhere.steps.resize(1);
+  nowhere.at = 1;
+  EXPECT_THROW(Workbench(riddle(), nowhere), std::invalid_argument);
+}
+
+TEST(Workbench, AnEffectOfTheModelIsShownAsTheRecordingsShowItWithoutIt) {
+  Workbench bench = begun();
+  bench.add(catalogue_effect("hard iron"));
+  const EffectEvidence shown = bench.now().shown(0);
+  ASSERT_GT(shown.response.bins.size(), 6U);
+  // Bins that never saw the effect lie on its curve.
+  int far = 0;
+  for (const ResponseBin& bin : shown.response.bins) {
+    const double g = 0.04 * std::sin(bin.at) - 0.03 * std::cos(bin.at);
+    if (std::abs(bin.estimate - g) > 4.0 * bin.sd + 0.005) ++far;
+  }
+  EXPECT_LE(far, 1);
+  EXPECT_THROW(static_cast<void>(bench.now().shown(1)), std::out_of_range);
+}
+
+TEST(Workbench, ValuesOfACandidateCanBeMovedAndSnapToTheBest) {
+  const TriedModel& now = begun().now();
+  const std::vector<Finding>& findings = now.diagnosis().findings;
+  std::size_t k = 0;
+  while (k < findings.size() && now.parameters(k).empty()) ++k;
+  ASSERT_LT(k, findings.size());
+  const std::vector<EffectParameter> parameters = now.parameters(k);
+  std::vector<double> values;
+  for (const EffectParameter& one : parameters) {
+    values.push_back(one.parameter.value + one.step);
+    EXPECT_LT(one.least, one.most);
+    EXPECT_GT(one.step, 0.0);
+  }
+  const Effect moved = now.moved(k, values);
+  EXPECT_FALSE(moved.shape == findings[k].effect.shape);
+  const Effect best = now.moved(k, now.best_near(k, values));
+  EXPECT_GE(now.preview(best).score, now.preview(moved).score - 1e-9);
+  values.push_back(0.0);
+  EXPECT_THROW(static_cast<void>(now.moved(k, values)), std::invalid_argument);
+}
+
+TEST(Workbench, RivalsAreForetoldBeside) {
+  const TriedModel& now = begun().now();
+  const EffectPreview duel =
+      now.preview(catalogue_effect("hard iron"), {catalogue_effect("cross-slope creep")});
+  ASSERT_EQ(duel.rivals_predicted.size(), 1U);
+  ASSERT_TRUE(duel.rivals_predicted[0].has_value());
+  EXPECT_EQ(duel.rivals_predicted[0]->arrival_rms,
+            now.preview(catalogue_effect("cross-slope creep")).predicted->arrival_rms);
+  ASSERT_EQ(duel.evidence.response.rivals.size(), 1U);
+  EXPECT_FALSE(duel.evidence.response.rivals[0].empty());
+}
+
+}  // namespace
+}  // namespace trussmap
