@@ -181,9 +181,11 @@ class Chrome {
       const std::string type = event.at("params").value("type", "");
       if (type == "error" || type == "warning") complaints_.push_back(event.dump());
     }
-    if (method == "Log.entryAdded" &&
-        event.at("params").at("entry").value("level", "") == "error") {
-      complaints_.push_back(event.dump());
+    if (method == "Log.entryAdded") {
+      const Json& entry = event.at("params").at("entry");
+      // A formula that is half typed is answered by 400: that is no complaint.
+      const bool refused = entry.value("text", "").find("status of 400") != std::string::npos;
+      if (entry.value("level", "") == "error" && !refused) complaints_.push_back(event.dump());
     }
   }
 
