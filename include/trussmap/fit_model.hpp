@@ -89,6 +89,61 @@ struct ModelFit {
 [[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
                                  const FitOptions& options = {});
 
+// ----------------------------------------
+// Day after day. A session that has been fitted enters the next fit as what it says of landmarks
+// and coefficients, its path eliminated: the quadratic of its own least squares there, with all
+// second derivatives. Adding a day costs a day and one factorisation of the sum, not all days
+// again. A session is taken anew, from the rows that are kept of it, when the map has moved so far
+// from where its quadratic was taken that it would matter.
+//
+//   SummarisedFit fit(model);
+//   for (const Recording& day : days) fit.add(day);
+//   fit.landmarks(), fit.model()
+//
+// Every session's rows are laid when it is added, on the map that there is then: its effects'
+// columns, and the noise of its segments, are those of its path on that map, and what the gate left
+// out of it stays out. Of these rows the result is the least squares solution, of all sessions at
+// once, to the tolerance. fit_model of all recordings lays the rows on the map of all, and so
+// differs by a share of the map's uncertainty (docs/methods.md).
+
+struct SummarisedFitOptions {
+  FitOptions fit;
+  /// m, rad, units of coefficients: how far the result may be from the least squares solution.
+  double tolerance = 1e-8;
+};
+
+class SummarisedFit {
+ public:
+  /// Throws std::invalid_argument where the model has what cannot be summarised: an effect per
+  /// session or of the variable `session`, a delay, steering.
+  explicit SummarisedFit(const Model& model, const SummarisedFitOptions& options = {});
+  ~SummarisedFit();
+  SummarisedFit(SummarisedFit&&) noexcept;
+  SummarisedFit& operator=(SummarisedFit&&) noexcept;
+
+  /// Takes a session in, or where it throws, not at all. The first one lays the map's frame, as
+  /// fit_model does, and has to show every coefficient. Throws as fit_model does, and SolveError
+  /// where a further session shares nothing with the map, or brings a compass, a survey, truth or
+  /// fixes to a map whose first session had no such frame.
+  void add(const Recording& recording);
+
+  [[nodiscard]] int sessions() const;
+  [[nodiscard]] Model model() const;  ///< with the coefficients found
+  [[nodiscard]] std::vector<EffectEstimate> effects() const;
+  [[nodiscard]] std::vector<FittedLandmark> landmarks() const;  ///< in order of first sighting
+  [[nodiscard]] double chi2() const;
+  [[nodiscard]] int dof() const;
+  /// How many older sessions the last add took anew.
+  [[nodiscard]] int taken_anew() const;
+  /// How far the result is from the least squares solution, by every session's exact gradient: for
+  /// checks, it costs a step of all sessions.
+  [[nodiscard]] double exact_error() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// The map of a fit, as it is drawn.
 struct FittedMap {
   std::vector<FittedLandmark> landmarks;

@@ -27,6 +27,14 @@ Eigen::Vector3d symmetric_eigenvalues(const Matrix3& A) {
 
 DenseCholesky::DenseCholesky(const Eigen::MatrixXd& A) : factor_(A) {}
 
+Eigen::MatrixXd DenseCholesky::solve(const Eigen::MatrixXd& b) const {
+  return factor_.solve(b);
+}
+
+Eigen::VectorXd DenseCholesky::solve_half(const Eigen::VectorXd& b) const {
+  return factor_.matrixU().solve(b);
+}
+
 Eigen::MatrixXd DenseCholesky::inverse() const {
   return factor_.solve(Eigen::MatrixXd::Identity(factor_.rows(), factor_.cols()));
 }

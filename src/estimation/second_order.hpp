@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What Gauss and Newton leave out of the second derivatives of chi^2/2, one measurement at a time:
+//
+//   sum over rows i of  w_i d^2 e_i,    w = W'W e
+//
+// by the node `from` (3), the node `to` (3; of a landmark the first two, of an orientation the
+// first) and the nine numbers of the view. Numerical derivatives of measurement_rows: central
+// differences, whose error is about 1e-9 of the value.
+#pragma once
+
+#include "estimation/measurement_rows.hpp"
+
+namespace trussmap {
+
+using SecondOrder = Eigen::Matrix<double, 15, 15>;
+inline constexpr int kSecondOrderTo = 3;    ///< where `to` begins
+inline constexpr int kSecondOrderView = 6;  ///< where the view begins
+
+/// `weighted` is w. Moves the state's two nodes to and fro, and leaves them as they were. By the
+/// view only where `with_view`; of what is driven the view has no part.
+[[nodiscard]] SecondOrder second_order(const RecordingProblem& problem,
+                                       const Measurement& measurement, RecordingState& state,
+                                       const ViewPattern& view, const Vector4& weighted,
+                                       bool with_view);
+
+/// -sum over rows i of w_i d^2 v_i by the border's unknown coefficients, v a segment's numbers with
+/// the effects: of a measurement of kind segment.
+[[nodiscard]] Eigen::MatrixXd second_order_of_effects(const RecordingProblem& problem,
+                                                      const Measurement& segment,
+                                                      const EffectParameters& border,
+                                                      const Eigen::VectorXd& offsets,
+                                                      const Vector4& weighted);
+
+}  // namespace trussmap

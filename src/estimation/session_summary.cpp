@@ -1,0 +1,300 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/session_summary.hpp"
+
+#include "estimation/noise_states.hpp"
+#include "estimation/second_order.hpp"
+#include "trussmap/error.hpp"
+
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// m or rad. From a path that is off by so much, one more step of Newton's, which the gradient
+/// takes in, leaves its square.
+constexpr double kStill = 1e-7;
+constexpr int kMostSteps = 50;
+
+bool knows_map(MeasurementKind kind) {
+  return kind == MeasurementKind::survey || kind == MeasurementKind::survey_heading;
+}
+
+void require_one_session(const SessionRows& rows) {
+  bool good = rows.problem.sessions.size() == 1;
+  for (const Measurement& one : rows.problem.measurements) good = good && !knows_map(one.kind);
+  if (!good) throw std::invalid_argument("a summary is of one session, and of no survey");
+}
+
+RecordingGauge gauge_of(const SessionRows& rows) {
+  RecordingGauge gauge;
+  gauge.hold_map = true;
+  gauge.hold_heading = rows.holds_heading;
+  gauge.hold_position = rows.holds_position;
+  return gauge;
+}
+
+}  // namespace
+
+/// Second derivatives and gradient, between own unknowns p and shared ones u.
+struct SessionSummary::Coupled {
+  SparseMatrix own_by_map;             ///< f_pu, landmarks and orientations
+  Eigen::MatrixXd own_by_coefficient;  ///< f_pu, the rest
+  Eigen::MatrixXd shared;              ///< f_uu
+  Eigen::VectorXd gradient;            ///< f_u
+};
+
+SessionSummary::SessionSummary(SessionRows rows) {
+  require_one_session(rows);
+  for (EffectPattern& effect : rows.border) {
+    effect.prior_sd =
+        std::numeric_limits<double>::infinity();  // who takes sessions together has it
+  }
+  if (rows.state.noise.size() == 0) {
+    rows.state.noise =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.problem.noise_states.size()));
+  }
+  rows_ = std::make_unique<SessionRows>(std::move(rows));
+  system_ = std::make_unique<RecordingSystem>(rows_->problem, rows_->border, gauge_of(*rows_));
+  if (!rows_->weights.empty()) system_->set_weights(rows_->weights);
+  coefficients_ = static_cast<int>(unknown_coefficients(rows_->border).size());
+}
+
+int SessionSummary::shared() const {
+  return first_orientation() + static_cast<int>(problem().oriented.size()) + coefficients_;
+}
+
+int SessionSummary::own_unknowns() const {
+  return system_->unknowns() - coefficients_;
+}
+
+int SessionSummary::measured_values() const {
+  int rows = 0;
+  for (std::size_t k = 0; k < problem().measurements.size(); ++k) {
+    if (rows_->weights.empty() || rows_->weights[k] > 0.0) rows += problem().measurements[k].rows;
+  }
+  return rows;
+}
+
+Eigen::VectorXd SessionSummary::shared_of(const RecordingState& state,
+                                          const Eigen::VectorXd& coefficients) const {
+  Eigen::VectorXd u(shared());
+  for (int k = 0; k < problem().landmark_count(); ++k) {
+    u.segment<2>(Eigen::Index{2} * k) = state.landmarks[idx(k)];
+  }
+  for (int k = first_orientation(); k < first_coefficient(); ++k) {
+    u[k] = state.orientations[idx(k - first_orientation())];
+  }
+  u.tail(coefficients_) = coefficients;
+  return u;
+}
+
+void SessionSummary::place(const Eigen::VectorXd& u, RecordingState& state) const {
+  for (int k = 0; k < problem().landmark_count(); ++k) {
+    state.landmarks[idx(k)] = u.segment<2>(Eigen::Index{2} * k);
+  }
+  for (int k = first_orientation(); k < first_coefficient(); ++k) {
+    state.orientations[idx(k - first_orientation())] = u[k];
+  }
+}
+
+/// What a measurement touches: its own unknowns, the map's, coefficients, in this order.
+struct SessionSummary::Touched {
+  std::vector<RecordingSystem::NodeRows> own;
+  Eigen::Index own_width = 0;
+  Eigen::Index width = 0;  ///< of the map's: 2 of a landmark, 1 of an orientation
+  Eigen::Index at = 0;     ///< where these begin in u
+};
+
+SessionSummary::Touched SessionSummary::touched_by(std::size_t k) const {
+  const Measurement& one = problem().measurements[k];
+  Touched result{system_->node_rows(k)};
+  for (const RecordingSystem::NodeRows& link : result.own) result.own_width += link.rows.cols();
+  if (one.to < 0) return result;
+  if (problem().is_landmark(one.to)) {
+    result.width = 2;
+    result.at = Eigen::Index{2} * one.to;
+  } else if (problem().is_orientation(one.to)) {
+    result.width = 1;
+    result.at = first_orientation() + one.to - problem().pose_end();
+  }
+  return result;
+}
+
+/// How the numbers of second_order change with what the measurement touches.
+Eigen::MatrixXd SessionSummary::numbers_by(std::size_t k, const Touched& touched) const {
+  const Measurement& one = problem().measurements[k];
+  const auto is_first = [&](int node) { return node == problem().pose_node(0); };
+  Eigen::MatrixXd F =
+      Eigen::MatrixXd::Zero(15, touched.own_width + touched.width + Eigen::Index{coefficients_});
+  Eigen::Index column = 0;
+  const auto add_pose = [&](int node, Eigen::Index row) {
+    F.block<3, 3>(row, column).setIdentity();
+    if (is_first(node) && rows_->holds_heading) F(row + 2, column + 2) = 0.0;
+    if (is_first(node) && rows_->holds_position) F.block<2, 2>(row, column).setZero();
+    column += 3;
+  };
+  add_pose(one.from, 0);
+  if (one.to >= 0 && touched.width == 0) add_pose(one.to, kSecondOrderTo);
+  if (!problem().noise_terms.empty()) {
+    for (const NoiseTerm& term : problem().noise_terms[k]) {
+      if (!is_driven(one.kind)) F.block<9, 1>(kSecondOrderView, column) = term.by;
+      ++column;
+    }
+  }
+  F.block(kSecondOrderTo, column, touched.width, touched.width).setIdentity();
+  column += touched.width;
+  for (const int effect : unknown_coefficients(rows_->border)) {
+    const ViewPattern* unit = unit_view_of(rows_->border[idx(effect)], one);
+    if (unit != nullptr) F.block<9, 1>(kSecondOrderView, column) = unit->vector();
+    ++column;
+  }
+  return F;
+}
+
+/// What Gauss and Newton leave out, by what the measurement touches.
+Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touched,
+                                             RecordingState& state,
+                                             const Eigen::VectorXd& offsets) const {
+  const Measurement& one = problem().measurements[k];
+  Vector4 residual = Vector4::Zero();
+  residual.head(one.rows) = system_->residuals().segment(system_->first_row(k), one.rows);
+  const Vector4 weighted = system_->root_weight(k) * one.whitener.transpose() * residual;
+  const Eigen::MatrixXd F = numbers_by(k, touched);
+  const bool with_view = !F.bottomRows<9>().isZero(0.0);
+  ViewPattern view = view_of(rows_->border, offsets, one);
+  if (!problem().noise_states.empty() && !is_driven(one.kind)) {
+    view = lasting_in_view(problem(), k, view, state.noise);
+  }
+  Eigen::MatrixXd result =
+      F.transpose() * second_order(problem(), one, state, view, weighted, with_view) * F;
+  if (one.kind == MeasurementKind::segment && coefficients_ > 0) {
+    result.bottomRightCorner(coefficients_, coefficients_) +=
+        second_order_of_effects(problem(), one, rows_->border, offsets, weighted);
+  }
+  return result;
+}
+
+/// The system is linearised at the state; `curved` takes in what Gauss and Newton leave out.
+SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
+                                               const Eigen::VectorXd& coefficients, bool curved) {
+  const Eigen::VectorXd offsets = offsets_at(rows_->border, coefficients);
+  const Eigen::MatrixXd& M = system_->border();
+  const BlockSystem& normal = system_->normal_equations();
+  const Eigen::Index C = coefficients_;
+  Coupled result;
+  result.shared = Eigen::MatrixXd::Zero(shared(), shared());
+  result.gradient = Eigen::VectorXd::Zero(shared());
+  result.own_by_coefficient = system_->transposed_times(M);
+  result.shared.bottomRightCorner(C, C) = M.transpose() * M;
+  result.gradient.tail(C) = M.transpose() * system_->residuals();
+  std::vector<Eigen::Triplet<double>> by_map;
+  for (std::size_t k = 0; k < problem().measurements.size(); ++k) {
+    const Touched touched = touched_by(k);
+    const auto [own, own_width, width, at] = touched;
+    const int rows = problem().measurements[k].rows;
+    const Eigen::Index all = own_width + width + C;
+    Eigen::MatrixXd more = Eigen::MatrixXd::Zero(all, all);
+    if (curved) {
+      more = curvature_of(k, touched, state, offsets);
+      system_->add_curvature(k, more.topLeftCorner(own_width, own_width));
+      result.shared.bottomRightCorner(C, C) += more.bottomRightCorner(C, C);
+    }
+    const Eigen::MatrixXd to_rows = system_->rows_by_to(k).leftCols(width);
+    Eigen::Index column = 0;
+    for (const RecordingSystem::NodeRows& link : own) {
+      const Eigen::Index size = link.rows.cols();
+      const Eigen::Index row = normal.offset(link.node);
+      result.own_by_coefficient.middleRows(row, size) += more.block(column, all - C, size, C);
+      const Eigen::MatrixXd block =
+          link.rows.transpose() * to_rows + more.block(column, own_width, size, width);
+      for (Eigen::Index c = 0; c < width; ++c) {
+        for (Eigen::Index r = 0; r < size; ++r) {
+          by_map.emplace_back(static_cast<int>(row + r), static_cast<int>(at + c), block(r, c));
+        }
+      }
+      column += size;
+    }
+    if (width == 0) continue;
+    const int first = system_->first_row(k);
+    result.shared.block(at, at, width, width) +=
+        to_rows.transpose() * to_rows + more.block(own_width, own_width, width, width);
+    const Eigen::MatrixXd cross =
+        to_rows.transpose() * M.middleRows(first, rows) + more.block(own_width, all - C, width, C);
+    result.shared.block(at, first_coefficient(), width, C) += cross;
+    result.shared.block(first_coefficient(), at, C, width) += cross.transpose();
+    result.gradient.segment(at, width) +=
+        to_rows.transpose() * system_->residuals().segment(first, rows);
+  }
+  result.own_by_map.resize(normal.unknowns(), first_coefficient());
+  result.own_by_map.setFromTriplets(by_map.begin(), by_map.end());
+  return result;
+}
+
+SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, RecordingState& state,
+                                                  bool with_information) {
+  place(u, state);
+  const Eigen::VectorXd coefficients = u.tail(coefficients_);
+  BlockSystem& normal = system_->normal_equations();
+  Quadratic result{u, 0.0, {}, {}};
+  for (int step = 0; step < kMostSteps; ++step) {
+    result.half_chi2 = 0.5 * system_->linearise(state, coefficients);
+    Coupled coupled = couple(state, coefficients, true);
+    try {
+      normal.factorise();
+    } catch (const NotPositiveDefinite&) {
+      static_cast<void>(system_->linearise(state, coefficients));
+      coupled = couple(state, coefficients, false);
+      try {
+        normal.factorise();
+      } catch (const NotPositiveDefinite&) {
+        throw SolveError(problem().sessions.front() +
+                         ": its path is not determined where the landmarks are known; sight more "
+                         "of them");
+      }
+    }
+    RecordingSystem::Step own;
+    own.nodes = -system_->gradient();
+    normal.solve_in_place(own.nodes);
+    own.coefficients = Eigen::VectorXd::Zero(coefficients_);
+    if (own.nodes.size() > 0 && own.nodes.cwiseAbs().maxCoeff() > kStill) {
+      state = system_->moved(state, own);
+      continue;
+    }
+    const Eigen::Index M = first_coefficient();
+    result.half_chi2 += 0.5 * own.nodes.dot(system_->gradient());
+    result.gradient = coupled.gradient;
+    result.gradient.head(M) += coupled.own_by_map.transpose() * own.nodes;
+    result.gradient.tail(coefficients_) += coupled.own_by_coefficient.transpose() * own.nodes;
+    if (!with_information) return result;
+    Eigen::MatrixXd across(normal.unknowns(), shared());
+    across.leftCols(M) = coupled.own_by_map;
+    across.rightCols(coefficients_) = coupled.own_by_coefficient;
+    const Eigen::MatrixXd solved = normal.solve(across);
+    Eigen::MatrixXd& H = coupled.shared;
+    H.topRows(M) -= coupled.own_by_map.transpose() * solved;
+    H.bottomRows(coefficients_) -= coupled.own_by_coefficient.transpose() * solved;
+    result.information = 0.5 * (H + H.transpose());
+    return result;
+  }
+  throw SolveError(problem().sessions.front() + ": its path does not settle on the map");
+}
+
+void SessionSummary::linearise(const Eigen::VectorXd& u) {
+  quadratic_ = reduced(u, rows_->state, true);
+}
+
+SessionSummary::Quadratic SessionSummary::value_at(const Eigen::VectorXd& u) {
+  RecordingState state = rows_->state;
+  return reduced(u, state, false);
+}
+
+RecordingState SessionSummary::state_at(const Eigen::VectorXd& u) {
+  RecordingState state = rows_->state;
+  static_cast<void>(reduced(u, state, false));
+  return state;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/summarised_sessions.hpp"
+
+#include "geometry/index.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+constexpr double kFresh = 1e-6;  // m, rad: a new session's move from which it is taken anew
+constexpr int kMostRounds = 50;
+constexpr double kTrial = 0.1;   // standard deviations that a trial moves
+constexpr double kSafety = 3.0;  // a trial's direction is one of many
+constexpr std::uint64_t kSeed = 1;
+
+bool same_number(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+/// How far a session's share of x has moved, in what it knows of each number alone: in H itself a
+/// turn of the whole map would count as nothing.
+double size_of(const Eigen::VectorXd& move, const SessionSummary::Quadratic& one) {
+  return move.cwiseAbs2().dot(one.information.diagonal().cwiseAbs());
+}
+
+double largest(const Eigen::VectorXd& values) {
+  return values.size() == 0 ? 0.0 : values.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+std::optional<double> SummarisedSessions::orientation(int landmark) const {
+  const auto at = places_.orientation.find(landmark);
+  if (at == places_.orientation.end()) return std::nullopt;
+  return places_.x[at->second];
+}
+
+/// Gives what the session brings its place in x.
+SummarisedSessions::Member SummarisedSessions::joined(SessionRows rows) {
+  const RecordingState state = rows.state;
+  Member member{SessionSummary(std::move(rows)), {}, {}, 0.0};
+  const RecordingProblem& problem = member.summary.problem();
+  const auto append = [&](const Eigen::VectorXd& values) {
+    const Eigen::Index at = places_.x.size();
+    for (Eigen::VectorXd* all : {&places_.x, &places_.origin}) {
+      all->conservativeResize(at + values.size());
+      all->tail(values.size()) = values;
+    }
+    return at;
+  };
+  std::vector<int> numbers;
+  for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
+    const auto [found, fresh] =
+        places_.number.try_emplace(problem.landmarks[k], static_cast<int>(places_.names.size()));
+    if (fresh) {
+      places_.names.push_back(problem.landmarks[k]);
+      places_.at.push_back(append(state.landmarks[k]));
+    }
+    numbers.push_back(found->second);
+    member.at.push_back(places_.at[idx(found->second)]);
+    member.at.push_back(places_.at[idx(found->second)] + 1);
+  }
+  for (std::size_t k = 0; k < problem.oriented.size(); ++k) {
+    const auto [found, fresh] =
+        places_.orientation.try_emplace(numbers[idx(problem.oriented[k])], 0);
+    if (fresh) found->second = append(Eigen::VectorXd::Constant(1, state.orientations[k]));
+    member.at.push_back(found->second);
+  }
+  for (int c = 0; c < coefficients_; ++c) member.at.push_back(c);
+  return member;
+}
+
+Eigen::VectorXd SummarisedSessions::local(const Member& member) const {
+  return places_.x(member.at);
+}
+
+void SummarisedSessions::count(const Member& member, double sign) {
+  const SessionSummary::Quadratic& one = member.summary.quadratic();
+  const Eigen::VectorXd pull =
+      one.information * (one.at - places_.origin(member.at)) - one.gradient;
+  const auto n = static_cast<Eigen::Index>(member.at.size());
+  for (Eigen::Index c = 0; c < n; ++c) {
+    const Eigen::Index column = member.at[idx(static_cast<int>(c))];
+    for (Eigen::Index r = 0; r < n; ++r) {
+      information_(member.at[idx(static_cast<int>(r))], column) += sign * one.information(r, c);
+    }
+    pull_[column] += sign * pull[c];
+  }
+}
+
+/// Priors and known places.
+void SummarisedSessions::count_known() {
+  for (Eigen::Index c = 0; c < coefficients_; ++c) {
+    information_(c, c) += prior_[c];
+    pull_[c] -= prior_[c] * places_.origin[c];
+  }
+  const auto count = [&](Eigen::Index at, double sd, double value) {
+    const double information = 1.0 / (sd * sd);
+    information_(at, at) += information;
+    pull_[at] += information * (value - places_.origin[at]);
+  };
+  for (const KnownPlace& one : places_.known) {
+    const auto number = places_.number.find(one.landmark);
+    if (number == places_.number.end()) continue;
+    const Eigen::Index at = places_.at[idx(number->second)];
+    count(at, one.sd, one.place.x());
+    count(at + 1, one.sd, one.place.y());
+    const auto turned = places_.orientation.find(number->second);
+    if (turned == places_.orientation.end() || std::isnan(one.heading)) continue;
+    const double now = places_.x[turned->second];
+    count(turned->second, one.sd_heading, now + wrap_angle(one.heading - now));
+  }
+}
+
+void SummarisedSessions::count_all() {
+  information_ = Eigen::MatrixXd::Zero(places_.x.size(), places_.x.size());
+  pull_ = Eigen::VectorXd::Zero(places_.x.size());
+  count_known();
+  for (const Member& member : sessions_) count(member, 1.0);
+}
+
+/// Of H, with what is held apart from all else.
+DenseCholesky SummarisedSessions::factor() const {
+  Eigen::MatrixXd H = information_;
+  if (holds_landmark_) {
+    H.middleRows<2>(places_.at.front()).setZero();
+    H.middleCols<2>(places_.at.front()).setZero();
+    H.block<2, 2>(places_.at.front(), places_.at.front()).setIdentity();
+  }
+  DenseCholesky result(H);
+  if (!result.positive_definite()) {
+    throw SolveError(
+        "the sessions leave the map or a coefficient undetermined; sight more landmarks, or "
+        "survey one");
+  }
+  return result;
+}
+
+Eigen::VectorXd SummarisedSessions::step(const DenseCholesky& factor) const {
+  Eigen::VectorXd gradient = information_ * (places_.x - places_.origin) - pull_;
+  if (holds_landmark_) gradient.segment<2>(places_.at.front()).setZero();
+  return -factor.solve(gradient);
+}
+
+void SummarisedSessions::take_anew(Member& member) {
+  const bool counted = member.summary.quadratic().at.size() > 0;
+  if (counted) count(member, -1.0);
+  try {
+    member.summary.linearise(local(member));
+  } catch (const SolveError&) {
+    if (counted) count(member, 1.0);
+    throw;
+  }
+  count(member, 1.0);
+}
+
+/// What the summary misses of the gradient where x moves by about what it is uncertain.
+void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
+  std::mt19937_64 random(kSeed);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd draw(places_.x.size());
+  for (double& one : draw) one = kTrial * normal(random);
+  Eigen::VectorXd move = factor.solve_half(draw);
+  if (holds_landmark_) move.segment<2>(places_.at.front()).setZero();
+  const Eigen::VectorXd own = move(member.at);
+  const Eigen::VectorXd there = member.summary.quadratic().at + own;
+  member.trial = size_of(own, member.summary.quadratic());
+  member.missed =
+      member.summary.value_at(there).gradient - member.summary.predicted_gradient(there);
+}
+
+std::vector<std::size_t> SummarisedSessions::worth_taking_anew(const DenseCholesky& factor) {
+  Eigen::MatrixXd missed =
+      Eigen::MatrixXd::Zero(places_.x.size(), static_cast<Eigen::Index>(sessions_.size()));
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    const Member& member = sessions_[s];
+    const SessionSummary::Quadratic& one = member.summary.quadratic();
+    const Eigen::VectorXd move = local(member) - one.at;
+    const double size = size_of(move, one);
+    if (!(size > 0.0) || !(member.trial > 0.0)) continue;
+    missed.col(static_cast<Eigen::Index>(s))(member.at) =
+        kSafety * size / member.trial * member.missed;
+  }
+  const Eigen::MatrixXd moved = factor.solve(missed);
+  std::vector<double> effect;
+  for (std::size_t s = 0; s < sessions_.size(); ++s) {
+    effect.push_back(largest(moved.col(static_cast<Eigen::Index>(s))));
+  }
+  std::vector<std::size_t> order(sessions_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return effect[a] < effect[b]; });
+  expected_error_ = 0.0;
+  std::size_t stay = 0;
+  while (stay < order.size() && expected_error_ + effect[order[stay]] <= options_.tolerance) {
+    expected_error_ += effect[order[stay++]];
+  }
+  std::vector<std::size_t> result(order.begin() + static_cast<std::ptrdiff_t>(stay), order.end());
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+void SummarisedSessions::settle() {
+  Member& fresh = sessions_.back();
+  for (int round = 0; round < kMostRounds; ++round) {
+    places_.x += step(factor());
+    if (largest(local(fresh) - fresh.summary.quadratic().at) > kFresh) {
+      take_anew(fresh);
+      continue;
+    }
+    const DenseCholesky H = factor();
+    if (fresh.trial == 0.0) try_out(fresh, H);
+    const std::vector<std::size_t> again = worth_taking_anew(H);
+    if (again.empty()) return;
+    for (const std::size_t s : again) {
+      take_anew(sessions_[s]);
+      try_out(sessions_[s], H);
+      if (s + 1 < sessions_.size()) ++taken_anew_;
+    }
+  }
+  throw SolveError(fresh.summary.problem().sessions.front() +
+                   " does not settle on the map of the other sessions");
+}
+
+void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& known) {
+  const std::vector<int> unknown = unknown_coefficients(rows.border);
+  const bool first = sessions_.empty();
+  if (!first && static_cast<int>(unknown.size()) != coefficients_) {
+    throw std::invalid_argument("every session has the same coefficients");
+  }
+  if (first) {
+    coefficients_ = static_cast<int>(unknown.size());
+    holds_landmark_ = rows.holds_landmark;
+    prior_.resize(coefficients_);
+    for (int c = 0; c < coefficients_; ++c) {
+      const double sd = rows.border[idx(unknown[idx(c)])].prior_sd;
+      prior_[c] = 1.0 / (sd * sd);
+    }
+    places_.x = places_.origin = Eigen::VectorXd::Zero(coefficients_);
+  }
+  const Places before = places_;
+  for (const KnownPlace& one : known) {
+    const bool copy =
+        std::any_of(places_.known.begin(), places_.known.end(), [&](const KnownPlace& other) {
+          return other.landmark == one.landmark && other.place == one.place &&
+                 same_number(other.heading, one.heading);
+        });
+    if (!copy) places_.known.push_back(one);
+  }
+  taken_anew_ = 0;
+  const std::size_t count = sessions_.size();
+  try {
+    sessions_.push_back(joined(std::move(rows)));
+    sessions_.back().summary.linearise(local(sessions_.back()));
+    count_all();
+    settle();
+  } catch (const SolveError&) {
+    // Others that were taken anew stay so: each is what its session says, wherever it was taken.
+    places_ = before;
+    sessions_.erase(sessions_.begin() + static_cast<std::ptrdiff_t>(count), sessions_.end());
+    count_all();
+    throw;
+  }
+}
+
+double SummarisedSessions::chi2() const {
+  double half = 0.0;
+  for (const Member& member : sessions_) {
+    const SessionSummary::Quadratic& one = member.summary.quadratic();
+    const Eigen::VectorXd move = local(member) - one.at;
+    half += one.half_chi2 + one.gradient.dot(move) + 0.5 * move.dot(one.information * move);
+  }
+  double chi2 = 2.0 * half + places_.x.head(coefficients_).cwiseAbs2().dot(prior_);
+  for (const KnownPlace& one : places_.known) {
+    const auto number = places_.number.find(one.landmark);
+    if (number == places_.number.end()) continue;
+    chi2 += (position(number->second) - one.place).squaredNorm() / (one.sd * one.sd);
+    const std::optional<double> turned = orientation(number->second);
+    if (!turned || std::isnan(one.heading)) continue;
+    const double off = wrap_angle(*turned - one.heading) / one.sd_heading;
+    chi2 += off * off;
+  }
+  return chi2;
+}
+
+int SummarisedSessions::dof() const {
+  int values = -static_cast<int>(places_.x.size()) + (holds_landmark_ ? 2 : 0);
+  for (const Member& member : sessions_) {
+    values += member.summary.measured_values() - member.summary.own_unknowns();
+  }
+  for (Eigen::Index c = 0; c < coefficients_; ++c) values += prior_[c] > 0.0 ? 1 : 0;
+  for (const KnownPlace& one : places_.known) {
+    const auto number = places_.number.find(one.landmark);
+    if (number == places_.number.end()) continue;
+    values += 2;
+    if (places_.orientation.contains(number->second) && !std::isnan(one.heading)) ++values;
+  }
+  return values;
+}
+
+std::vector<Matrix2> SummarisedSessions::landmark_covariances() const {
+  const Eigen::MatrixXd covariance = factor().inverse();
+  std::vector<Matrix2> result;
+  for (const Eigen::Index at : places_.at) result.push_back(covariance.block<2, 2>(at, at));
+  if (holds_landmark_) result.front().setZero();
+  return result;
+}
+
+Eigen::MatrixXd SummarisedSessions::coefficient_covariance() const {
+  return factor().inverse().topLeftCorner(coefficients_, coefficients_);
+}
+
+RecordingState SummarisedSessions::path(int session) {
+  Member& member = sessions_[idx(session)];
+  return member.summary.state_at(local(member));
+}
+
+double SummarisedSessions::exact_error() {
+  Eigen::VectorXd gradient = information_ * (places_.x - places_.origin) - pull_;
+  for (Member& member : sessions_) {
+    const Eigen::VectorXd u = local(member);
+    const Eigen::VectorXd missed =
+        member.summary.value_at(u).gradient - member.summary.predicted_gradient(u);
+    for (std::size_t k = 0; k < member.at.size(); ++k) {
+      gradient[member.at[k]] += missed[static_cast<Eigen::Index>(k)];
+    }
+  }
+  if (holds_landmark_) gradient.segment<2>(places_.at.front()).setZero();
+  return largest(factor().solve(gradient));
+}
+
+}  // namespace trussmap

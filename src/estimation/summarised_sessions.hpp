@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The fit of many sessions, each of them but a quadratic (session_summary.hpp): a further one costs
+// what it costs itself, and one factorisation of the sum.
+//
+//   x        all landmarks, orientations and coefficients
+//   Phi(x)   sum of phi_s(x) over the sessions + survey + priors of the coefficients
+//
+//   add      the new session's rows are taken at x; the sum's minimum is the next x, at which what
+//            moved is taken anew:
+//
+//     x <- x - H^-1 G(x)          H, G the sums of the summaries
+//     session s was taken at x_s, and its summary misses its gradient at x by about
+//         e_s (q/q_s),   q = (x - x_s)' H_s (x - x_s)
+//     of which e_s, q_s are known from a trial: a move drawn from x's own uncertainty, at which the
+//     session's gradient is reckoned exactly. Sessions whose H^-1 e_s (q/q_s) add up to more than
+//     the tolerance are taken anew at x, the largest first, until the rest is below it.
+//
+// So the result is that of the adjustment of all sessions at once (recording_adjustment.hpp) to
+// about the tolerance; what a map moves by a hundredth of its uncertainty does not take old
+// sessions anew.
+//
+// The frame is the first session's: what it holds stays held.
+#pragma once
+
+#include "estimation/session_summary.hpp"
+#include "linalg/dense.hpp"
+#include "trussmap/recording.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+struct SummaryOptions {
+  double tolerance = 1e-8;  ///< of the result by what summaries miss: m, rad, units of coefficients
+};
+
+/// A place that is known beside the sessions; a landmark that none has sighted counts not yet.
+struct KnownPlace {
+  std::string landmark;
+  Vector2 place = Vector2::Zero();  ///< m, map frame
+  double sd = 0.0;                  ///< m per coordinate
+  double heading = kAbsent;         ///< rad, of the landmark's own axis; NaN: not known
+  double sd_heading = 0.0;          ///< rad
+};
+
+class SummarisedSessions {
+ public:
+  explicit SummarisedSessions(const SummaryOptions& options = {}) : options_(options) {}
+
+  /// Takes a session in; the known places count beside the sessions, the same numbers once. The
+  /// state of the session is near the map's where both have a landmark, and in its frame. Throws
+  /// SolveError where the sum has no minimum or the session does not join the frame of the first,
+  /// std::invalid_argument where its coefficients are others; nothing is taken in then.
+  void add(SessionRows rows, const std::vector<KnownPlace>& known = {});
+
+  [[nodiscard]] int sessions() const { return static_cast<int>(sessions_.size()); }
+  /// In order of first sighting.
+  [[nodiscard]] const std::vector<std::string>& landmarks() const { return places_.names; }
+  [[nodiscard]] Vector2 position(int landmark) const {
+    return places_.x.segment<2>(places_.at[idx(landmark)]);
+  }
+  /// rad, not wrapped; nothing where no yaw was read.
+  [[nodiscard]] std::optional<double> orientation(int landmark) const;
+  /// The unknown ones.
+  [[nodiscard]] Eigen::VectorXd coefficients() const { return places_.x.head(coefficients_); }
+  /// Of the measurements and the coefficients' priors, as the summaries have it.
+  [[nodiscard]] double chi2() const;
+  /// Measured values less unknowns.
+  [[nodiscard]] int dof() const;
+  /// Of each landmark alone, m^2; zero where held.
+  [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
+  [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
+  /// A session's best path on the map.
+  [[nodiscard]] RecordingState path(int session);
+
+  /// How often a session was taken anew by the last add, the new one's own times apart.
+  [[nodiscard]] int taken_anew() const { return taken_anew_; }
+  /// What its summaries' errors may have left of the tolerance.
+  [[nodiscard]] double expected_error() const { return expected_error_; }
+  /// Largest difference that one exact step from here would make: what is really left. Takes every
+  /// session's gradient: for checks.
+  [[nodiscard]] double exact_error();
+
+ private:
+  /// A session, and what its summary is known to miss.
+  struct Member {
+    SessionSummary summary;
+    std::vector<Eigen::Index> at;  ///< in x, of each of its shared unknowns
+    Eigen::VectorXd missed;        ///< by a trial move, of the gradient
+    double trial = 0.0;            ///< the move's q
+  };
+
+  /// What is known of the map, and where it stands in x.
+  struct Places {
+    std::vector<std::string> names;
+    std::map<std::string, int> number;        ///< of a landmark
+    std::vector<Eigen::Index> at;             ///< in x, of each landmark
+    std::map<int, Eigen::Index> orientation;  ///< in x, of a landmark
+    std::vector<KnownPlace> known;
+    Eigen::VectorXd x;       ///< coefficients, then what was met, in order
+    Eigen::VectorXd origin;  ///< x as first met: differences from it keep their digits
+  };
+
+  [[nodiscard]] Member joined(SessionRows rows);
+  [[nodiscard]] Eigen::VectorXd local(const Member& member) const;
+  void count(const Member& member, double sign);
+  void count_known();
+  void count_all();
+  void take_anew(Member& member);
+  void try_out(Member& member, const DenseCholesky& factor);
+  [[nodiscard]] DenseCholesky factor() const;
+  [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
+  [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const DenseCholesky& factor);
+  void settle();
+
+  SummaryOptions options_;
+  std::vector<Member> sessions_;
+  Places places_;
+  Eigen::VectorXd prior_;  ///< information of each coefficient
+  int coefficients_ = 0;
+  bool holds_landmark_ = false;
+  Eigen::MatrixXd information_;  ///< H
+  Eigen::VectorXd pull_;         ///< G(x) = H (x - origin) - pull
+  int taken_anew_ = 0;
+  double expected_error_ = 0.0;
+};
+
+}  // namespace trussmap
