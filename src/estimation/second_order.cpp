@@ -26,6 +26,34 @@ double& number_of(const RecordingProblem& problem, RecordingState& state, int no
   return place == 0 ? pose.x : place == 1 ? pose.y : pose.heading;
 }
 
+/// Rows (R(theta + turn)'(q_to - q_from) - something by which nothing here moves): those of a way
+/// in the axes of its start.
+bool is_way(MeasurementKind kind) {
+  return kind == MeasurementKind::segment || kind == MeasurementKind::loop ||
+         kind == MeasurementKind::standing || kind == MeasurementKind::cartesian_view;
+}
+
+Vector2 place_of(const RecordingProblem& problem, const RecordingState& state, int node) {
+  if (problem.is_landmark(node)) return state.landmarks[idx(node)];
+  return state.poses[idx(node - problem.landmark_count())].position();
+}
+
+SecondOrder second_order_of_way(const RecordingProblem& problem, const Measurement& one,
+                                const RecordingState& state, const ViewPattern& view,
+                                const Vector4& weighted) {
+  const double turn = one.kind == MeasurementKind::cartesian_view ? view.heading : 0.0;
+  const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
+  const Vector2 pull = rotation(from.heading + turn) * weighted.head<2>();
+  const Vector2 turned = quarter_turn(pull);
+  SecondOrder result = SecondOrder::Zero();
+  // The point that the way goes from is the axle's; what lies ahead of it turns with the robot.
+  result(2, 2) = -pull.dot(place_of(problem, state, one.to) - from.position());
+  result.block<2, 1>(0, 2) = -turned;
+  result.block<2, 1>(kSecondOrderTo, 2) = turned;
+  result.row(2) = result.col(2).transpose();
+  return result;
+}
+
 }  // namespace
 
 SecondOrder second_order(const RecordingProblem& problem, const Measurement& one,
@@ -33,6 +61,9 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
                          bool with_view) {
   SecondOrder result = SecondOrder::Zero();
   if (is_linear(one.kind)) return result;
+  if (is_way(one.kind) && !with_view) {
+    return second_order_of_way(problem, one, state, view, weighted);
+  }
   const auto slopes = [&](const ViewPattern& at) -> Slopes {
     const MeasurementRows rows = measurement_rows(problem, one, state, one.value, at);
     Slopes all;

@@ -6,8 +6,14 @@
 //   sum over rows i of  w_i d^2 e_i,    w = W'W e
 //
 // by the node `from` (3), the node `to` (3; of a landmark the first two, of an orientation the
-// first) and the nine numbers of the view. Numerical derivatives of measurement_rows: central
-// differences, whose error is about 1e-9 of the value.
+// first) and the nine numbers of the view. Of ways in the axes of their start, where no number of
+// the view is asked for, in closed form: with f = R w, v the way in map axes,
+//
+//   by theta twice  -f.v      by theta and its end  f turned by a quarter, by its start the
+//   opposite
+//
+// else by numerical derivatives of measurement_rows: central differences, whose error is about 1e-9
+// of the value.
 #pragma once
 
 #include "estimation/measurement_rows.hpp"

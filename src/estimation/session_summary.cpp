@@ -13,9 +13,11 @@
 namespace trussmap {
 namespace {
 
-/// m or rad. From a path that is off by so much, one more step of Newton's, which the gradient
-/// takes in, leaves its square.
-constexpr double kStill = 1e-7;
+/// m or rad: how far off a path may be. The gradient takes in one more step, which leaves of a
+/// Newton's step the square, of a Gauss-Newton step a share.
+constexpr double kStill = 1e-6;
+constexpr double kVeryStill = 1e-9;
+constexpr double kSlack = 1e-9;  // rad: slopes by the coefficients are not older than that
 constexpr int kMostSteps = 50;
 
 bool knows_map(MeasurementKind kind) {
@@ -58,6 +60,7 @@ SessionSummary::SessionSummary(SessionRows rows) {
   }
   rows_ = std::make_unique<SessionRows>(std::move(rows));
   system_ = std::make_unique<RecordingSystem>(rows_->problem, rows_->border, gauge_of(*rows_));
+  system_->set_slack(kSlack);
   if (!rows_->weights.empty()) system_->set_weights(rows_->weights);
   coefficients_ = static_cast<int>(unknown_coefficients(rows_->border).size());
 }
@@ -123,6 +126,12 @@ SessionSummary::Touched SessionSummary::touched_by(std::size_t k) const {
   return result;
 }
 
+/// Whether it touches a pose of which something is held.
+bool SessionSummary::is_held(const Measurement& one) const {
+  const int first = problem().pose_node(0);
+  return (rows_->holds_heading || rows_->holds_position) && (one.from == first || one.to == first);
+}
+
 /// How the numbers of second_order change with what the measurement touches.
 Eigen::MatrixXd SessionSummary::numbers_by(std::size_t k, const Touched& touched) const {
   const Measurement& one = problem().measurements[k];
@@ -162,14 +171,17 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   Vector4 residual = Vector4::Zero();
   residual.head(one.rows) = system_->residuals().segment(system_->first_row(k), one.rows);
   const Vector4 weighted = system_->root_weight(k) * one.whitener.transpose() * residual;
-  const Eigen::MatrixXd F = numbers_by(k, touched);
-  const bool with_view = !F.bottomRows<9>().isZero(0.0);
+  const bool plain = coefficients_ == 0 && problem().noise_terms.empty() && !is_held(one);
+  const Eigen::MatrixXd F = plain ? Eigen::MatrixXd() : numbers_by(k, touched);
+  const bool with_view = !plain && !F.bottomRows<9>().isZero(0.0);
   ViewPattern view = view_of(rows_->border, offsets, one);
   if (!problem().noise_states.empty() && !is_driven(one.kind)) {
     view = lasting_in_view(problem(), k, view, state.noise);
   }
-  Eigen::MatrixXd result =
-      F.transpose() * second_order(problem(), one, state, view, weighted, with_view) * F;
+  const SecondOrder whole = second_order(problem(), one, state, view, weighted, with_view);
+  const Eigen::Index all = touched.own_width + touched.width;
+  if (plain) return whole.topLeftCorner(all, all);  // of `to` what there is of it comes first
+  Eigen::MatrixXd result = F.transpose() * whole * F;
   if (one.kind == MeasurementKind::segment && coefficients_ > 0) {
     result.bottomRightCorner(coefficients_, coefficients_) +=
         second_order_of_effects(problem(), one, rows_->border, offsets, weighted);
@@ -233,53 +245,66 @@ SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
   return result;
 }
 
+/// Own unknowns go to where they are best for these of the map.
+void SessionSummary::relax(RecordingState& state, const Eigen::VectorXd& coefficients,
+                           double still) {
+  BlockSystem& normal = system_->normal_equations();
+  for (int step = 0; step < kMostSteps; ++step) {
+    static_cast<void>(system_->linearise(state, coefficients));
+    if (normal.unknowns() == 0) return;
+    factorise();
+    RecordingSystem::Step own;
+    own.nodes = -system_->gradient();
+    normal.solve_in_place(own.nodes);
+    if (own.nodes.cwiseAbs().maxCoeff() <= still) return;
+    state = system_->moved(state, own);
+  }
+  throw SolveError(problem().sessions.front() + ": its path does not settle on the map");
+}
+
+void SessionSummary::factorise() {
+  try {
+    system_->normal_equations().factorise();
+  } catch (const NotPositiveDefinite&) {
+    throw SolveError(
+        problem().sessions.front() +
+        ": its path is not determined where the landmarks are known; sight more of them");
+  }
+}
+
 SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, RecordingState& state,
                                                   bool with_information) {
   place(u, state);
   const Eigen::VectorXd coefficients = u.tail(coefficients_);
+  relax(state, coefficients, kStill);
   BlockSystem& normal = system_->normal_equations();
-  Quadratic result{u, 0.0, {}, {}};
-  for (int step = 0; step < kMostSteps; ++step) {
-    result.half_chi2 = 0.5 * system_->linearise(state, coefficients);
-    Coupled coupled = couple(state, coefficients, true);
-    try {
-      normal.factorise();
-    } catch (const NotPositiveDefinite&) {
-      static_cast<void>(system_->linearise(state, coefficients));
-      coupled = couple(state, coefficients, false);
-      try {
-        normal.factorise();
-      } catch (const NotPositiveDefinite&) {
-        throw SolveError(problem().sessions.front() +
-                         ": its path is not determined where the landmarks are known; sight more "
-                         "of them");
-      }
-    }
-    RecordingSystem::Step own;
-    own.nodes = -system_->gradient();
-    normal.solve_in_place(own.nodes);
-    own.coefficients = Eigen::VectorXd::Zero(coefficients_);
-    if (own.nodes.size() > 0 && own.nodes.cwiseAbs().maxCoeff() > kStill) {
-      state = system_->moved(state, own);
-      continue;
-    }
-    const Eigen::Index M = first_coefficient();
-    result.half_chi2 += 0.5 * own.nodes.dot(system_->gradient());
-    result.gradient = coupled.gradient;
-    result.gradient.head(M) += coupled.own_by_map.transpose() * own.nodes;
-    result.gradient.tail(coefficients_) += coupled.own_by_coefficient.transpose() * own.nodes;
-    if (!with_information) return result;
-    Eigen::MatrixXd across(normal.unknowns(), shared());
-    across.leftCols(M) = coupled.own_by_map;
-    across.rightCols(coefficients_) = coupled.own_by_coefficient;
-    const Eigen::MatrixXd solved = normal.solve(across);
-    Eigen::MatrixXd& H = coupled.shared;
-    H.topRows(M) -= coupled.own_by_map.transpose() * solved;
-    H.bottomRows(coefficients_) -= coupled.own_by_coefficient.transpose() * solved;
-    result.information = 0.5 * (H + H.transpose());
-    return result;
+  Coupled coupled = couple(state, coefficients, true);
+  try {
+    normal.factorise();
+  } catch (const NotPositiveDefinite&) {
+    relax(state, coefficients, kVeryStill);
+    coupled = couple(state, coefficients, false);
+    factorise();
   }
-  throw SolveError(problem().sessions.front() + ": its path does not settle on the map");
+  Eigen::VectorXd own = -system_->gradient();
+  normal.solve_in_place(own);
+  const Eigen::Index M = first_coefficient();
+  Quadratic result{u,
+                   0.5 * (system_->residuals().squaredNorm() + own.dot(system_->gradient())),
+                   coupled.gradient,
+                   {}};
+  result.gradient.head(M) += coupled.own_by_map.transpose() * own;
+  result.gradient.tail(coefficients_) += coupled.own_by_coefficient.transpose() * own;
+  if (!with_information) return result;
+  Eigen::MatrixXd across(normal.unknowns(), shared());
+  across.leftCols(M) = coupled.own_by_map;
+  across.rightCols(coefficients_) = coupled.own_by_coefficient;
+  const Eigen::MatrixXd solved = normal.solve(across);
+  Eigen::MatrixXd& H = coupled.shared;
+  H.topRows(M) -= coupled.own_by_map.transpose() * solved;
+  H.bottomRows(coefficients_) -= coupled.own_by_coefficient.transpose() * solved;
+  result.information = 0.5 * (H + H.transpose());
+  return result;
 }
 
 void SessionSummary::linearise(const Eigen::VectorXd& u) {

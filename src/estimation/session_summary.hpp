@@ -96,6 +96,9 @@ class SessionSummary {
   void place(const Eigen::VectorXd& u, RecordingState& state) const;
   [[nodiscard]] Coupled couple(RecordingState& state, const Eigen::VectorXd& coefficients,
                                bool curved);
+  [[nodiscard]] bool is_held(const Measurement& one) const;
+  void relax(RecordingState& state, const Eigen::VectorXd& coefficients, double still);
+  void factorise();
   [[nodiscard]] Quadratic reduced(const Eigen::VectorXd& u, RecordingState& state,
                                   bool with_information);
 

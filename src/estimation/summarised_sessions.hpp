@@ -112,10 +112,15 @@ class SummarisedSessions {
   void count_known();
   void count_all();
   void take_anew(Member& member);
+  void take_anew(Member& member, const DenseCholesky& factor);
+  [[nodiscard]] double effect_of(const Member& member, const Eigen::VectorXd& missed,
+                                 const DenseCholesky& factor) const;
   void try_out(Member& member, const DenseCholesky& factor);
   [[nodiscard]] DenseCholesky factor() const;
   [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
-  [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const DenseCholesky& factor);
+  [[nodiscard]] std::vector<double> effects_of_moves(const DenseCholesky& factor) const;
+  [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const std::vector<double>& effects,
+                                                           double safety);
   void settle();
 
   SummaryOptions options_;

@@ -99,6 +99,7 @@ Reference adjusted_at_once(const Days& days, SummarisedSessions& map) {
   all.state = fit.state;
   all.coefficients = fit.coefficients;
   RecordingSystem system(all.problem, border);
+  system.set_slack(0.0);
   if (system.gauge().hold_heading) {
     all.state.poses.front().heading = map.path(0).poses.front().heading;
   }
