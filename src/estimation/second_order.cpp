@@ -97,12 +97,12 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
   return 0.5 * (result + result.transpose());
 }
 
-Eigen::MatrixXd second_order_of_effects(const RecordingProblem& problem, const Measurement& segment,
-                                        const EffectParameters& border,
-                                        const Eigen::VectorXd& offsets, const Vector4& weighted) {
+SegmentBends segment_bends(const RecordingProblem& problem, const Measurement& segment,
+                           const EffectParameters& border, const Eigen::VectorXd& offsets) {
   const std::vector<int> unknown = unknown_coefficients(border);
   const auto count = static_cast<Eigen::Index>(unknown.size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(count, count);
+  SegmentBends result;
+  result.fill(Eigen::MatrixXd::Zero(count, count));
   const std::vector<const std::vector<DrivePattern>*> patterns =
       drive_patterns(border, idx(segment.session));
   for (Eigen::Index c = 0; c < count; ++c) {
@@ -113,12 +113,16 @@ Eigen::MatrixXd second_order_of_effects(const RecordingProblem& problem, const M
     const auto above = segment_motion(problem.segments[segment.source], patterns, at).derivatives;
     at[place] -= 2.0 * kStep;
     const auto below = segment_motion(problem.segments[segment.source], patterns, at).derivatives;
-    const Eigen::VectorXd change = (above - below).transpose() * weighted / (-2.0 * kStep);
     for (Eigen::Index other = 0; other < count; ++other) {
-      result(other, c) = change[unknown[idx(static_cast<int>(other))]];
+      const int row = unknown[idx(static_cast<int>(other))];
+      for (std::size_t k = 0; k < result.size(); ++k) {
+        const auto number = static_cast<Eigen::Index>(k);
+        result[k](other, c) = (above(number, row) - below(number, row)) / (2.0 * kStep);
+      }
     }
   }
-  return 0.5 * (result + result.transpose());
+  for (Eigen::MatrixXd& one : result) one = 0.5 * (one + one.transpose()).eval();
+  return result;
 }
 
 }  // namespace trussmap

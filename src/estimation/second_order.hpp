@@ -18,6 +18,8 @@
 
 #include "estimation/measurement_rows.hpp"
 
+#include <array>
+
 namespace trussmap {
 
 using SecondOrder = Eigen::Matrix<double, 15, 15>;
@@ -31,12 +33,11 @@ inline constexpr int kSecondOrderView = 6;  ///< where the view begins
                                        const ViewPattern& view, const Vector4& weighted,
                                        bool with_view);
 
-/// -sum over rows i of w_i d^2 v_i by the border's unknown coefficients, v a segment's numbers with
-/// the effects: of a measurement of kind segment.
-[[nodiscard]] Eigen::MatrixXd second_order_of_effects(const RecordingProblem& problem,
-                                                      const Measurement& segment,
-                                                      const EffectParameters& border,
-                                                      const Eigen::VectorXd& offsets,
-                                                      const Vector4& weighted);
+/// Second derivatives of a segment's four numbers by the border's unknown coefficients, one matrix
+/// each.
+using SegmentBends = std::array<Eigen::MatrixXd, 4>;
+[[nodiscard]] SegmentBends segment_bends(const RecordingProblem& problem,
+                                         const Measurement& segment, const EffectParameters& border,
+                                         const Eigen::VectorXd& offsets);
 
 }  // namespace trussmap

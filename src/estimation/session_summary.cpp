@@ -3,7 +3,6 @@
 #include "estimation/session_summary.hpp"
 
 #include "estimation/noise_states.hpp"
-#include "estimation/second_order.hpp"
 #include "trussmap/error.hpp"
 
 #include <limits>
@@ -183,16 +182,33 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   if (plain) return whole.topLeftCorner(all, all);  // of `to` what there is of it comes first
   Eigen::MatrixXd result = F.transpose() * whole * F;
   if (one.kind == MeasurementKind::segment && coefficients_ > 0) {
-    result.bottomRightCorner(coefficients_, coefficients_) +=
-        second_order_of_effects(problem(), one, rows_->border, offsets, weighted);
+    for (std::size_t row = 0; row < SegmentBends().size(); ++row) {
+      result.bottomRightCorner(coefficients_, coefficients_) -=
+          weighted[static_cast<Eigen::Index>(row)] * bends_[k][row];
+    }
   }
   return result;
+}
+
+/// Second derivatives by coefficients cost far more than the rest of a summary, and hardly change.
+void SessionSummary::bend(const Eigen::VectorXd& offsets) {
+  constexpr double kBent = 1e-4;  // of coefficients
+  if (coefficients_ == 0) return;
+  if (bent_at_.size() > 0 && (offsets - bent_at_).cwiseAbs().maxCoeff() < kBent) return;
+  bends_.resize(problem().measurements.size());
+  for (std::size_t k = 0; k < bends_.size(); ++k) {
+    const Measurement& one = problem().measurements[k];
+    if (one.kind != MeasurementKind::segment) continue;
+    bends_[k] = segment_bends(problem(), one, rows_->border, offsets);
+  }
+  bent_at_ = offsets;
 }
 
 /// The system is linearised at the state; `curved` takes in what Gauss and Newton leave out.
 SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
                                                const Eigen::VectorXd& coefficients, bool curved) {
   const Eigen::VectorXd offsets = offsets_at(rows_->border, coefficients);
+  if (curved) bend(offsets);
   const Eigen::MatrixXd& M = system_->border();
   const BlockSystem& normal = system_->normal_equations();
   const Eigen::Index C = coefficients_;

@@ -28,6 +28,7 @@
 #include "estimation/effect_parameters.hpp"
 #include "estimation/recording_problem.hpp"
 #include "estimation/recording_system.hpp"
+#include "estimation/second_order.hpp"
 
 #include <memory>
 #include <vector>
@@ -99,6 +100,7 @@ class SessionSummary {
   [[nodiscard]] bool is_held(const Measurement& one) const;
   void relax(RecordingState& state, const Eigen::VectorXd& coefficients, double still);
   void factorise();
+  void bend(const Eigen::VectorXd& offsets);
   [[nodiscard]] Quadratic reduced(const Eigen::VectorXd& u, RecordingState& state,
                                   bool with_information);
 
@@ -106,6 +108,8 @@ class SessionSummary {
   std::unique_ptr<RecordingSystem> system_;
   int coefficients_ = 0;
   Quadratic quadratic_;
+  std::vector<SegmentBends> bends_;  ///< per measurement, of segments
+  Eigen::VectorXd bent_at_;          ///< offsets of the coefficients
 };
 
 }  // namespace trussmap

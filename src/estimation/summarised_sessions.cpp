@@ -218,8 +218,8 @@ std::vector<double> SummarisedSessions::effects_of_moves(const DenseCholesky& fa
   const Eigen::MatrixXd moved = factor.solve(missed);
   std::vector<double> effects;
   for (Eigen::Index s = 0; s < moved.cols(); ++s) effects.push_back(largest(moved.col(s)));
-  const double mean = std::accumulate(effects.begin(), effects.end(), 0.0) /
-                      static_cast<double>(effects.size());
+  const double mean =
+      std::accumulate(effects.begin(), effects.end(), 0.0) / static_cast<double>(effects.size());
   for (std::size_t s = 0; s < sessions_.size(); ++s) {
     const SessionSummary::Quadratic& one = sessions_[s].summary.quadratic();
     effects[s] = std::max(effects[s], mean) * size_of(local(sessions_[s]) - one.at, one);
