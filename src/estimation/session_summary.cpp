@@ -73,7 +73,7 @@ int SessionSummary::own_unknowns() const {
 }
 
 int SessionSummary::measured_values() const {
-  int rows = 0;
+  int rows = static_cast<int>(problem().noise_states.size());  // each is told of by one more
   for (std::size_t k = 0; k < problem().measurements.size(); ++k) {
     if (rows_->weights.empty() || rows_->weights[k] > 0.0) rows += problem().measurements[k].rows;
   }
@@ -289,18 +289,18 @@ void SessionSummary::factorise() {
 }
 
 SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, RecordingState& state,
-                                                  bool with_information) {
+                                                  SecondDerivatives kind, bool with_information) {
   place(u, state);
   const Eigen::VectorXd coefficients = u.tail(coefficients_);
-  relax(state, coefficients, kStill);
+  const bool whole = kind == SecondDerivatives::whole;
+  relax(state, coefficients, whole ? kStill : kVeryStill);
   BlockSystem& normal = system_->normal_equations();
-  Coupled coupled = couple(state, coefficients, true);
+  Coupled coupled = couple(state, coefficients, whole);
   try {
-    normal.factorise();
-  } catch (const NotPositiveDefinite&) {
-    relax(state, coefficients, kVeryStill);
-    coupled = couple(state, coefficients, false);
     factorise();
+  } catch (const SolveError&) {
+    if (!whole) throw;
+    return reduced(u, state, SecondDerivatives::gauss_newton, with_information);
   }
   Eigen::VectorXd own = -system_->gradient();
   normal.solve_in_place(own);
@@ -323,18 +323,23 @@ SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, Reco
   return result;
 }
 
-void SessionSummary::linearise(const Eigen::VectorXd& u) {
-  quadratic_ = reduced(u, rows_->state, true);
+void SessionSummary::linearise(const Eigen::VectorXd& u, SecondDerivatives kind) {
+  quadratic_ = reduced(u, rows_->state, kind, true);
 }
 
 SessionSummary::Quadratic SessionSummary::value_at(const Eigen::VectorXd& u) {
   RecordingState state = rows_->state;
-  return reduced(u, state, false);
+  return value_of(u, state);
+}
+
+SessionSummary::Quadratic SessionSummary::value_of(const Eigen::VectorXd& u,
+                                                   RecordingState& state) {
+  return reduced(u, state, SecondDerivatives::whole, false);
 }
 
 RecordingState SessionSummary::state_at(const Eigen::VectorXd& u) {
   RecordingState state = rows_->state;
-  static_cast<void>(reduced(u, state, false));
+  static_cast<void>(value_of(u, state));
   return state;
 }
 

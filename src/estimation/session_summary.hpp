@@ -46,6 +46,10 @@ struct SessionRows {
   bool holds_position = false;  ///< of its first pose, where there is no landmark
 };
 
+/// Gauss and Newton's are positive semidefinite, wherever they are taken; the whole ones where the
+/// sum of all sessions has its minimum.
+enum class SecondDerivatives { whole, gauss_newton };
+
 class SessionSummary {
  public:
   /// Throws std::invalid_argument where the rows are not of one session alone.
@@ -71,7 +75,7 @@ class SessionSummary {
   [[nodiscard]] int measured_values() const;
 
   /// Takes the summary at u. Throws SolveError where its path is not determined there.
-  void linearise(const Eigen::VectorXd& u);
+  void linearise(const Eigen::VectorXd& u, SecondDerivatives kind = SecondDerivatives::whole);
   /// The last one.
   [[nodiscard]] const Quadratic& quadratic() const { return quadratic_; }
   /// phi and g at another u, exactly; the summary stays as it is.
@@ -102,7 +106,8 @@ class SessionSummary {
   void factorise();
   void bend(const Eigen::VectorXd& offsets);
   [[nodiscard]] Quadratic reduced(const Eigen::VectorXd& u, RecordingState& state,
-                                  bool with_information);
+                                  SecondDerivatives kind, bool with_information);
+  [[nodiscard]] Quadratic value_of(const Eigen::VectorXd& u, RecordingState& state);
 
   std::unique_ptr<SessionRows> rows_;  ///< the system refers to them
   std::unique_ptr<RecordingSystem> system_;

@@ -44,6 +44,14 @@ std::optional<double> SummarisedSessions::orientation(int landmark) const {
   return places_.x[at->second];
 }
 
+/// By a landmark of the map, or to the map's frame.
+bool SummarisedSessions::is_tied(const RecordingProblem& problem) const {
+  return std::ranges::any_of(problem.landmarks, [&](const auto& one) { return has(one); }) ||
+         std::ranges::any_of(problem.measurements, [](const Measurement& one) {
+           return one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix;
+         });
+}
+
 /// Gives what the session brings its place in x.
 SummarisedSessions::Member SummarisedSessions::joined(SessionRows rows) {
   const RecordingState state = rows.state;
@@ -151,11 +159,11 @@ Eigen::VectorXd SummarisedSessions::step(const DenseCholesky& factor) const {
   return -factor.solve(gradient);
 }
 
-void SummarisedSessions::take_anew(Member& member) {
+void SummarisedSessions::take_anew(Member& member, SecondDerivatives kind) {
   const bool counted = member.summary.quadratic().at.size() > 0;
   if (counted) count(member, -1.0);
   try {
-    member.summary.linearise(local(member));
+    member.summary.linearise(local(member), kind);
   } catch (const SolveError&) {
     if (counted) count(member, 1.0);
     throw;
@@ -169,7 +177,7 @@ void SummarisedSessions::take_anew(Member& member, const DenseCholesky& factor) 
   const Eigen::VectorXd u = local(member);
   const double moved = size_of(u - member.summary.quadratic().at, member.summary.quadratic());
   const Eigen::VectorXd predicted = member.summary.predicted_gradient(u);
-  take_anew(member);
+  take_anew(member, SecondDerivatives::whole);
   if (!(moved > kTold * member.trial)) return;
   const Eigen::VectorXd missed = member.summary.quadratic().gradient - predicted;
   if (effect_of(member, missed, factor) * member.trial >
@@ -253,10 +261,11 @@ void SummarisedSessions::settle() {
     const Eigen::VectorXd change = step(factor());
     places_.x += change;
     if (largest(local(fresh) - fresh.summary.quadratic().at) > kFresh) {
-      take_anew(fresh);
+      take_anew(fresh, SecondDerivatives::gauss_newton);
       thought = 0.0;
       continue;
     }
+    if (fresh.trial == 0.0) take_anew(fresh, SecondDerivatives::whole);
     const DenseCholesky H = factor();
     if (fresh.trial == 0.0) try_out(fresh, H);
     // What sessions taken anew have turned out to miss says how far thoughts of the others are off.
@@ -291,6 +300,10 @@ void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& kn
     }
     places_.x = places_.origin = Eigen::VectorXd::Zero(coefficients_);
   }
+  if (!first && !is_tied(rows.problem)) {
+    throw SolveError(rows.problem.sessions.front() +
+                     " stands apart: no landmark ties it to the sessions before");
+  }
   const Places before = places_;
   for (const KnownPlace& one : known) {
     const bool copy =
@@ -304,7 +317,7 @@ void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& kn
   const std::size_t count = sessions_.size();
   try {
     sessions_.push_back(joined(std::move(rows)));
-    sessions_.back().summary.linearise(local(sessions_.back()));
+    sessions_.back().summary.linearise(local(sessions_.back()), SecondDerivatives::gauss_newton);
     count_all();
     settle();
   } catch (const SolveError&) {

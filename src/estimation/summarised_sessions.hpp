@@ -61,6 +61,9 @@ class SummarisedSessions {
   [[nodiscard]] int sessions() const { return static_cast<int>(sessions_.size()); }
   /// In order of first sighting.
   [[nodiscard]] const std::vector<std::string>& landmarks() const { return places_.names; }
+  [[nodiscard]] bool has(const std::string& landmark) const {
+    return places_.number.contains(landmark);
+  }
   [[nodiscard]] Vector2 position(int landmark) const {
     return places_.x.segment<2>(places_.at[idx(landmark)]);
   }
@@ -106,12 +109,13 @@ class SummarisedSessions {
     Eigen::VectorXd origin;  ///< x as first met: differences from it keep their digits
   };
 
+  [[nodiscard]] bool is_tied(const RecordingProblem& problem) const;
   [[nodiscard]] Member joined(SessionRows rows);
   [[nodiscard]] Eigen::VectorXd local(const Member& member) const;
   void count(const Member& member, double sign);
   void count_known();
   void count_all();
-  void take_anew(Member& member);
+  void take_anew(Member& member, SecondDerivatives kind);
   void take_anew(Member& member, const DenseCholesky& factor);
   [[nodiscard]] double effect_of(const Member& member, const Eigen::VectorXd& missed,
                                  const DenseCholesky& factor) const;

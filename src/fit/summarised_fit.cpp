@@ -166,12 +166,8 @@ class SummarisedFit::Impl {
                               ", and the first session none: its frame would turn or shift the "
                               "map; expected such a session first"));
     }
-    const auto in_map = [&](const Sighting& one) {
-      const std::vector<std::string>& names = sessions_.landmarks();
-      return std::find(names.begin(), names.end(), one.landmark) != names.end();
-    };
-    if (own.position || std::any_of(recording.sightings.begin(), recording.sightings.end(), in_map))
-      return;
+    const auto in_map = [&](const Sighting& one) { return sessions_.has(one.landmark); };
+    if (own.position || std::ranges::any_of(recording.sightings, in_map)) return;
     throw SolveError(recording.name + " stands apart: no landmark ties it to the sessions before");
   }
 

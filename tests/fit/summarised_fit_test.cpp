@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/catalogue.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/fit_model.hpp"
+#include "trussmap/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+struct Robot3x3 {
+  bool compass = true;
+  bool survey = false;
+  bool gyro = false;
+};
+
+/// Tours of a mesh of 3 x 3, 5 m apart; a wheelbase 2 % larger than believed.
+std::vector<Recording> days_of(const Robot3x3& what, int count, std::uint64_t seed) {
+  const Mesh mesh = even_mesh({3, 3}, 5.0);
+  WheeledRobot robot;
+  robot.compass = what.compass;
+  robot.gyro = what.gyro;
+  std::vector<Recording> days;
+  for (int day = 0; day < count; ++day) {
+    const std::uint64_t own = seed + static_cast<std::uint64_t>(day);
+    std::mt19937_64 random = random_stream(own, Stream::walk);
+    const Tours tours = make_tours(mesh, WalkKind::euler, 1, random);
+    days.push_back(simulate_drive(mesh, tours.walk, {}, robot, own).recording);
+    days.back().name = "day " + std::to_string(day + 1);
+    if (!what.survey) days.back().survey.clear();
+  }
+  return days;
+}
+
+Model model_of(const std::vector<std::string>& effects) {
+  Model model;
+  for (const std::string& name : effects) model.effects.push_back(catalogue_effect(name));
+  return model;
+}
+
+SummarisedFit summarised(const std::vector<Recording>& days, const Model& model) {
+  SummarisedFit fit(model);
+  for (const Recording& day : days) fit.add(day);
+  return fit;
+}
+
+std::string refusal(SummarisedFit& fit, const Recording& recording) {
+  try {
+    fit.add(recording);
+  } catch (const SolveError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// Rows that are laid on another map miss by a share of its uncertainty, not by more.
+TEST(SummarisedFit, IsTheFitOfAllDaysAtOnce) {
+  for (const Robot3x3& what :
+       {Robot3x3{true, true, false}, Robot3x3{true, false, false}, Robot3x3{false, true, false},
+        Robot3x3{true, true, true}, Robot3x3{false, false, false}}) {
+    SCOPED_TRACE(testing::Message() << what.compass << what.survey << what.gyro);
+    const std::vector<Recording> days = days_of(what, 4, 11);
+    const Model model = model_of(what.survey ? std::vector<std::string>{"wheelbase", "wheel scale"}
+                                             : std::vector<std::string>{"wheelbase"});
+    const SummarisedFit fit = summarised(days, model);
+    const ModelFit all = fit_model(days, model);
+    EXPECT_LT(fit.exact_error(), 1e-8);
+    const std::vector<FittedLandmark> landmarks = fit.landmarks();
+    ASSERT_EQ(landmarks.size(), all.landmarks.size());
+    for (std::size_t k = 0; k < landmarks.size(); ++k) {
+      EXPECT_EQ(landmarks[k].name, all.landmarks[k].name);
+      const double sd = std::sqrt(all.landmarks[k].covariance.trace());
+      EXPECT_LE((landmarks[k].position - all.landmarks[k].position).norm(), 0.05 * sd + 1e-9);
+      EXPECT_NEAR(std::sqrt(landmarks[k].covariance.trace()), sd, 0.02 * sd);
+      EXPECT_EQ(landmarks[k].survey.has_value(), what.survey);
+    }
+    const std::vector<EffectEstimate> effects = fit.effects();
+    for (std::size_t k = 0; k < effects.size(); ++k) {
+      const double sd = all.effects[k].sd[0];
+      EXPECT_NEAR(effects[k].effect.coefficients[0], all.effects[k].effect.coefficients[0],
+                  0.05 * sd);
+      EXPECT_NEAR(effects[k].sd[0], sd, 0.02 * sd);
+    }
+    EXPECT_EQ(fit.dof(), all.dof);
+    EXPECT_NEAR(fit.chi2(), all.chi2, 0.01 * all.chi2);
+    EXPECT_EQ(fit.sessions(), 4);
+  }
+}
+
+/// A label that is misread is left out on its day, and for good.
+TEST(SummarisedFit, LeavesOutWhatContradictsTheMap) {
+  std::vector<Recording> days = days_of({}, 4, 21);
+  const Model model;
+  const std::vector<Recording> right = days;
+  const auto read = std::ranges::find(days[2].sightings, std::string("L2_2"), &Sighting::landmark);
+  ASSERT_NE(read, days[2].sightings.end());
+  read->landmark = "L0_0";
+  SummarisedFitOptions how;
+  how.fit.gate = 16.0;
+  SummarisedFit fit(model, how);
+  for (const Recording& day : days) fit.add(day);
+  const SummarisedFit clean = summarised(right, model);
+  std::map<std::string, Vector2> places;
+  for (const FittedLandmark& one : clean.landmarks()) places[one.name] = one.position;
+  for (const FittedLandmark& one : fit.landmarks()) {
+    EXPECT_LT((one.position - places.at(one.name)).norm(), 0.02);
+  }
+  EXPECT_LT(fit.dof(), clean.dof());
+}
+
+TEST(SummarisedFit, EffectsThatAreHeldActAndStay) {
+  const std::vector<Recording> days = days_of({true, true, false}, 3, 31);
+  Model model;
+  model.effects.push_back(catalogue_effect("wheelbase", {0.01}));
+  SummarisedFitOptions how;
+  how.fit.fit_effects = false;
+  SummarisedFit fit(model, how);
+  for (const Recording& day : days) fit.add(day);
+  EXPECT_EQ(fit.model().effects[0].coefficients, std::vector<double>{0.01});
+  EXPECT_EQ(fit.effects()[0].sd, std::vector<double>{0.0});
+  const ModelFit all = fit_model(days, model, how.fit);
+  EXPECT_EQ(fit.dof(), all.dof);
+  EXPECT_NEAR(fit.chi2(), all.chi2, 0.01 * all.chi2);
+}
+
+TEST(SummarisedFit, RefusesWhatCannotBeSummarised) {
+  Model model = model_of({"wheelbase"});
+  model.effects[0].per_session = true;
+  EXPECT_THROW(SummarisedFit{model}, std::invalid_argument);
+  model = model_of({"wheelbase"});
+  model.effects[0].shape = {Shape("session")};
+  EXPECT_THROW(SummarisedFit{model}, std::invalid_argument);
+  model.effects[0].channel = Channel::delay;
+  model.effects[0].shape = {Shape("1")};
+  EXPECT_THROW(SummarisedFit{model}, std::invalid_argument);
+}
+
+TEST(SummarisedFit, ASessionThatDoesNotJoinIsRefusedAndTheMapStays) {
+  const std::vector<Recording> days = days_of({false, false, false}, 3, 41);
+  SummarisedFit fit{Model{}};
+  fit.add(days[0]);
+  fit.add(days[1]);
+  const double chi2 = fit.chi2();
+  Recording apart = days[2];
+  for (Sighting& one : apart.sightings) one.landmark = "other " + one.landmark;
+  EXPECT_EQ(refusal(fit, apart), "day 3 stands apart: no landmark ties it to the sessions before");
+  const Recording compass = days_of({true, false, false}, 1, 42).front();
+  EXPECT_NE(refusal(fit, compass).find("expected such a session first"), std::string::npos);
+  const Recording surveyed = days_of({false, true, false}, 1, 43).front();
+  EXPECT_NE(refusal(fit, surveyed).find("a survey, truth or fixes"), std::string::npos);
+  Recording broken = days[2];
+  broken.drive.left[3] = std::nan("");
+  EXPECT_THROW(fit.add(broken), std::invalid_argument);
+  EXPECT_EQ(fit.sessions(), 2);
+  EXPECT_EQ(fit.chi2(), chi2);
+  fit.add(days[2]);
+  EXPECT_LT(fit.exact_error(), 1e-8);
+}
+
+TEST(SummarisedFit, TheFirstSessionHasToShowEveryCoefficient) {
+  const std::vector<Recording> days = days_of({true, false, false}, 1, 51);
+  Model model;
+  model.effects.push_back({"scale", Channel::travel, {Shape("1")}, {}});
+  SummarisedFit fit(model);  // no survey: no scale
+  EXPECT_NE(refusal(fit, days[0]).find("does not show a coefficient of scale"), std::string::npos);
+  EXPECT_EQ(fit.sessions(), 0);
+}
+
+}  // namespace
+}  // namespace trussmap
