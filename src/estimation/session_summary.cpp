@@ -325,6 +325,7 @@ SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, Reco
 
 void SessionSummary::linearise(const Eigen::VectorXd& u, SecondDerivatives kind) {
   quadratic_ = reduced(u, rows_->state, kind, true);
+  quadratic_.kind = kind;
 }
 
 SessionSummary::Quadratic SessionSummary::value_at(const Eigen::VectorXd& u) {

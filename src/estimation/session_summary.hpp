@@ -56,10 +56,11 @@ class SessionSummary {
   explicit SessionSummary(SessionRows rows);
 
   struct Quadratic {
-    Eigen::VectorXd at;           ///< u0
-    double half_chi2 = 0.0;       ///< phi(u0)
-    Eigen::VectorXd gradient;     ///< g
-    Eigen::MatrixXd information;  ///< H; empty where it was not asked for
+    Eigen::VectorXd at;                                 ///< u0
+    double half_chi2 = 0.0;                             ///< phi(u0)
+    Eigen::VectorXd gradient;                           ///< g
+    Eigen::MatrixXd information;                        ///< H; empty where it was not asked for
+    SecondDerivatives kind = SecondDerivatives::whole;  ///< of H, as it was asked for
   };
 
   [[nodiscard]] const RecordingProblem& problem() const { return rows_->problem; }

@@ -253,20 +253,38 @@ std::vector<std::size_t> SummarisedSessions::worth_taking_anew(const std::vector
   return result;
 }
 
+/// The sum's factor. Far from its minimum whole second derivatives may have none: then those of
+/// Gauss and Newton stand in, first the new session's, then all.
+DenseCholesky SummarisedSessions::safe_factor() {
+  for (const bool all : {false, true}) {
+    try {
+      return factor();
+    } catch (const SolveError&) {
+      for (std::size_t s = all ? 0 : sessions_.size() - 1; s < sessions_.size(); ++s) {
+        take_anew(sessions_[s], SecondDerivatives::gauss_newton);
+      }
+    }
+  }
+  return factor();
+}
+
 void SummarisedSessions::settle() {
   Member& fresh = sessions_.back();
   double safety = kSafety;
   double thought = 0.0;  // effects of those just taken anew
   for (int round = 0; round < kMostRounds; ++round) {
-    const Eigen::VectorXd change = step(factor());
+    const Eigen::VectorXd change = step(safe_factor());
     places_.x += change;
-    if (largest(local(fresh) - fresh.summary.quadratic().at) > kFresh) {
-      take_anew(fresh, SecondDerivatives::gauss_newton);
+    if (round == 0 || largest(local(fresh) - fresh.summary.quadratic().at) > kFresh) {
+      take_anew(fresh, SecondDerivatives::whole);
       thought = 0.0;
       continue;
     }
-    if (fresh.trial == 0.0) take_anew(fresh, SecondDerivatives::whole);
-    const DenseCholesky H = factor();
+    const DenseCholesky H = safe_factor();
+    for (Member& member : sessions_) {
+      if (member.summary.quadratic().kind == SecondDerivatives::whole) continue;
+      take_anew(member, SecondDerivatives::whole);
+    }
     if (fresh.trial == 0.0) try_out(fresh, H);
     // What sessions taken anew have turned out to miss says how far thoughts of the others are off.
     if (thought > 0.0) safety = std::max(safety, kMargin * largest(change) / thought);

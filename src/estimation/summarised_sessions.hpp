@@ -121,6 +121,7 @@ class SummarisedSessions {
                                  const DenseCholesky& factor) const;
   void try_out(Member& member, const DenseCholesky& factor);
   [[nodiscard]] DenseCholesky factor() const;
+  [[nodiscard]] DenseCholesky safe_factor();
   [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
   [[nodiscard]] std::vector<double> effects_of_moves(const DenseCholesky& factor) const;
   [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const std::vector<double>& effects,
