@@ -121,6 +121,7 @@ void run(const Options& options) {
   const double at_once = processor_seconds([&] { all = fit_model(days, model); });
   fmt::print("all {} days at once: {:.2f} s; a day added: {:.2f} % of it (largest {:.2f} %)\n",
              days.size(), at_once, 100.0 * sum / options.further / at_once, 100.0 * most / at_once);
+  if (options.no_compass && !options.survey) return;  // its frame is another
   fmt::print("from the fit of all, whose rows are laid on its own map: {:.1e} m\n",
              largest_difference(fit, all));
 }

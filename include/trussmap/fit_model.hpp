@@ -122,7 +122,9 @@ class SummarisedFit {
   SummarisedFit& operator=(SummarisedFit&&) noexcept;
 
   /// Takes a session in, or where it throws, not at all. The first one lays the map's frame, as
-  /// fit_model does, and has to show every coefficient. Throws as fit_model does, and SolveError
+  /// fit_model does, but that where nothing measures a direction one coordinate of a landmark is
+  /// held instead of a heading; and it has to show every coefficient. Throws as fit_model does,
+  /// InputError where no landmark was sighted, and SolveError
   /// where a further session shares nothing with the map, or brings a compass, a survey, truth or
   /// fixes to a map whose first session had no such frame.
   void add(const Recording& recording);
@@ -130,7 +132,8 @@ class SummarisedFit {
   [[nodiscard]] int sessions() const;
   [[nodiscard]] Model model() const;  ///< with the coefficients found
   [[nodiscard]] std::vector<EffectEstimate> effects() const;
-  [[nodiscard]] std::vector<FittedLandmark> landmarks() const;  ///< in order of first sighting
+  /// In order of first sighting; covariances by the whole second derivatives, noise included.
+  [[nodiscard]] std::vector<FittedLandmark> landmarks() const;
   [[nodiscard]] double chi2() const;
   [[nodiscard]] int dof() const;
   /// How many older sessions the last add took anew.

@@ -29,14 +29,6 @@ void require_one_session(const SessionRows& rows) {
   if (!good) throw std::invalid_argument("a summary is of one session, and of no survey");
 }
 
-RecordingGauge gauge_of(const SessionRows& rows) {
-  RecordingGauge gauge;
-  gauge.hold_map = true;
-  gauge.hold_heading = rows.holds_heading;
-  gauge.hold_position = rows.holds_position;
-  return gauge;
-}
-
 }  // namespace
 
 /// Second derivatives and gradient, between own unknowns p and shared ones u.
@@ -58,7 +50,8 @@ SessionSummary::SessionSummary(SessionRows rows) {
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.problem.noise_states.size()));
   }
   rows_ = std::make_unique<SessionRows>(std::move(rows));
-  system_ = std::make_unique<RecordingSystem>(rows_->problem, rows_->border, gauge_of(*rows_));
+  system_ = std::make_unique<RecordingSystem>(rows_->problem, rows_->border,
+                                              RecordingGauge{.hold_map = true});
   system_->set_slack(kSlack);
   if (!rows_->weights.empty()) system_->set_weights(rows_->weights);
   coefficients_ = static_cast<int>(unknown_coefficients(rows_->border).size());
@@ -125,27 +118,18 @@ SessionSummary::Touched SessionSummary::touched_by(std::size_t k) const {
   return result;
 }
 
-/// Whether it touches a pose of which something is held.
-bool SessionSummary::is_held(const Measurement& one) const {
-  const int first = problem().pose_node(0);
-  return (rows_->holds_heading || rows_->holds_position) && (one.from == first || one.to == first);
-}
-
 /// How the numbers of second_order change with what the measurement touches.
 Eigen::MatrixXd SessionSummary::numbers_by(std::size_t k, const Touched& touched) const {
   const Measurement& one = problem().measurements[k];
-  const auto is_first = [&](int node) { return node == problem().pose_node(0); };
   Eigen::MatrixXd F =
       Eigen::MatrixXd::Zero(15, touched.own_width + touched.width + Eigen::Index{coefficients_});
   Eigen::Index column = 0;
-  const auto add_pose = [&](int node, Eigen::Index row) {
+  const auto add_pose = [&](Eigen::Index row) {
     F.block<3, 3>(row, column).setIdentity();
-    if (is_first(node) && rows_->holds_heading) F(row + 2, column + 2) = 0.0;
-    if (is_first(node) && rows_->holds_position) F.block<2, 2>(row, column).setZero();
     column += 3;
   };
-  add_pose(one.from, 0);
-  if (one.to >= 0 && touched.width == 0) add_pose(one.to, kSecondOrderTo);
+  add_pose(0);
+  if (one.to >= 0 && touched.width == 0) add_pose(kSecondOrderTo);
   if (!problem().noise_terms.empty()) {
     for (const NoiseTerm& term : problem().noise_terms[k]) {
       if (!is_driven(one.kind)) F.block<9, 1>(kSecondOrderView, column) = term.by;
@@ -170,7 +154,7 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   Vector4 residual = Vector4::Zero();
   residual.head(one.rows) = system_->residuals().segment(system_->first_row(k), one.rows);
   const Vector4 weighted = system_->root_weight(k) * one.whitener.transpose() * residual;
-  const bool plain = coefficients_ == 0 && problem().noise_terms.empty() && !is_held(one);
+  const bool plain = coefficients_ == 0 && problem().noise_terms.empty();
   const Eigen::MatrixXd F = plain ? Eigen::MatrixXd() : numbers_by(k, touched);
   const bool with_view = !plain && !F.bottomRows<9>().isZero(0.0);
   ViewPattern view = view_of(rows_->border, offsets, one);

@@ -41,9 +41,8 @@ struct SessionRows {
   EffectParameters border;      ///< of one session; a coefficient each, the same for all sessions
   RecordingState state;         ///< near the best
   std::vector<double> weights;  ///< per measurement; empty: all 1
-  bool holds_landmark = false;  ///< the first one, where nothing measures a position
-  bool holds_heading = false;   ///< of its first pose, where nothing measures a direction
-  bool holds_position = false;  ///< of its first pose, where there is no landmark
+  bool tells_position = true;   ///< whether anything of it, or survey, measures one in the map
+  bool tells_direction = true;  ///< likewise
 };
 
 /// Gauss and Newton's are positive semidefinite, wherever they are taken; the whole ones where the
@@ -70,7 +69,7 @@ class SessionSummary {
   /// Where they begin: landmarks, then orientations, then coefficients.
   [[nodiscard]] int first_orientation() const { return 2 * problem().landmark_count(); }
   [[nodiscard]] int first_coefficient() const { return shared() - coefficients_; }
-  /// Poses and states of noise: unknowns of its own, those held apart.
+  /// Poses and states of noise: unknowns of its own.
   [[nodiscard]] int own_unknowns() const;
   /// Measured values, those of weight 0 apart.
   [[nodiscard]] int measured_values() const;
@@ -102,7 +101,6 @@ class SessionSummary {
   void place(const Eigen::VectorXd& u, RecordingState& state) const;
   [[nodiscard]] Coupled couple(RecordingState& state, const Eigen::VectorXd& coefficients,
                                bool curved);
-  [[nodiscard]] bool is_held(const Measurement& one) const;
   void relax(RecordingState& state, const Eigen::VectorXd& coefficients, double still);
   void factorise();
   void bend(const Eigen::VectorXd& offsets);

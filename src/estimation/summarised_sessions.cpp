@@ -139,10 +139,10 @@ void SummarisedSessions::count_all() {
 /// Of H, with what is held apart from all else.
 DenseCholesky SummarisedSessions::factor() const {
   Eigen::MatrixXd H = information_;
-  if (holds_landmark_) {
-    H.middleRows<2>(places_.at.front()).setZero();
-    H.middleCols<2>(places_.at.front()).setZero();
-    H.block<2, 2>(places_.at.front(), places_.at.front()).setIdentity();
+  for (const Eigen::Index at : held_) {
+    H.row(at).setZero();
+    H.col(at).setZero();
+    H(at, at) = 1.0;
   }
   DenseCholesky result(H);
   if (!result.positive_definite()) {
@@ -155,7 +155,7 @@ DenseCholesky SummarisedSessions::factor() const {
 
 Eigen::VectorXd SummarisedSessions::step(const DenseCholesky& factor) const {
   Eigen::VectorXd gradient = information_ * (places_.x - places_.origin) - pull_;
-  if (holds_landmark_) gradient.segment<2>(places_.at.front()).setZero();
+  for (const Eigen::Index at : held_) gradient[at] = 0.0;
   return -factor.solve(gradient);
 }
 
@@ -192,7 +192,7 @@ double SummarisedSessions::effect_of(const Member& member, const Eigen::VectorXd
                                      const DenseCholesky& factor) const {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(places_.x.size());
   gradient(member.at) = missed;
-  if (holds_landmark_) gradient.segment<2>(places_.at.front()).setZero();
+  for (const Eigen::Index at : held_) gradient[at] = 0.0;
   return largest(factor.solve(gradient));
 }
 
@@ -203,7 +203,7 @@ void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
   Eigen::VectorXd draw(places_.x.size());
   for (double& one : draw) one = kTrial * normal(random);
   Eigen::VectorXd move = factor.solve_half(draw);
-  if (holds_landmark_) move.segment<2>(places_.at.front()).setZero();
+  for (const Eigen::Index at : held_) move[at] = 0.0;
   const Eigen::VectorXd own = move(member.at);
   const Eigen::VectorXd there = member.summary.quadratic().at + own;
   member.trial = size_of(own, member.summary.quadratic());
@@ -222,7 +222,7 @@ std::vector<double> SummarisedSessions::effects_of_moves(const DenseCholesky& fa
     if (!(member.trial > 0.0)) continue;
     missed.col(static_cast<Eigen::Index>(s))(member.at) = member.missed / member.trial;
   }
-  if (holds_landmark_) missed.middleRows<2>(places_.at.front()).setZero();
+  for (const Eigen::Index at : held_) missed.row(at).setZero();
   const Eigen::MatrixXd moved = factor.solve(missed);
   std::vector<double> effects;
   for (Eigen::Index s = 0; s < moved.cols(); ++s) effects.push_back(largest(moved.col(s)));
@@ -302,6 +302,25 @@ void SummarisedSessions::settle() {
                    " does not settle on the map of the other sessions");
 }
 
+void SummarisedSessions::hold(bool position, bool direction) {
+  held_.clear();
+  if (places_.at.empty()) return;
+  const Eigen::Index first = places_.at.front();
+  if (!position) held_ = {first, first + 1};
+  if (direction) return;
+  Eigen::Index most = -1;
+  double lever = 0.0;
+  for (const Eigen::Index at : places_.at) {
+    const Vector2 from_first = places_.x.segment<2>(at) - places_.x.segment<2>(first);
+    for (const int place : {0, 1}) {
+      if (std::abs(from_first[1 - place]) <= lever) continue;
+      lever = std::abs(from_first[1 - place]);
+      most = at + place;
+    }
+  }
+  if (most >= 0) held_.push_back(most);
+}
+
 void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& known) {
   const std::vector<int> unknown = unknown_coefficients(rows.border);
   const bool first = sessions_.empty();
@@ -310,7 +329,6 @@ void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& kn
   }
   if (first) {
     coefficients_ = static_cast<int>(unknown.size());
-    holds_landmark_ = rows.holds_landmark;
     prior_.resize(coefficients_);
     for (int c = 0; c < coefficients_; ++c) {
       const double sd = rows.border[idx(unknown[idx(c)])].prior_sd;
@@ -334,7 +352,10 @@ void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& kn
   taken_anew_ = 0;
   const std::size_t count = sessions_.size();
   try {
+    const bool position = rows.tells_position;
+    const bool direction = rows.tells_direction;
     sessions_.push_back(joined(std::move(rows)));
+    if (first) hold(position, direction);
     sessions_.back().summary.linearise(local(sessions_.back()), SecondDerivatives::gauss_newton);
     count_all();
     settle();
@@ -368,7 +389,7 @@ double SummarisedSessions::chi2() const {
 }
 
 int SummarisedSessions::dof() const {
-  int values = -static_cast<int>(places_.x.size()) + (holds_landmark_ ? 2 : 0);
+  int values = static_cast<int>(held_.size()) - static_cast<int>(places_.x.size());
   for (const Member& member : sessions_) {
     values += member.summary.measured_values() - member.summary.own_unknowns();
   }
@@ -382,16 +403,21 @@ int SummarisedSessions::dof() const {
   return values;
 }
 
+Eigen::MatrixXd SummarisedSessions::covariance() const {
+  Eigen::MatrixXd result = factor().inverse();
+  for (const Eigen::Index at : held_) result(at, at) = 0.0;
+  return result;
+}
+
 std::vector<Matrix2> SummarisedSessions::landmark_covariances() const {
-  const Eigen::MatrixXd covariance = factor().inverse();
+  const Eigen::MatrixXd all = covariance();
   std::vector<Matrix2> result;
-  for (const Eigen::Index at : places_.at) result.push_back(covariance.block<2, 2>(at, at));
-  if (holds_landmark_) result.front().setZero();
+  for (const Eigen::Index at : places_.at) result.push_back(all.block<2, 2>(at, at));
   return result;
 }
 
 Eigen::MatrixXd SummarisedSessions::coefficient_covariance() const {
-  return factor().inverse().topLeftCorner(coefficients_, coefficients_);
+  return covariance().topLeftCorner(coefficients_, coefficients_);
 }
 
 RecordingState SummarisedSessions::path(int session) {
@@ -409,7 +435,7 @@ double SummarisedSessions::exact_error() {
       gradient[member.at[k]] += missed[static_cast<Eigen::Index>(k)];
     }
   }
-  if (holds_landmark_) gradient.segment<2>(places_.at.front()).setZero();
+  for (const Eigen::Index at : held_) gradient[at] = 0.0;
   return largest(factor().solve(gradient));
 }
 

@@ -21,7 +21,10 @@
 // about the tolerance; what a map moves by a hundredth of its uncertainty does not take old
 // sessions anew.
 //
-// The frame is the first session's: what it holds stays held.
+// The frame is the first session's: where nothing measures a position its first landmark is held,
+// and where nothing measures a direction the coordinate that turning the map about that landmark
+// moves most. (Held by a heading, as a fit of all at once is, the map would turn by far more than
+// it changes its shape, and nothing but that would have every session taken anew.)
 #pragma once
 
 #include "estimation/session_summary.hpp"
@@ -110,6 +113,7 @@ class SummarisedSessions {
   };
 
   [[nodiscard]] bool is_tied(const RecordingProblem& problem) const;
+  void hold(bool position, bool direction);
   [[nodiscard]] Member joined(SessionRows rows);
   [[nodiscard]] Eigen::VectorXd local(const Member& member) const;
   void count(const Member& member, double sign);
@@ -121,6 +125,7 @@ class SummarisedSessions {
                                  const DenseCholesky& factor) const;
   void try_out(Member& member, const DenseCholesky& factor);
   [[nodiscard]] DenseCholesky factor() const;
+  [[nodiscard]] Eigen::MatrixXd covariance() const;
   [[nodiscard]] DenseCholesky safe_factor();
   [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
   [[nodiscard]] std::vector<double> effects_of_moves(const DenseCholesky& factor) const;
@@ -133,9 +138,9 @@ class SummarisedSessions {
   Places places_;
   Eigen::VectorXd prior_;  ///< information of each coefficient
   int coefficients_ = 0;
-  bool holds_landmark_ = false;
-  Eigen::MatrixXd information_;  ///< H
-  Eigen::VectorXd pull_;         ///< G(x) = H (x - origin) - pull
+  std::vector<Eigen::Index> held_;  ///< places in x
+  Eigen::MatrixXd information_;     ///< H
+  Eigen::VectorXd pull_;            ///< G(x) = H (x - origin) - pull
   int taken_anew_ = 0;
   double expected_error_ = 0.0;
 };

@@ -53,15 +53,18 @@ class SummarisedFit::Impl {
 
   void add(const Recording& recording) {
     require_well_formed(recording);
+    if (recording.sightings.empty()) {
+      throw InputError(recording.name, 0,
+                       "sights no landmark, by which sessions are tied, expected some");
+    }
     const bool first = sessions_.sessions() == 0;
     if (!first) require_joining(recording);
     FitState fit = first ? fit_first(recording) : fit_further(recording);
     SessionRows rows;
     if (first) {
       const RecordingGauge gauge = choose_gauge(fit.problem);
-      rows.holds_landmark = gauge.hold_landmark;
-      rows.holds_heading = gauge.hold_heading;
-      rows.holds_position = gauge.hold_position;
+      rows.tells_position = !gauge.hold_landmark;
+      rows.tells_direction = !gauge.hold_heading;
     }
     rows.weights = weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
     rows.border = std::move(fit.columns.border);
