@@ -17,10 +17,6 @@ bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-double largest(const Eigen::VectorXd& values) {
-  return values.size() == 0 ? 0.0 : values.cwiseAbs().maxCoeff();
-}
-
 }  // namespace
 
 std::optional<double> SummarisedSessions::orientation(int landmark) const {
@@ -278,7 +274,7 @@ double SummarisedSessions::exact_error() {
     }
   }
   for (const Eigen::Index at : held_) gradient[at] = 0.0;
-  return largest(factor().solve(gradient));
+  return factor().solve(gradient).cwiseAbs().maxCoeff();
 }
 
 }  // namespace trussmap

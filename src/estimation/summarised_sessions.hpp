@@ -12,10 +12,11 @@
 //
 //     x <- x - H^-1 G(x)          H, G the sums of the summaries
 //     session s was taken at x_s, and its summary misses its gradient at x by about
-//         e_s (q/q_s),   q = (x - x_s)' H_s (x - x_s)
-//     of which e_s, q_s are known from a trial: a move drawn from x's own uncertainty, at which the
-//     session's gradient is reckoned exactly. Sessions whose H^-1 e_s (q/q_s) add up to more than
-//     the tolerance are taken anew at x, the largest first, until the rest is below it.
+//         e_s (q/q_s),   q = (x - x_s)' diag(H_s) (x - x_s)
+//     of which e_s, q_s are known from a trial, a move drawn from x's own uncertainty at which the
+//     session's gradient is reckoned exactly, or from the last time that it was taken anew, where
+//     that was worse. Sessions whose H^-1 e_s (q/q_s) add up to more than the tolerance are taken
+//     anew at x, the largest first, until the rest is below it.
 //
 // So the result is that of the adjustment of all sessions at once (recording_adjustment.hpp) to
 // about the tolerance; what a map moves by a hundredth of its uncertainty does not take old

@@ -37,11 +37,11 @@ class DenseCholesky {
   explicit DenseCholesky(const Eigen::MatrixXd& A);
 
   [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
-  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;  ///< A^-1 b
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;       ///< A^-1 b
   [[nodiscard]] Eigen::VectorXd solve_half(const Eigen::VectorXd& b) const;  ///< L^-T b
-  [[nodiscard]] Eigen::MatrixXd inverse() const;         ///< A^-1
-  [[nodiscard]] Eigen::MatrixXd inverse_factor() const;  ///< L^-1
-  [[nodiscard]] double log_determinant() const;          ///< of A
+  [[nodiscard]] Eigen::MatrixXd inverse() const;                             ///< A^-1
+  [[nodiscard]] Eigen::MatrixXd inverse_factor() const;                      ///< L^-1
+  [[nodiscard]] double log_determinant() const;                              ///< of A
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;

@@ -228,7 +228,7 @@ TEST(SummarisedSessions, ASessionThatFailsChangesNothing) {
   SummarisedSessions map = summarised(days);
   SummarisedSessions none;
   SessionRows elsewhere = rows_of(days.recordings[0], days, none);
-  for (std::string& name : elsewhere.problem.landmarks) name = "other " + name;
+  for (std::string& name : elsewhere.problem.landmarks) name.insert(0, "other ");
   SessionRows told_nothing = rows_of(days.recordings[0], days, map);
   told_nothing.problem.landmarks.back() = "new";
   told_nothing.weights.assign(told_nothing.problem.measurements.size(), 0.0);
