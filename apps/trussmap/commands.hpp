@@ -22,6 +22,7 @@ void setup_convert(const Command& app);
 void setup_diagnose(const Command& app);
 void setup_discover(const Command& app);
 void setup_fit(const Command& app);
+void setup_fleet(const Command& app);
 void setup_merge(const Command& app);
 void setup_noise(const Command& app);
 void setup_reveal(const Command& app);

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "help.hpp"
 #include "read_limits.hpp"
+#include "threads_option.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/write_files.hpp"
@@ -19,9 +20,6 @@
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
-
-// Of OpenBLAS, where it is the BLAS in use.
-extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
 
 namespace {
 
@@ -60,14 +58,6 @@ void check_command(const CLI::App& app, int argc, char** argv) {
                                   "\" is no command, expected one of " + names);
 }
 
-/// Recordings make thousands of small matrices: threads that wait for each other would cost more
-/// than all the arithmetic. Large pose graphs are another matter.
-void use_one_thread_but_for_graphs(int argc, char** argv) {
-  if (openblas_set_num_threads == nullptr) return;
-  if (argc > 1 && std::string(argv[1]) == "adjust") return;
-  openblas_set_num_threads(1);
-}
-
 /// Large matrices are made and dropped by the thousand: their memory is kept instead of being
 /// fetched anew, zeroed, from the system, which took a fifth of the time of a week's recording.
 void keep_memory() {
@@ -88,7 +78,6 @@ int with_output_written(int status) {
 int run(int argc, char** argv) {
   clean_up_on_signals();
   keep_memory();
-  use_one_thread_but_for_graphs(argc, argv);
   CLI::App app{"trussmap builds landmark maps for mobile robots as elastic trusses.", "trussmap"};
   trussmap::app::begin_help(app);
   app.require_subcommand(1);
@@ -105,6 +94,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_fit(commands);
+  trussmap::app::setup_fleet(commands);
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);
@@ -112,6 +102,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_tour(commands);
   trussmap::app::setup_umbmark(commands);
   trussmap::app::add_read_limits(app);
+  trussmap::app::add_threads_option(app);
   trussmap::app::finish_help(app);
   try {
     check_command(app, argc, argv);

@@ -15,13 +15,22 @@
 
 namespace trussmap::app {
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options) {
+  command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
+  add_fitted_recordings(command, options);
+  command
+      .add_option("--level", options.level,
+                  "Level of significance: chance of an effect, or a misfit, where there is none")
+      .check(between(1e-6, 0.5))
+      .capture_default_str();
+}
+
+void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options) {
   command.add_option("RECORDING", options.recordings, "Folders of CSV files, one per session")
       .required()
       .type_name("DIR");
   command.add_option("--model", options.model, "Model of the robot (TOML)")
       .required()
       .type_name("FILE");
-  command.add_option("--json", options.json, "Write every figure as JSON").type_name("FILE");
   command
       .add_option("--holdout", options.legs.share,
                   "Share of the legs that is held out to judge the model by")
@@ -55,11 +64,6 @@ void add_model_recordings(const Command& command, ModelRecordingsOptions& option
                   "Use one frame of sightings in so many seconds (0: all; else as long as their "
                   "errors are found to last)")
       .check(zero_or_more());
-  command
-      .add_option("--level", options.level,
-                  "Level of significance: chance of an effect, or a misfit, where there is none")
-      .check(between(1e-6, 0.5))
-      .capture_default_str();
 }
 
 namespace {

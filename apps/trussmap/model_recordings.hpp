@@ -31,6 +31,9 @@ struct ModelRecordingsOptions {
 /// --level.
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
 
+/// The same without --json and --level.
+void add_fitted_recordings(const Command& command, ModelRecordingsOptions& options);
+
 /// --stated-noise.
 void add_stated_noise(const Command& command, ModelRecordingsOptions& options);
 

@@ -30,6 +30,7 @@ struct DiagnosisEvidence;
 struct Discovery;
 struct DiscoveryEvidence;
 struct FitEvidence;
+struct FleetReport;
 struct PageContent;
 struct TourResult;
 
@@ -90,6 +91,7 @@ struct TruthCalibration {
 [[nodiscard]] Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidence,
                                   const std::string& subject);
 [[nodiscard]] Page fit_page(const FitEvidence& evidence, const std::string& subject);
+[[nodiscard]] Page fleet_page(const FleetReport& report, const std::string& subject);
 [[nodiscard]] Page map_page(const BuiltMap& built, const std::string& subject);
 [[nodiscard]] Page noise_page(const NoiseCalibration& found, const std::string& subject);
 [[nodiscard]] Page square_page(const SquareCalibration& found, const std::string& subject);

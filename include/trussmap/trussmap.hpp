@@ -6,10 +6,10 @@
 // Five targets to link. trussmap::map has what stands in arc, build_map, channel,
 // corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
 // noise_fit, planar, pose_graph, recording, survey_comparison, test_path and truss; trussmap::store
-// map_store, too. log_files takes trussmap::logs, distributed trussmap::distributed. All the
-// others, and effects in a model (a shape is read from its text), take trussmap::trussmap. All
-// include trussmap::map, and trussmap::logs trussmap::trussmap. Find the first alone by
-// find_package(trussmap COMPONENTS map).
+// map_store and the store of fleet, too. log_files takes trussmap::logs, distributed
+// trussmap::distributed. All the others, and effects in a model (a shape is read from its text),
+// take trussmap::trussmap. All include trussmap::map, and trussmap::logs trussmap::trussmap. Find
+// the first alone by find_package(trussmap COMPONENTS map).
 //
 // Threads. Functions share nothing that is changed: they may run in as many threads as there are,
 // on the same recordings, models and maps. An object may be read (const calls) by several threads
@@ -31,6 +31,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/fit_model.hpp"
+#include "trussmap/fleet.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/held_out.hpp"
 #include "trussmap/landmark_map.hpp"
@@ -52,6 +53,7 @@
 #include "trussmap/survey_comparison.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"
+#include "trussmap/threads.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/truss.hpp"
 #include "trussmap/umbmark.hpp"

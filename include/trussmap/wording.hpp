@@ -19,6 +19,7 @@
 namespace trussmap {
 
 struct BuiltMap;
+struct FleetReport;
 
 // Effects.
 
@@ -62,6 +63,9 @@ struct Advice {
 [[nodiscard]] std::string separating_drive(const Effect& one, const Effect& other,
                                            const std::vector<std::string>& slow);
 [[nodiscard]] std::string in_words(const std::optional<NextDrive>& drive);  ///< none: empty
+
+/// A fleet's findings, a sentence a line; the lines of a finding stand two blanks in.
+[[nodiscard]] std::vector<std::string> in_words(const FleetReport& report);
 
 // Findings beside effects.
 

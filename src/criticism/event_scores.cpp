@@ -3,6 +3,7 @@
 #include "criticism/event_scores.hpp"
 
 #include "linalg/dense.hpp"
+#include "parallel/parallel_for.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
@@ -46,24 +47,31 @@ class Scorer {
   /// Solves are shared by events that need some.
   [[nodiscard]] std::vector<Scored> score(const std::vector<SingleEvent>& events) const {
     std::vector<Scored> result(events.size());
-    std::vector<std::size_t> waiting;
-    Eigen::Index columns = 0;
+    std::vector<Batch> batches{{}};
+    std::vector<std::size_t> local;
     for (std::size_t e = 0; e < events.size(); ++e) {
-      const bool local = std::all_of(events[e].places.begin(), events[e].places.end(),
-                                     [](const Dummies& one) { return one.parts.size() == 1; });
-      if (local) {
-        result[e] = score_locally(events[e]);
+      if (std::all_of(events[e].places.begin(), events[e].places.end(),
+                      [](const Dummies& one) { return one.parts.size() == 1; })) {
+        local.push_back(e);
         continue;
       }
-      waiting.push_back(e);
-      columns += static_cast<Eigen::Index>(events[e].places.size()) * width(events[e]);
-      if (columns >= kBatch) solve(events, waiting, columns, result);
+      if (batches.back().columns >= kBatch) batches.emplace_back();
+      batches.back().events.push_back(e);
+      batches.back().columns +=
+          static_cast<Eigen::Index>(events[e].places.size()) * width(events[e]);
     }
-    solve(events, waiting, columns, result);
+    parallel_for(local.size(),
+                 [&](std::size_t k) { result[local[k]] = score_locally(events[local[k]]); });
+    parallel_for(batches.size(), [&](std::size_t k) { solve(events, batches[k], result); });
     return result;
   }
 
  private:
+  struct Batch {
+    std::vector<std::size_t> events;
+    Eigen::Index columns = 0;
+  };
+
   [[nodiscard]] static Eigen::Index width(const SingleEvent& event) {
     return event.places.front().parts.front().rows.cols();
   }
@@ -94,15 +102,16 @@ class Scorer {
     return result;
   }
 
-  void solve(const std::vector<SingleEvent>& events, std::vector<std::size_t>& waiting,
-             Eigen::Index& columns, std::vector<Scored>& result) const {
+  void solve(const std::vector<SingleEvent>& events, const Batch& batch,
+             std::vector<Scored>& result) const {
+    const Eigen::Index columns = batch.columns;
     const BlockSystem& normal = system_.normal_equations();
     std::vector<Eigen::Triplet<double>> right;
     Eigen::MatrixXd nuisance = Eigen::MatrixXd::Zero(P_.set_aside().cols(), columns);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
     Eigen::VectorXd whole = Eigen::VectorXd::Zero(columns);
     Eigen::Index at = 0;
-    for (const std::size_t e : waiting) {
+    for (const std::size_t e : batch.events) {
       const Eigen::Index count = width(events[e]);
       for (const Dummies& dummies : events[e].places) {
         for (const DummyRows& part : dummies.parts) {
@@ -128,7 +137,7 @@ class Scorer {
     }
     const Eigen::MatrixXd explained = normal.inverse_products(right, static_cast<int>(columns));
     at = 0;
-    for (const std::size_t e : waiting) {
+    for (const std::size_t e : batch.events) {
       const SingleEvent& event = events[e];
       const Eigen::Index count = width(event);
       const Eigen::Index all = count * static_cast<Eigen::Index>(event.places.size());
@@ -143,8 +152,6 @@ class Scorer {
       result[e].tried = effective_tries(S, count);
       at += all;
     }
-    waiting.clear();
-    columns = 0;
   }
 
   /// M'M of all places at once.

@@ -5,6 +5,7 @@
 #include "estimation/segment_noise.hpp"
 #include "fit/noise_reml.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "parallel/parallel_for.hpp"
 
 #include <cmath>
 #include <functional>
@@ -88,9 +89,10 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
     result.push_back({law.name, law.unit, 0.0, law.margin, none});
   }
   const Eigen::VectorXd offsets = offsets_of(fit);
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+  context.prepare(ShapeContext::Instant::middle);
+  parallel_for(problem.measurements.size(), [&](std::size_t k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::segment) continue;
+    if (one.kind != MeasurementKind::segment) return;
     const std::size_t session = idx(one.session);
     const std::vector<SegmentRow>& rows = problem.segments[one.source];
     const SegmentNoise segment = believed_noise(problem, k, fit.recordings, fit.model,
@@ -102,7 +104,7 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
         result[law].added[k] += segment.H[row] * Q * segment.H[row].transpose();
       }
     }
-  }
+  });
   return result;
 }
 

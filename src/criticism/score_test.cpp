@@ -3,12 +3,15 @@
 #include "criticism/score_test.hpp"
 
 #include "linalg/dense.hpp"
+#include "parallel/parallel_for.hpp"
 #include "recording/row_variables.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -194,35 +197,34 @@ std::vector<Score> ScoreTest::test(const std::vector<Effect>& candidates,
 std::vector<Score> ScoreTest::test_with(ColumnBuilder& builder,
                                         const std::vector<Effect>& candidates) const {
   const RecordingSystem& system = *clean_system_;
+  const std::size_t sessions = context().recordings().size();
   std::vector<Score> scores;
-  scores.reserve(candidates.size());
   for (std::size_t first = 0; first < candidates.size();) {
-    std::vector<Eigen::MatrixXd> parts;
-    Eigen::Index count = 0;
     std::size_t next = first;
-    while (next < candidates.size() && (next == first || count < batch())) {
-      parts.push_back(builder.columns(candidates[next]));
-      count += parts.back().cols();
-      ++next;
+    for (std::size_t count = 0; next < candidates.size() && count < idx(batch()); ++next) {
+      count += coefficient_count(candidates[next], sessions);
     }
-    Eigen::MatrixXd M(residuals_.size(), count);
-    Eigen::Index at = 0;
-    for (const Eigen::MatrixXd& part : parts) {
-      M.middleCols(at, part.cols()) = part;
-      at += part.cols();
+    const std::span<const Effect> some = std::span(candidates).subspan(first, next - first);
+    std::vector<Eigen::MatrixXd> parts = builder.columns(some);
+    std::vector<Eigen::Index> begin{0};
+    std::vector<std::vector<double>> largest;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      begin.push_back(begin.back() + parts[k].cols());
+      largest.push_back(builder.largest(some[k]));
     }
+    Eigen::MatrixXd M(residuals_.size(), begin.back());
+    for (std::size_t k = 0; k < some.size(); ++k)
+      M.middleCols(begin[k], parts[k].cols()) = parts[k];
     const Eigen::MatrixXd nodes = system.solve_nodes(system.transposed_times(M));
     system.subtract_times(nodes, M);
-    take_out(present_, M);
-    at = 0;
-    for (std::size_t k = first; k < next; ++k) {
-      Eigen::MatrixXd& own = parts[k - first];
-      const Eigen::Index shapes = own.cols();
-      scores.push_back(score_of(candidates[k], builder.largest(candidates[k]), std::move(own),
-                                M.middleCols(at, shapes)));
-      scores.back().landmarks = -landmark_rows(nodes.middleCols(at, shapes));
-      at += shapes;
-    }
+    scores.resize(next);
+    parallel_for(some.size(), [&](std::size_t k) {
+      const Eigen::Index shapes = parts[k].cols();
+      Score& score = scores[first + k];
+      score = score_of(some[k], largest[k], std::move(parts[k]),
+                       free_of(present_, M.middleCols(begin[k], shapes)));
+      score.landmarks = -landmark_rows(nodes.middleCols(begin[k], shapes));
+    });
     first = next;
   }
   return scores;

@@ -71,7 +71,7 @@ void visit_scores(const ScoreTest& tests, const std::vector<Candidate>& candidat
     std::size_t columns = 0;
     for (std::size_t k = first; k < candidates.size() && columns < batch; ++k) {
       effects.push_back(candidates[k].effect);
-      columns += effects.back().shape.size() * (effects.back().per_session ? sessions : 1);
+      columns += coefficient_count(effects.back(), sessions);
     }
     std::vector<Score> scores = tests.test(effects, resolution);
     for (std::size_t k = 0; k < scores.size(); ++k) visit(first + k, scores[k]);

@@ -6,6 +6,7 @@
 #include "estimation/motion_changes.hpp"
 #include "estimation/noise_states.hpp"
 #include "linalg/dense.hpp"
+#include "parallel/parallel_for.hpp"
 #include "recording/floor_code.hpp"
 #include "recording/legs.hpp"
 #include "text/number_text.hpp"
@@ -210,12 +211,19 @@ class Collector {
 
   void add_segments(const Recording& recording) {
     if (pose_at_.empty()) return;
+    using Node = std::pair<const double, int>;
+    std::vector<std::pair<const Node*, const Node*>> ends;
     for (auto from = pose_at_.begin(), to = std::next(from); to != pose_at_.end(); from = to++) {
-      if (is_left_out(from->first, to->first)) continue;
-      std::vector<SegmentRow> rows =
-          segment_rows(recording.drive, from->first, to->first, model_.robot);
+      if (!is_left_out(from->first, to->first)) ends.emplace_back(&*from, &*to);
+    }
+    std::vector<Measurement> segments(ends.size());
+    std::vector<std::vector<SegmentRow>> rows_of(ends.size());
+    parallel_for(ends.size(), [&](std::size_t k) {
+      const auto& [from, to] = ends[k];
+      std::vector<SegmentRow>& rows = rows_of[k];
+      rows = segment_rows(recording.drive, from->first, to->first, model_.robot);
       const SegmentMotion motion = segment_motion(rows);
-      Measurement one;
+      Measurement& one = segments[k];
       one.kind = MeasurementKind::segment;
       one.from = from->second;  // poses, until every landmark has its node
       one.to = to->second;
@@ -225,10 +233,12 @@ class Collector {
       one.whitener = whitener_of(
           segment_covariance(recording.drive, rows, model_.robot, model_.noise), one.rows);
       one.session = session_;
-      one.source = problem_.segments.size();
-      problem_.segments.push_back(std::move(rows));
-      problem_.measurements.push_back(one);
-      add_gyro(recording.drive, one);
+    });
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      segments[k].source = problem_.segments.size();
+      problem_.segments.push_back(std::move(rows_of[k]));
+      problem_.measurements.push_back(segments[k]);
+      add_gyro(recording.drive, segments[k]);
     }
   }
 

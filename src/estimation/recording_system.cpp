@@ -6,6 +6,7 @@
 #include "estimation/noise_states.hpp"
 #include "estimation/student_tails.hpp"
 #include "linalg/dense.hpp"
+#include "parallel/parallel_for.hpp"
 
 #include <cmath>
 #include <utility>
@@ -14,6 +15,9 @@
 
 namespace trussmap {
 namespace {
+
+constexpr std::size_t kMeasurementsAtOnce = 64;
+constexpr std::size_t kColumnsAtOnce = 8;
 
 std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge& gauge) {
   std::vector<int> sizes(idx(problem.nodes()));
@@ -138,7 +142,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
   const auto states = static_cast<Eigen::Index>(problem_.noise_states.size());
   const Eigen::VectorXd noise =
       state.noise.size() == states ? state.noise : Eigen::VectorXd::Zero(states);
-  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+  const auto linearise_one = [&](std::size_t k) {
     const Measurement& one = problem_.measurements[k];
     const bool segment = is_driven(one.kind);
     Vector4 value =
@@ -163,9 +167,18 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     const Vector4 plain = one.tails > 0.0 ? rows.error + one.value_offset : rows.error;
     squared_errors_[k] = tail_deviance(one.tails, one.rows, (one.whitener * plain).squaredNorm());
     residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
-    add_to_normal(k, J, error);
-    if (!J.states.empty()) add_states_to_normal(k, J, error);
     evaluate_effect_parameters(k, rows);
+  };
+  parallel_ranges(problem_.measurements.size(), kMeasurementsAtOnce,
+                  [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t k = begin; k < end; ++k) linearise_one(k);
+                  });
+  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
+    Vector4 error = Vector4::Zero();
+    error.head(problem_.measurements[k].rows) =
+        residuals_.segment(first_row_[k], problem_.measurements[k].rows);
+    add_to_normal(k, J_[k], error);
+    if (!J_[k].states.empty()) add_states_to_normal(k, J_[k], error);
   }
   linearise_states(noise);
   for (int node = problem_.landmark_count(); node < problem_.pose_end(); ++node) {
@@ -347,7 +360,16 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
 
 Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns(), rows.cols());
-  if (rows.cols() == 0) return result;
+  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin);
+    const auto columns = static_cast<Eigen::Index>(end - begin);
+    add_transposed_times(rows.middleCols(first, columns), result.middleCols(first, columns));
+  });
+  return result;
+}
+
+void RecordingSystem::add_transposed_times(const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                                           Eigen::Ref<Eigen::MatrixXd> result) const {
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     const auto part = rows.middleRows(first_row_[k], one.rows);
@@ -369,7 +391,6 @@ Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) c
     if (state.previous < 0) continue;
     result.row(normal_.offset(state_node(state.previous))) -= state.keep / state.sd * part;
   }
-  return result;
 }
 
 Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
@@ -380,6 +401,15 @@ Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
 }
 
 void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const {
+  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin);
+    const auto columns = static_cast<Eigen::Index>(end - begin);
+    subtract_some(nodes.middleCols(first, columns), rows.middleCols(first, columns));
+  });
+}
+
+void RecordingSystem::subtract_some(const Eigen::Ref<const Eigen::MatrixXd>& nodes,
+                                    Eigen::Ref<Eigen::MatrixXd> rows) const {
   for (std::size_t k = 0; k < J_.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     auto part = rows.middleRows(first_row_[k], one.rows);

@@ -187,6 +187,11 @@ class RecordingSystem {
   void hold_unseen_orientations();
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);
+  /// J'v and J x for some columns.
+  void add_transposed_times(const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                            Eigen::Ref<Eigen::MatrixXd> result) const;
+  void subtract_some(const Eigen::Ref<const Eigen::MatrixXd>& nodes,
+                     Eigen::Ref<Eigen::MatrixXd> rows) const;
   void build_schur(double damping);
   template <int Size>
   [[nodiscard]] std::vector<Eigen::Matrix<double, Size, Size>> covariances(int first,

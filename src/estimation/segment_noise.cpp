@@ -4,6 +4,7 @@
 
 #include "estimation/noise_states.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "parallel/parallel_for.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -176,20 +177,20 @@ SegmentNoise believed_noise(const RecordingProblem& problem, std::size_t k,
 double relinearise(RecordingProblem& problem, const std::vector<Recording>& recordings,
                    const Model& model, const EffectParameters& border,
                    const Eigen::VectorXd& offsets, const RecordingState& state) {
-  double most = 0.0;
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+  std::vector<double> changes(problem.measurements.size(), 0.0);
+  parallel_for(problem.measurements.size(), [&](std::size_t k) {
     Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::segment) continue;
+    if (one.kind != MeasurementKind::segment) return;
     const SegmentNoise at = believed_noise(problem, k, recordings, model, border, offsets, state);
     const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
     Vector4 value_offset = at.value - at.recorded;
     value_offset[3] = one.rows == 4 ? wrap_angle(value_offset[3]) : 0.0;
     const Vector4 change = one.whitener * (value_offset - one.value_offset);
-    most = std::max(most, change.cwiseAbs().maxCoeff());
+    changes[k] = change.cwiseAbs().maxCoeff();
     one.value_offset = value_offset;
     one.whitener = whitener_of(at.covariance + within, one.rows);
-  }
-  return most;
+  });
+  return changes.empty() ? 0.0 : *std::max_element(changes.begin(), changes.end());
 }
 
 }  // namespace trussmap

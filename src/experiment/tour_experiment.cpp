@@ -4,18 +4,16 @@
 
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
+#include "parallel/parallel_for.hpp"
 #include "simulation/route_robot.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <functional>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
-#include <thread>
 
 namespace trussmap {
 namespace {
@@ -197,31 +195,15 @@ void check(const TourOptions& options) {
 std::vector<SeedErrors> run_tour_seeds(const TourOptions& options, const std::vector<int>& seeds) {
   check(options);
   std::vector<SeedErrors> results(seeds.size());
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex failing;
   std::mutex reporting;
   int done = 0;
-  const auto work = [&] {
-    for (std::size_t k = next++; k < seeds.size(); k = next++) {
-      try {
-        const auto seed = static_cast<std::uint64_t>(seeds[k]);
-        results[k] = SeedRun(options, options.first_seed + seed).run();
-        const std::lock_guard<std::mutex> lock(reporting);
-        ++done;
-        if (options.seeds_done) options.seeds_done(done);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(failing);
-        failure = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::thread> threads;
-  const unsigned count = std::max(1U, std::thread::hardware_concurrency());
-  for (unsigned k = 1; k < count; ++k) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
+  parallel_for(seeds.size(), [&](std::size_t k) {
+    const auto seed = static_cast<std::uint64_t>(seeds[k]);
+    results[k] = SeedRun(options, options.first_seed + seed).run();
+    const std::scoped_lock lock(reporting);
+    ++done;
+    if (options.seeds_done) options.seeds_done(done);
+  });
   return results;
 }
 

@@ -4,6 +4,7 @@
 
 #include "estimation/measurement_rows.hpp"
 #include "estimation/student_tails.hpp"
+#include "parallel/parallel_for.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,13 +41,19 @@ Instant instant_of(MeasurementKind kind) {
                                         : Instant::sighting;
 }
 
-/// Where a channel that acts on views acts.
-std::vector<Instant> view_instants(Channel channel) {
+/// Where a channel's shapes are asked for.
+std::vector<Instant> instants_of(Channel channel) {
+  if (acts_on(channel) == ActsOn::readings) return {Instant::end};
+  if (acts_on(channel) != ActsOn::views) return {Instant::middle};
   std::vector<Instant> instants;
   if (acts_on_sightings(channel)) instants.push_back(Instant::sighting);
   if (acts_on_truth(channel)) instants.push_back(Instant::truth);
   if (acts_on_fixes(channel)) instants.push_back(Instant::fix);
   return instants;
+}
+
+bool is_of_rows(Instant at) {
+  return at == Instant::middle || at == Instant::end;
 }
 
 }  // namespace
@@ -60,6 +67,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     if (is_driven(one.kind)) count += problem.segments[one.source].size();
   }
   segment_rows_->reserve(count);
+  struct Driven {
+    const std::vector<SegmentRow>* rows;
+    std::vector<const std::vector<DrivePattern>*> patterns;
+    Matrix4 W;
+    std::size_t first;
+  };
+  std::vector<Driven> driven;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
@@ -71,13 +85,11 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
         patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
       }
       const std::vector<SegmentRow>& rows = problem.segments[one.source];
-      const std::vector<Matrix4> influences = row_influences(rows, patterns, offsets);
-      Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, false};
-      for (std::size_t row = 0; row < rows.size(); ++row) {
-        segment_rows_->push_back({rows[row].row, -(W * influences[row])});
-      }
-      segment.row_end = segment_rows_->size();
-      segments_.push_back(segment);
+      const std::size_t first = segment_rows_->size();
+      segments_.push_back(
+          {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false});
+      segment_rows_->resize(first + rows.size());
+      driven.push_back({&rows, std::move(patterns), W, first});
     } else if (one.session >= 0 && one.kind != MeasurementKind::loop) {
       const ViewPattern view = view_of(border, offsets, one);
       const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
@@ -87,6 +99,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     rows_ += one.rows;
   }
   rows_ += static_cast<int>(problem.noise_states.size());
+  parallel_for(driven.size(), [&](std::size_t k) {
+    const Driven& one = driven[k];
+    const std::vector<Matrix4> influences = row_influences(*one.rows, one.patterns, offsets);
+    for (std::size_t row = 0; row < influences.size(); ++row) {
+      (*segment_rows_)[one.first + row] = {(*one.rows)[row].row, -(one.W * influences[row])};
+    }
+  });
   take_training_segments();
 }
 
@@ -160,10 +179,88 @@ RowVariables ColumnBuilder::thinned(std::size_t session, Instant at) const {
   return result;
 }
 
-const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
-  const auto found = bases_.find(channel);
-  if (found != bases_.end()) return found->second;
-  if ((bases_.size() + 1) * 4 * training_segments_.size() > kBasesKept) bases_.clear();
+std::size_t ColumnBuilder::make_ready(const std::vector<Job>& jobs, std::size_t begin) {
+  const std::size_t rows = std::max<std::size_t>(1, training_segments_.size());
+  const std::size_t most_shapes = kValuesKept / rows;
+  const std::size_t most_bases = kBasesKept / (4 * rows);
+  std::map<Evaluation, const Effect*> shapes;
+  std::set<Channel> channels;
+  std::size_t end = begin;
+  for (; end < jobs.size(); ++end) {
+    const Job& job = jobs[end];
+    const Channel channel = job.effect.channel;
+    std::map<Evaluation, const Effect*> own;
+    for (const Instant at : instants_of(channel)) {
+      const Evaluation one(job.shape, at);
+      if (!shapes.contains(one)) own.emplace(one, &job.effect);
+    }
+    const bool own_basis = acts_on(channel) != ActsOn::views && !channels.contains(channel);
+    const bool fits = shapes.size() + own.size() <= most_shapes &&
+                      channels.size() + (own_basis ? 1 : 0) <= most_bases;
+    if (!fits && end > begin) break;
+    shapes.merge(own);
+    if (own_basis) channels.insert(channel);
+  }
+  if (values_.size() + shapes.size() > most_shapes) {
+    std::erase_if(values_, [&shapes](const auto& one) { return !shapes.contains(one.first); });
+  }
+  if (bases_.size() + channels.size() > most_bases) {
+    std::erase_if(bases_, [&channels](const auto& one) { return !channels.contains(one.first); });
+  }
+  evaluate(shapes);
+  make_bases(channels);
+  return end;
+}
+
+void ColumnBuilder::evaluate(const std::map<Evaluation, const Effect*>& wanted) {
+  std::vector<std::pair<Evaluation, const Effect*>> missing;
+  for (const auto& [one, effect] : wanted) {
+    if (values_.contains(one)) continue;
+    missing.emplace_back(one, effect);
+    const Instant at = one.second;
+    context_.prepare(at);
+    if (joint_ == 0.0 || !is_of_rows(at)) continue;
+    std::vector<RowVariables>& some = thinned_[at];
+    for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
+  }
+  std::vector<Values> values(missing.size());
+  std::vector<std::vector<double>> largest(missing.size());
+  parallel_for(missing.size(), [&](std::size_t k) {
+    const auto& [one, effect] = missing[k];
+    try {
+      values[k] = evaluated(one);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("effect \"" + effect->name + "\": " + error.what());
+    }
+    for (const auto& session : values[k]) largest[k].push_back(largest_but_for_spikes(session));
+  });
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    values_.emplace(missing[k].first, std::move(values[k]));
+    largest_.insert_or_assign(missing[k].first, std::move(largest[k]));
+  }
+}
+
+ColumnBuilder::Values ColumnBuilder::evaluated(const Evaluation& one) const {
+  const auto& [shape, at] = one;
+  if (joint_ == 0.0 || !is_of_rows(at)) return context_.values(shape, at);
+  Values result;
+  for (const RowVariables& session : thinned_.at(at)) result.push_back(shape.values(session));
+  return result;
+}
+
+void ColumnBuilder::make_bases(const std::set<Channel>& wanted) {
+  std::vector<Channel> missing;
+  for (const Channel channel : wanted) {
+    if (!bases_.contains(channel)) missing.push_back(channel);
+  }
+  std::vector<Eigen::Matrix4Xd> bases(missing.size());
+  parallel_for(missing.size(), [&](std::size_t k) { bases[k] = basis(missing[k]); });
+  for (std::size_t k = 0; k < missing.size(); ++k) {
+    bases_.emplace(missing[k], std::move(bases[k]));
+  }
+}
+
+Eigen::Matrix4Xd ColumnBuilder::basis(Channel channel) const {
   Eigen::Matrix4Xd basis =
       Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(training_segments_.size()));
   for (const Segment& segment : segments_) {
@@ -179,38 +276,15 @@ const Eigen::Matrix4Xd& ColumnBuilder::basis(Channel channel) {
       }
     }
   }
-  return bases_.emplace(channel, std::move(basis)).first->second;
+  return basis;
 }
 
-const ColumnBuilder::Values& ColumnBuilder::values(const Shape& shape, Instant at) {
-  const auto key = std::make_pair(shape, at);
-  const auto found = values_.find(key);
-  if (found != values_.end()) return found->second;
-  if ((values_.size() + 1) * training_segments_.size() > kValuesKept) values_.clear();
-  const Values& f = values_.emplace(key, evaluated(shape, at)).first->second;
-  std::vector<double>& largest = largest_[key];
-  largest.clear();
-  for (const std::vector<double>& session : f) largest.push_back(largest_but_for_spikes(session));
-  return f;
-}
-
-ColumnBuilder::Values ColumnBuilder::evaluated(const Shape& shape, Instant at) {
-  const bool of_rows = at == Instant::middle || at == Instant::end;
-  if (joint_ == 0.0 || !of_rows) return context_.values(shape, at);
-  std::vector<RowVariables>& some = thinned_[at];
-  for (std::size_t s = some.size(); s < middles_.size(); ++s) some.push_back(thinned(s, at));
-  Values result;
-  for (const RowVariables& session : some) result.push_back(shape.values(session));
-  return result;
-}
-
-void ColumnBuilder::add_drives(Channel channel, const Shape& shape, int session,
-                               Eigen::Ref<Eigen::VectorXd> column) {
-  const Eigen::Matrix4Xd& units = basis(channel);
-  const Values& f =
-      values(shape, acts_on(channel) == ActsOn::readings ? Instant::end : Instant::middle);
+void ColumnBuilder::add_drives(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const {
+  const Channel channel = job.effect.channel;
+  const Eigen::Matrix4Xd& units = bases_.at(channel);
+  const Values& f = values_.at({job.shape, instants_of(channel).front()});
   for (const Segment& segment : segments_) {
-    if (session >= 0 && segment.session != idx(session)) continue;
+    if (job.session >= 0 && segment.session != idx(job.session)) continue;
     const std::vector<double>& here = f[segment.session];
     Vector4 sum = Vector4::Zero();
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
@@ -220,47 +294,50 @@ void ColumnBuilder::add_drives(Channel channel, const Shape& shape, int session,
   }
 }
 
-void ColumnBuilder::add_views(Channel channel, const Shape& shape, int session,
-                              Eigen::Ref<Eigen::VectorXd> column) {
-  for (const Instant at : view_instants(channel)) {
-    const Values& f = values(shape, at);
+void ColumnBuilder::add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const {
+  for (const Instant at : instants_of(job.effect.channel)) {
+    const Values& f = values_.at({job.shape, at});
     for (const View& view : views_) {
       if (view.at != at) continue;
-      if (session >= 0 && view.session != idx(session)) continue;
+      if (job.session >= 0 && view.session != idx(job.session)) continue;
       const RowVariables& variables = context_.variables(view.session, at);
       const ViewPattern unit =
-          view_pattern(channel, f[view.session][view.source], variables.at("speed")[view.source],
-                       variables.at("turn_rate")[view.source]);
+          view_pattern(job.effect.channel, f[view.session][view.source],
+                       variables.at("speed")[view.source], variables.at("turn_rate")[view.source]);
       const Vector4 rows = view.influence * unit.vector();
       for (int row = 0; row < view.rows; ++row) column[view.first_row + row] = rows[row];
     }
   }
 }
 
-Eigen::MatrixXd ColumnBuilder::columns(const Effect& effect) {
-  const Channel channel = effect.channel;
-  const std::vector<Part> parts = parts_of(effect, context_.recordings().size());
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(parts.size()));
-  try {
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      if (acts_on(channel) == ActsOn::views) {
-        add_views(channel, parts[k].shape, parts[k].session, result.col(column));
-      } else {
-        add_drives(channel, parts[k].shape, parts[k].session, result.col(column));
-      }
+std::vector<Eigen::MatrixXd> ColumnBuilder::columns(std::span<const Effect> effects) {
+  std::vector<Eigen::MatrixXd> result(effects.size());
+  std::vector<Job> jobs;
+  for (std::size_t k = 0; k < effects.size(); ++k) {
+    const std::vector<Part> parts = parts_of(effects[k], context_.recordings().size());
+    result[k] = Eigen::MatrixXd::Zero(rows_, static_cast<Eigen::Index>(parts.size()));
+    for (std::size_t c = 0; c < parts.size(); ++c) {
+      jobs.push_back(
+          {effects[k], parts[c].shape, parts[c].session, static_cast<Eigen::Index>(c), result[k]});
     }
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
+  }
+  for (std::size_t begin = 0; begin < jobs.size();) {
+    const std::size_t end = make_ready(jobs, begin);
+    parallel_for(end - begin, [&](std::size_t k) {
+      const Job& job = jobs[begin + k];
+      if (acts_on(job.effect.channel) == ActsOn::views) {
+        add_views(job, job.columns.col(job.column));
+      } else {
+        add_drives(job, job.columns.col(job.column));
+      }
+    });
+    begin = end;
   }
   return result;
 }
 
 std::vector<double> ColumnBuilder::largest(const Effect& effect) {
   const Channel channel = effect.channel;
-  std::vector<Instant> instants{Instant::middle};
-  if (acts_on(channel) == ActsOn::readings) instants = {Instant::end};
-  if (acts_on(channel) == ActsOn::views) instants = view_instants(channel);
   std::vector<double> result;
   for (const Part& part : parts_of(effect, context_.recordings().size())) {
     if (adds_to_rows(channel, part.shape)) {
@@ -268,10 +345,10 @@ std::vector<double> ColumnBuilder::largest(const Effect& effect) {
       continue;
     }
     double most = 0.0;
-    for (const Instant at : instants) {
-      const auto key = std::make_pair(part.shape, at);
-      if (!largest_.contains(key)) static_cast<void>(values(part.shape, at));
-      const std::vector<double>& sessions = largest_.at(key);
+    for (const Instant at : instants_of(channel)) {
+      const Evaluation one(part.shape, at);
+      if (!largest_.contains(one)) evaluate({{one, &effect}});
+      const std::vector<double>& sessions = largest_.at(one);
       for (std::size_t s = 0; s < sessions.size(); ++s) {
         if (part.session < 0 || s == idx(part.session)) most = std::max(most, sessions[s]);
       }

@@ -16,7 +16,8 @@
 
 #include <map>
 #include <memory>
-#include <string>
+#include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -34,9 +35,12 @@ class ColumnBuilder {
   /// its middle. Shares what it can with this one.
   [[nodiscard]] ColumnBuilder coarsened(double seconds) const;
 
-  /// One column per coefficient of the effect, its rows in the order of the problem's
+  /// Of each effect one column per coefficient, its rows in the order of the problem's
   /// measurements. Throws std::invalid_argument like effect_columns.
-  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect);
+  [[nodiscard]] std::vector<Eigen::MatrixXd> columns(std::span<const Effect> effects);
+  [[nodiscard]] Eigen::MatrixXd columns(const Effect& effect) {
+    return std::move(columns(std::span(&effect, 1)).front());
+  }
   /// |f| at most, per coefficient.
   [[nodiscard]] std::vector<double> largest(const Effect& effect);
 
@@ -75,19 +79,32 @@ class ColumnBuilder {
     ByView influence = ByView::Zero();  ///< whitened
   };
   using Values = std::vector<std::vector<double>>;  ///< per session
+  /// A shape at the rows, or events, where it is asked for.
+  using Evaluation = std::pair<Shape, ShapeContext::Instant>;
+  /// One column of one effect.
+  struct Job {
+    const Effect& effect;
+    const Shape& shape;
+    int session;  ///< -1: all
+    Eigen::Index column;
+    Eigen::MatrixXd& columns;
+  };
 
   void add_gyro(const RecordingProblem& problem, const Measurement& one, const Matrix4& W);
   /// Of rows joint_ long at most; no longer than a segment.
   void take_training_segments();
   void take_training_segments(Segment& segment);
   [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
-  const Eigen::Matrix4Xd& basis(Channel channel);
-  const Values& values(const Shape& shape, ShapeContext::Instant at);
-  [[nodiscard]] Values evaluated(const Shape& shape, ShapeContext::Instant at);
-  void add_drives(Channel channel, const Shape& shape, int session,
-                  Eigen::Ref<Eigen::VectorXd> column);
-  void add_views(Channel channel, const Shape& shape, int session,
-                 Eigen::Ref<Eigen::VectorXd> column);
+  /// Works out channels and shapes for jobs from `begin` on, as many as may be kept; returns the
+  /// end of these jobs.
+  std::size_t make_ready(const std::vector<Job>& jobs, std::size_t begin);
+  /// Shapes, each with an effect that asks for it.
+  void evaluate(const std::map<Evaluation, const Effect*>& wanted);
+  void make_bases(const std::set<Channel>& wanted);
+  [[nodiscard]] Eigen::Matrix4Xd basis(Channel channel) const;
+  [[nodiscard]] Values evaluated(const Evaluation& one) const;
+  void add_drives(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const;
+  void add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const;
 
   const ShapeContext& context_;
   double joint_ = 0.0;
@@ -99,9 +116,9 @@ class ColumnBuilder {
   std::vector<View> views_;
   std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
-  std::map<std::pair<Shape, ShapeContext::Instant>, Values> values_;
+  std::map<Evaluation, Values> values_;
   /// |f| at most, spikes apart, per session; outlives the values.
-  std::map<std::pair<Shape, ShapeContext::Instant>, std::vector<double>> largest_;
+  std::map<Evaluation, std::vector<double>> largest_;
 };
 
 }  // namespace trussmap

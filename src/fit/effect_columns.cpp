@@ -99,6 +99,10 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   return variables_.emplace(key, made()).first->second;
 }
 
+void ShapeContext::prepare(Instant at) const {
+  for (std::size_t s = 0; s < recordings_.size(); ++s) static_cast<void>(variables(s, at));
+}
+
 std::vector<std::vector<double>> ShapeContext::values(const Shape& shape, Instant at) const {
   std::vector<std::vector<double>> result;
   result.reserve(recordings_.size());
@@ -230,9 +234,13 @@ EffectPattern effect_column(Channel channel, const Shape& shape, int session,
   return make_column(channel, shape, session, context).pattern;
 }
 
+std::size_t coefficient_count(const Effect& effect, std::size_t sessions) {
+  return effect.shape.size() * (effect.per_session ? sessions : 1);
+}
+
 std::vector<double> coefficients_of(const Effect& effect, std::size_t sessions) {
   require_shapes(effect);
-  const std::size_t expected = effect.shape.size() * (effect.per_session ? sessions : 1);
+  const std::size_t expected = coefficient_count(effect, sessions);
   if (effect.coefficients.empty()) return std::vector<double>(expected, 0.0);
   if (effect.coefficients.size() != expected) {
     throw std::invalid_argument(

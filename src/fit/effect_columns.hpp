@@ -54,8 +54,8 @@ struct EffectColumns {
 /// What shapes may speak of, for all sessions.
 class ShapeContext {
  public:
-  /// Keeps references to recordings and paths. Variables are made when first asked for, so that it
-  /// is no object for several threads at once.
+  /// Keeps references to recordings and paths. Variables are made when first asked for: several
+  /// threads may ask for those that prepare has made.
   ShapeContext(const std::vector<Recording>& recordings, const Robot& robot,
                const std::vector<SessionPath>& paths);
 
@@ -64,6 +64,8 @@ class ShapeContext {
   enum class Instant { middle, end, sighting, truth, fix };
   [[nodiscard]] std::vector<std::vector<double>> values(const Shape& shape, Instant at) const;
   [[nodiscard]] const RowVariables& variables(std::size_t session, Instant at) const;
+  /// Makes the variables of all sessions at these instants.
+  void prepare(Instant at) const;
   /// A row's travels, its noise taken out.
   [[nodiscard]] RowTravel travel(std::size_t session, std::size_t row) const;
 
@@ -89,6 +91,9 @@ class ShapeContext {
 
 /// Whether the channel's columns are about a reference by which recordings are laid out.
 [[nodiscard]] bool is_laid_out(Channel channel);
+
+/// One per shape, or per shape and session.
+[[nodiscard]] std::size_t coefficient_count(const Effect& effect, std::size_t sessions);
 
 /// Coefficients of an effect in the model's order, 0 where not yet fitted. Throws
 /// std::invalid_argument where their number is wrong for so many sessions, or there is no shape.

@@ -519,9 +519,8 @@ class Fitter {
 
   /// Neither a coefficient nor the path has moved, from which the columns were made.
   [[nodiscard]] bool settled() const {
-    constexpr double kStill = 1e-6;        // m and rad
-    constexpr double kStillOffset = 1e-2;  // sds of a segment's value
-    if (offset_change_ > kStillOffset) return false;
+    constexpr double kStill = 1e-6;  // m and rad
+    if (offset_change_ > options_.still_offset) return false;
     if (fit_.columns.border.empty() || (only_common() && !reads_compass())) return true;
     return unknown_coefficients(fit_.columns.border).empty() ? moved_ < kStill
                                                              : change_ < still_enough();

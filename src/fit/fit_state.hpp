@@ -41,6 +41,9 @@ struct FitterOptions {
   bool paths = true;  ///< else they are only laid where the model's effects need them
   int max_rounds = 30;
   double still = 1e-6;  ///< change of a coefficient that ends the rounds, in sds
+  /// Change of a segment's value by the noise believed that still goes on, in sds. The rounds end
+  /// by the worst segment of all recordings: fits of some and of all are the same to about this.
+  double still_offset = 1e-2;
   /// Start from this fit of the same recordings (to more or fewer of their measurements).
   const FitState* near = nullptr;
 };

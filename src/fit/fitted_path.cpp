@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fitted_path.hpp"
 
+#include "parallel/parallel_for.hpp"
 #include "recording/row_variables.hpp"
 
 #include <algorithm>
@@ -79,13 +80,19 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
   return noise;
 }
 
-/// Fills the ends of the rows that lie between two nodes.
-void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckoner,
-                  const PoseNode& from, const Pose& at_from, const PoseNode& to, const Pose& at_to,
-                  SessionPath& path) {
+/// A row's end, or that of its part, and what the noise did in it.
+struct FittedRow {
+  std::size_t row = 0;
+  Pose end;
+  Vector2 missing = Vector2::Zero();
+};
+
+/// The rows that lie between two nodes.
+std::vector<FittedRow> rows_between(const Drive& drive, const Robot& robot,
+                                    const Reckoner& reckoner, const PoseNode& from,
+                                    const Pose& at_from, const PoseNode& to, const Pose& at_to) {
   constexpr int kRounds = 3;  // the noise bends the path on which it acts
   std::vector<SegmentRow> rows = segment_rows(drive, from.t, to.t, robot);
-  if (rows.empty()) return;
   const Pose wanted = relative(at_from, at_to);
   std::vector<Vector2> missing(rows.size(), Vector2::Zero());
   for (int round = 0; round < kRounds; ++round) {
@@ -110,15 +117,17 @@ void fill_between(const Drive& drive, const Robot& robot, const Reckoner& reckon
   // What a wheel cannot have done (a slip sideways while standing) is spread evenly.
   const Vector2 left = at_to.position() - pose.position();
   const double left_turn = wrap_angle(at_to.heading - pose.heading);
+  std::vector<FittedRow> result;
+  result.reserve(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double share = static_cast<double>(k + 1) / static_cast<double>(rows.size());
-    Pose& end = path.ends[rows[k].row];
-    end = reached[k];
+    Pose end = reached[k];
     end.x += share * left.x();
     end.y += share * left.y();
     end.heading += share * left_turn;
-    path.missing[rows[k].row] += missing[k];
+    result.push_back({rows[k].row, end, missing[k]});
   }
+  return result;
 }
 
 /// Per row; empty without a gyro.
@@ -177,9 +186,17 @@ std::vector<SessionPath> fitted_paths(const std::vector<Recording>& recordings, 
       pose = compose(pose, reckoner.motion(std::vector<SegmentRow>{row}));
       path.ends[row.row] = pose;
     }
-    for (int k = first[s]; k < last[s]; ++k) {
-      fill_between(drive, robot, reckoner, problem.poses[idx(k)], state.poses[idx(k)],
-                   problem.poses[idx(k + 1)], state.poses[idx(k + 1)], path);
+    std::vector<std::vector<FittedRow>> between(idx(last[s] - first[s]));
+    parallel_for(between.size(), [&](std::size_t j) {
+      const std::size_t k = idx(first[s]) + j;
+      between[j] = rows_between(drive, robot, reckoner, problem.poses[k], state.poses[k],
+                                problem.poses[k + 1], state.poses[k + 1]);
+    });
+    for (const std::vector<FittedRow>& rows : between) {
+      for (const FittedRow& one : rows) {
+        path.ends[one.row] = one.end;
+        path.missing[one.row] += one.missing;
+      }
     }
     pose = state.poses[idx(last[s])];
     for (const SegmentRow& row :

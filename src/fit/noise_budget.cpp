@@ -3,11 +3,13 @@
 #include "effects/channel_physics.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/noise_reml.hpp"
+#include "parallel/parallel_for.hpp"
 #include "trussmap/noise_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 namespace trussmap {
@@ -162,12 +164,17 @@ void add_windows(const Recording& recording, const Robot& robot, double horizon,
 
 std::vector<NoiseBudget> noise_budget(const std::vector<Recording>& recordings, const Model& model,
                                       const std::vector<double>& horizons) {
-  std::vector<NoiseBudget> result;
-  for (const double horizon : horizons) {
+  std::vector<std::optional<NoiseBudget>> budgets(horizons.size());
+  parallel_for(horizons.size(), [&](std::size_t k) {
+    const double horizon = horizons[k];
     if (!(horizon >= 0.0)) throw std::invalid_argument("a horizon has to be 0 s (a leg) or more");
     Budget budget(model);
     for (const Recording& one : recordings) add_windows(one, model.robot, horizon, budget);
-    if (!budget.empty()) result.push_back(budget.take(horizon));
+    if (!budget.empty()) budgets[k] = budget.take(horizon);
+  });
+  std::vector<NoiseBudget> result;
+  for (std::optional<NoiseBudget>& one : budgets) {
+    if (one) result.push_back(std::move(*one));
   }
   return result;
 }

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/front_kernels.hpp"
 
+#include "parallel/parallel_for.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <vector>
 
 // Debian's BLAS and LAPACK, whichever is installed; Fortran's calling convention.
 extern "C" {
@@ -33,6 +36,7 @@ namespace trussmap {
 namespace {
 
 constexpr int kBlock = 4;  // columns at a time
+constexpr int kTile = 256;
 
 using Four = double __attribute__((vector_size(32)));
 
@@ -152,16 +156,53 @@ TRUSSMAP_VERSIONS int eliminate_small(double* panel, int rows, int width, double
   return -1;
 }
 
+/// Tiles of the rest of a front: rows and columns from `begin` on, none across `width`.
+std::vector<int> tile_edges(int begin, int width, int rows) {
+  std::vector<int> edges;
+  for (int k = begin; k < width; k += kTile) edges.push_back(k);
+  for (int k = width; k < rows; k += kTile) edges.push_back(k);
+  edges.push_back(rows);
+  return edges;
+}
+
+/// By tiles, so that several threads may work on a front, from the same tiles for any number of
+/// them.
 int eliminate_large(double* panel, int rows, int width, double* update) {
   const double one = 1.0;
   const double minus = -1.0;
-  int info = 0;
-  dpotrf_("L", &width, panel, &rows, &info);
-  if (info > 0) return info - 1;
   const int height = rows - width;
-  if (height == 0) return -1;
-  dtrsm_("R", "L", "T", "N", &height, &width, &one, panel, &rows, panel + width, &rows);
-  dsyrk_("L", "N", &height, &width, &minus, panel + width, &rows, &one, update, &height);
+  for (int j = 0; j < width; j += kTile) {
+    const int n = std::min(kTile, width - j);
+    double* square = panel + at(j, j, rows);
+    int info = 0;
+    dpotrf_("L", &n, square, &rows, &info);
+    if (info > 0) return j + info - 1;
+    const std::vector<int> edges = tile_edges(j + n, width, rows);
+    const std::size_t tiles = edges.size() - 1;
+    const auto first = [&](std::size_t tile) { return panel + at(edges[tile], j, rows); };
+    const auto length = [&](std::size_t tile) { return edges[tile + 1] - edges[tile]; };
+    parallel_for(tiles, [&](std::size_t tile) {
+      const int m = length(tile);
+      dtrsm_("R", "L", "T", "N", &m, &n, &one, square, &rows, first(tile), &rows);
+    });
+    parallel_for(tiles * (tiles + 1) / 2, [&](std::size_t pair) {
+      std::size_t row = 0;  // the pair's tiles, column <= row
+      while ((row + 1) * (row + 2) / 2 <= pair) ++row;
+      const std::size_t column = pair - row * (row + 1) / 2;
+      const bool in_panel = edges[column] < width;
+      const int leading = in_panel ? rows : height;
+      double* to = in_panel ? panel + at(edges[row], edges[column], rows)
+                            : update + at(edges[row] - width, edges[column] - width, height);
+      const int m = length(row);
+      const int k = length(column);
+      if (row == column) {
+        dsyrk_("L", "N", &m, &n, &minus, first(row), &rows, &one, to, &leading);
+      } else {
+        dgemm_("N", "T", &m, &k, &n, &minus, first(row), &rows, first(column), &rows, &one, to,
+               &leading);
+      }
+    });
+  }
   return -1;
 }
 

@@ -4,6 +4,8 @@
 
 #include "geometry/index.hpp"
 #include "linalg/front_kernels.hpp"
+#include "parallel/parallel_for.hpp"
+#include "trussmap/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +17,8 @@ namespace trussmap {
 namespace {
 
 constexpr Eigen::Index kColumns = 32;  // solved at once: a front's rows stay in the cache
+constexpr double kWorthThreads = 1e7;  // multiplications, some milliseconds
+constexpr double kRangesPerThread = 4.0;
 
 }  // namespace
 
@@ -26,11 +30,10 @@ FrontalCholesky::FrontalCholesky(const FrontTree& tree, const std::vector<int>& 
     unknowns += size;
   }
   node_begin_.push_back(unknowns);
-  where_.assign(idx(unknowns), 0);
   number_rows(tree);
   list_children();
   find_runs();
-  place_updates();
+  add_up_work();
 }
 
 void FrontalCholesky::number_rows(const FrontTree& tree) {
@@ -50,10 +53,6 @@ void FrontalCholesky::number_rows(const FrontTree& tree) {
     stored_ += area(part.rows, part.width);
     most_rows_ = std::max(most_rows_, part.rows);
     parts_.push_back(part);
-  }
-  for (std::size_t f = parts_.size(); f-- > 0;) {
-    const int parent = parts_[f].parent;
-    parts_[f].depth = parent < 0 ? 0 : parts_[idx(parent)].depth + 1;
   }
 }
 
@@ -75,10 +74,11 @@ void FrontalCholesky::list_children() {
 }
 
 void FrontalCholesky::find_runs() {
+  std::vector<int> where(idx(node_begin_.back()));  // row of the front that an unknown stands in
   for (std::size_t f = 0; f < parts_.size(); ++f) {
     const Part& front = parts_[f];
     for (int r = 0; r < front.height(); ++r) {
-      where_[idx(scalars_[idx(front.scalars_begin + r)])] = front.width + r;
+      where[idx(scalars_[idx(front.scalars_begin + r)])] = front.width + r;
     }
     for (int k = front.children_begin; k < front.children_end; ++k) {
       Part& child = parts_[idx(children_[idx(k)])];
@@ -86,7 +86,7 @@ void FrontalCholesky::find_runs() {
       for (int r = 0; r < child.height(); ++r) {
         const int unknown = scalars_[idx(child.scalars_begin + r)];
         const int own = unknown - front.unknown;
-        const int to = own < front.width ? own : where_[idx(unknown)];
+        const int to = own < front.width ? own : where[idx(unknown)];
         if (r > 0 && runs_.back().to + runs_.back().length == to) {
           ++runs_.back().length;
         } else {
@@ -98,40 +98,83 @@ void FrontalCholesky::find_runs() {
   }
 }
 
-void FrontalCholesky::place_updates() {
-  std::array<std::size_t, 2> top{};
-  for (Part& front : parts_) {
-    const std::size_t own = idx(front.depth % 2);
-    front.update = top[own];
-    top[own] += area(front.height(), front.height());
-    waiting_size_[own] = std::max(waiting_size_[own], top[own]);
-    if (front.children_end > front.children_begin) {
-      top[1 - own] = parts_[idx(children_[idx(front.children_begin)])].update;
+void FrontalCholesky::add_up_work() {
+  for (std::size_t f = 0; f < parts_.size(); ++f) {
+    Part& front = parts_[f];
+    front.subtree_begin = static_cast<int>(f);
+    for (int c = 0; c < front.width; ++c) front.work += 0.5 * (front.rows - c) * (front.rows - c);
+    for (int k = front.children_begin; k < front.children_end; ++k) {
+      const Part& child = parts_[idx(children_[idx(k)])];
+      front.work += child.work;
+      front.subtree_begin = std::min(front.subtree_begin, child.subtree_begin);
     }
   }
 }
 
-void FrontalCholesky::factorise(const SparseMatrix& lower) {
-  if (!panels_) panels_ = std::make_unique_for_overwrite<double[]>(stored_);
-  for (const std::size_t k : {0U, 1U}) {
-    waiting_[k] = std::make_unique_for_overwrite<double[]>(waiting_size_[k]);
-  }
+/// Small enough that threads which are done early find another, neighbours together.
+std::vector<FrontalCholesky::FrontRange> FrontalCholesky::independent_ranges() const {
+  double all = 0.0;
   for (const Part& front : parts_) {
-    assemble(front, lower);
-    const int failed =
-        eliminate(panels_.get() + front.panel, front.rows, front.width, update_of(front));
-    if (failed >= 0) throw NotPositiveDefinite(front.unknown + failed);
+    if (front.parent < 0) all += front.work;
   }
-  for (auto& stack : waiting_) stack.reset();
+  if (!is_parallel() || all < kWorthThreads) return {{0, parts_.size()}};
+  const double most = all / kRangesPerThread / threads();
+  std::vector<FrontRange> ranges;
+  double work = 0.0;  // of the last range
+  for (std::size_t f = 0; f < parts_.size(); ++f) {
+    const Part& front = parts_[f];
+    if (front.work > most || (front.parent >= 0 && parts_[idx(front.parent)].work <= most))
+      continue;
+    const std::size_t begin = idx(front.subtree_begin);
+    if (!ranges.empty() && ranges.back().end == begin && work + front.work <= most) {
+      ranges.back().end = f + 1;
+      work += front.work;
+    } else {
+      ranges.push_back({begin, f + 1});
+      work = front.work;
+    }
+  }
+  return ranges;
 }
 
-void FrontalCholesky::assemble(const Part& front, const SparseMatrix& lower) {
+void FrontalCholesky::factorise(const SparseMatrix& lower) {
+  if (!panels_) panels_ = std::make_unique_for_overwrite<double[]>(stored_);
+  std::vector<Update> waiting(parts_.size());
+  const std::vector<FrontRange> ranges = independent_ranges();
+  parallel_for(ranges.size(), [&](std::size_t k) { eliminate_range(ranges[k], lower, waiting); });
+  // What is above them, one front after the other, its tiles at the same time.
+  std::size_t next = 0;
+  for (const FrontRange& range : ranges) {
+    if (range.begin > next) eliminate_range({next, range.begin}, lower, waiting);
+    next = range.end;
+  }
+  if (next < parts_.size()) eliminate_range({next, parts_.size()}, lower, waiting);
+}
+
+void FrontalCholesky::eliminate_range(const FrontRange& range, const SparseMatrix& lower,
+                                      std::vector<Update>& waiting) {
+  const auto where = std::make_unique_for_overwrite<int[]>(idx(node_begin_.back()));
+  for (std::size_t f = range.begin; f < range.end; ++f) {
+    const Part& front = parts_[f];
+    waiting[f] = std::make_unique_for_overwrite<double[]>(area(front.height(), front.height()));
+    assemble(front, lower, waiting, where.get(), waiting[f].get());
+    const int failed =
+        eliminate(panels_.get() + front.panel, front.rows, front.width, waiting[f].get());
+    if (failed >= 0) throw NotPositiveDefinite(front.unknown + failed);
+    for (int k = front.children_begin; k < front.children_end; ++k) {
+      waiting[idx(children_[idx(k)])].reset();
+    }
+  }
+}
+
+/// `where`: room for the row of the front that each unknown stands in.
+void FrontalCholesky::assemble(const Part& front, const SparseMatrix& lower,
+                               const std::vector<Update>& waiting, int* where, double* update) {
   double* panel = panels_.get() + front.panel;
   std::fill_n(panel, area(front.rows, front.width), 0.0);
-  double* update = update_of(front);
   std::fill_n(update, area(front.height(), front.height()), 0.0);
   for (int r = 0; r < front.height(); ++r) {
-    where_[idx(scalars_[idx(front.scalars_begin + r)])] = front.width + r;
+    where[scalars_[idx(front.scalars_begin + r)]] = front.width + r;
   }
   for (int c = 0; c < front.width; ++c) {
     const int column = front.unknown + c;
@@ -139,18 +182,18 @@ void FrontalCholesky::assemble(const Part& front, const SparseMatrix& lower) {
     for (int k = lower.outerIndexPtr()[column]; k < lower.outerIndexPtr()[column + 1]; ++k) {
       const int row = lower.innerIndexPtr()[k];
       const int own = row - front.unknown;
-      to[own < front.width ? own : where_[idx(row)]] = lower.valuePtr()[k];
+      to[own < front.width ? own : where[row]] = lower.valuePtr()[k];
     }
   }
   for (int k = front.children_begin; k < front.children_end; ++k) {
-    add_update(parts_[idx(children_[idx(k)])], front);
+    const std::size_t child = idx(children_[idx(k)]);
+    add_update(parts_[child], waiting[child].get(), front, update);
   }
 }
 
-void FrontalCholesky::add_update(const Part& child, const Part& front) {
-  const double* from = update_of(child);
+void FrontalCholesky::add_update(const Part& child, const double* from, const Part& front,
+                                 double* update) {
   double* panel = panels_.get() + front.panel;
-  double* update = update_of(front);
   const Run* const end = runs_.data() + child.runs_end;
   for (const Run* columns = runs_.data() + child.runs_begin; columns != end; ++columns) {
     for (int k = 0; k < columns->length; ++k) {
@@ -193,9 +236,10 @@ void FrontalCholesky::solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 void FrontalCholesky::solve_columns(Eigen::MatrixXd& x) const {
-  for (Eigen::Index first = 0; first < x.cols(); first += kColumns) {
+  parallel_for(idx((x.cols() + kColumns - 1) / kColumns), [&](std::size_t k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * kColumns;
     solve_some(x.middleCols(first, std::min(kColumns, x.cols() - first)));
-  }
+  });
 }
 
 /// Row by row, so that a front's rows are copied whole; filled up with columns of zeros.

@@ -17,13 +17,15 @@
 // and Z_22 is found in the parent's front (Takahashi, Fagan & Chin, 1973; by fronts: Campbell &
 // Davis, "Computing the sparse inverse subset: an inverse multifrontal approach", 1995).
 //
-// Memory: L, and one update per front on a path from the root.
+// Subtrees and the tiles of large fronts are worked on by several threads (trussmap/threads.hpp);
+// each number comes from the same operations in the same order, whoever does them.
+//
+// Memory: L, and the updates that wait for their parents.
 #pragma once
 
 #include "linalg/front_tree.hpp"
 #include "linalg/sparse_cholesky.hpp"
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -71,15 +73,20 @@ class FrontalCholesky {
  private:
   friend class FrontalInverse;
 
+  using Update = std::unique_ptr<double[]>;
+  struct FrontRange {
+    std::size_t begin, end;
+  };
   struct Run {  ///< consecutive rows that are consecutive in the parent's front as well
     int from, to, length;
   };
   struct Part {
-    std::size_t panel;   ///< where the front's columns are stored
-    std::size_t update;  ///< where its update waits for its parent
-    int unknown;         ///< first unknown eliminated
+    std::size_t panel;  ///< where the front's columns are stored
+    int unknown;        ///< first unknown eliminated
     int rows, width;
-    int parent, depth;
+    int parent;
+    int subtree_begin;                 ///< first front of those below it
+    double work;                       ///< multiplications of it and of those below it
     int children_begin, children_end;  ///< in children_
     int runs_begin, runs_end;          ///< in runs_: its rows in the parent's front
     int scalars_begin;                 ///< in scalars_: unknowns of the rows that remain
@@ -91,31 +98,28 @@ class FrontalCholesky {
   [[nodiscard]] std::size_t front_of(int unknown) const;
   void list_children();
   void find_runs();
-  void place_updates();
-  void assemble(const Part& front, const SparseMatrix& lower);
-  void add_update(const Part& child, const Part& front);
+  void add_up_work();
+  /// Ranges of fronts, whole subtrees, that may be eliminated at the same time.
+  [[nodiscard]] std::vector<FrontRange> independent_ranges() const;
+  void eliminate_range(const FrontRange& range, const SparseMatrix& lower,
+                       std::vector<Update>& waiting);
+  void assemble(const Part& front, const SparseMatrix& lower, const std::vector<Update>& waiting,
+                int* where, double* update);
+  void add_update(const Part& child, const double* from, const Part& front, double* update);
   void copy_rows(const Part& front, const double* parent, int above, double* inverse) const;
   /// From the root down: `visit` gets each front and its whole inverse, rows square.
   template <typename Visit>
   void descend(const Visit& visit) const;
   void solve_some(Eigen::Ref<Eigen::MatrixXd> x) const;
-  [[nodiscard]] double* update_of(const Part& front) {
-    return waiting_[static_cast<std::size_t>(front.depth % 2)].get() + front.update;
-  }
 
   std::vector<Part> parts_;
   std::vector<int> children_;
   std::vector<Run> runs_;
   std::vector<int> scalars_;
   std::vector<int> node_begin_;  ///< per node its first unknown, and one past the last
-  std::vector<int> where_;       ///< row of the present front that an unknown stands in
   std::size_t stored_ = 0;
   int most_rows_ = 0;
   std::unique_ptr<double[]> panels_;
-  // Updates of even and of odd depths: two stacks, so that a front's own never lies between those
-  // of its children.
-  std::array<std::unique_ptr<double[]>, 2> waiting_;
-  std::array<std::size_t, 2> waiting_size_{};
 };
 
 /// Entries of A^-1, A in the order of the front tree.

@@ -78,6 +78,12 @@ Statement& Statement::bind(int place, const Matrix2& C) {
   return bind(place, C(0, 0)).bind(place + 1, 0.5 * (C(0, 1) + C(1, 0))).bind(place + 2, C(1, 1));
 }
 
+Statement& Statement::bind_bytes(int place, const std::string& bytes) {
+  check(sqlite3_bind_blob64(statement_.get(), place + 1, bytes.data(), bytes.size(),
+                            SQLITE_TRANSIENT));
+  return *this;
+}
+
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code != SQLITE_ROW && code != SQLITE_DONE) {
@@ -111,6 +117,14 @@ std::string Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
   const int size = sqlite3_column_bytes(statement_.get(), column);
   return text == nullptr ? std::string() : std::string(text, static_cast<std::size_t>(size));
+}
+
+std::string Statement::bytes(int column) const {
+  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  return bytes == nullptr
+             ? std::string()
+             : std::string(static_cast<const char*>(bytes), static_cast<std::size_t>(size));
 }
 
 bool Statement::is_null(int column) const {

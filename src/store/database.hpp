@@ -41,6 +41,8 @@ class Statement {
   Statement& bind(int place, const Vector2& vector);  ///< two places: x, y
   Statement& bind(int place, const Matrix2& C);       ///< three, of a symmetric one: xx, xy, yy
 
+  Statement& bind_bytes(int place, const std::string& bytes);
+
   /// The next row; false: there is none.
   bool step();
 
@@ -51,6 +53,7 @@ class Statement {
   [[nodiscard]] double real(int column) const;
   [[nodiscard]] std::int64_t integer(int column) const;
   [[nodiscard]] std::string text(int column) const;
+  [[nodiscard]] std::string bytes(int column) const;
   [[nodiscard]] bool is_null(int column) const;
 
  private:

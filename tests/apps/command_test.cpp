@@ -241,11 +241,11 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
 TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
-  EXPECT_EQ(
-      ran.output,
-      "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
-      "calibrate, check, "
-      "compare, convert, diagnose, discover, fit, merge, noise, reveal, simulate, tour, umbmark\n");
+  EXPECT_EQ(ran.output,
+            "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
+            "calibrate, check, "
+            "compare, convert, diagnose, discover, fit, fleet, merge, noise, reveal, simulate, "
+            "tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

@@ -4,6 +4,8 @@
 // What public headers say of threads: many at once give what one gives, to the bit. ThreadSanitizer
 // (make tsan) sees what luck hides.
 #include "estimation/simulated_recordings.hpp"
+#include "linalg/block_system.hpp"
+#include "linalg/dissection.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/catalogue.hpp"
@@ -17,6 +19,7 @@
 #include "trussmap/map_store.hpp"
 #include "trussmap/pose_graph.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/threads.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -26,6 +29,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace trussmap {
@@ -109,6 +113,88 @@ TEST(Threads, DiagnoseAtOnce) {
     const Diagnosis result = diagnose({world.recording}, Model{});
     return result.missing + " " + numbers({result.chi2, result.p_value});
   });
+}
+
+/// What it gives on one thread and on several.
+void expect_same_on_several(const std::function<std::string()>& work) {
+  const std::string alone = work();
+  EXPECT_FALSE(alone.empty());
+  for (const int count : {2, 3, 8}) {
+    set_threads(count);
+    EXPECT_EQ(work(), alone) << count << " threads";
+  }
+  set_threads(1);
+}
+
+TEST(Threads, ThatACallWorksOnDoNotChangeADigit) {
+  const World world;
+  expect_same_on_several([&] {
+    const ModelFit fit = fit_model({world.recording}, world.model);
+    std::string text = fmt::format("{:a} ", fit.chi2);
+    for (const FittedLandmark& one : fit.landmarks) text += fmt::format("{:a} ", one.position.x());
+    for (const double one : coefficients_of(fit)) text += fmt::format("{:a} ", one);
+    return text;
+  });
+  expect_same_on_several([&] {
+    const Diagnosis result = diagnose({world.recording}, Model{});
+    std::string text = result.missing;
+    for (const Finding& one : result.findings) text += fmt::format(" {:a}", one.p_value);
+    for (const NoiseTest& one : result.noise) text += fmt::format(" {:a}", one.score);
+    return text;
+  });
+}
+
+/// Large enough for tiles, and for subtrees of their own.
+TEST(Threads, FactoriseAGridToTheSameDigits) {
+#ifdef __SANITIZE_THREAD__
+  constexpr int kSide = 60;
+#else
+  constexpr int kSide = 200;
+#endif
+  std::vector<Vector2> positions;
+  std::vector<NodePair> pairs;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const int node = row * kSide + column;
+      positions.emplace_back(column, row);
+      if (column > 0) pairs.push_back({node - 1, node});
+      if (row > 0) pairs.push_back({node - kSide, node});
+    }
+  }
+  const std::vector<int> sizes(positions.size(), 2);
+  BlockSystem K(sizes, pairs, dissection_order(positions, pairs), Kernel::frontal);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Matrix2 stiffness;
+    stiffness << 2.0 + 0.1 * static_cast<double>(k % 7), 0.3, 0.3, 1.0;
+    K.add_diagonal(pairs[k][0], stiffness);
+    K.add_diagonal(pairs[k][1], stiffness);
+    K.add_coupling(static_cast<int>(k), Matrix2(-stiffness));
+  }
+  K.add_diagonal(0, Matrix2(Matrix2::Identity()));
+  const Eigen::MatrixXd b = Eigen::MatrixXd::Random(K.unknowns(), 70);
+  const auto solved = [&] {
+    K.factorise();
+    return Eigen::MatrixXd(K.solve(b));
+  };
+  const Eigen::MatrixXd alone = solved();
+  for (const int count : {2, 3, 8}) {
+    set_threads(count);
+    EXPECT_TRUE((solved().array() == alone.array()).all()) << count << " threads";
+  }
+  // Of two that break down the first in the order of elimination is named, as by one thread.
+  K.set_diagonal(-K.diagonal());
+  const auto broken_at = [&] {
+    try {
+      K.factorise();
+    } catch (const NotPositiveDefinite& failure) {
+      return failure.column();
+    }
+    return -2;
+  };
+  const int on_several = broken_at();
+  set_threads(1);
+  EXPECT_EQ(on_several, broken_at());
+  EXPECT_GE(on_several, 0);
 }
 
 TEST(Threads, ReadOneMapAndGrowTheirOwn) {

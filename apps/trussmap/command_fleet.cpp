@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap fleet: what many robots have in common, and which differ.
+#include "commands.hpp"
+#include "json_values.hpp"
+#include "model_recordings.hpp"
+#include "page_runtime.hpp"
+#include "terminal.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/fleet.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
+#include "trussmap/table.hpp"
+#include "trussmap/wording.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct AddCommand {
+  std::string store;
+  std::string robot;
+  ModelRecordingsOptions input;
+  std::string date;
+  std::vector<std::string> metadata;
+  bool replace = false;
+};
+
+struct MergeCommand {
+  std::string out;
+  std::vector<std::string> shards;
+};
+
+struct ReportCommand {
+  std::string store;
+  std::string json;
+  double level = kSignificance;
+  PageOptions page;
+};
+
+std::map<std::string, std::string> metadata_of(const std::vector<std::string>& pairs) {
+  std::map<std::string, std::string> result;
+  for (const std::string& pair : pairs) {
+    const std::size_t at = pair.find('=');
+    if (at == std::string::npos || at == 0 || at + 1 == pair.size()) {
+      throw UsageError(fmt::format("--meta {}: expected KEY=VALUE", pair));
+    }
+    if (!result.emplace(pair.substr(0, at), pair.substr(at + 1)).second) {
+      throw UsageError(fmt::format("--meta {}: is given twice", pair.substr(0, at)));
+    }
+  }
+  return result;
+}
+
+std::string today() {
+  return fmt::format(
+      "{:%Y-%m-%d}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
+void run_add(const AddCommand& options) {
+  if (options.robot.empty()) throw UsageError("ROBOT is empty, expected a name");
+  const std::string date = options.date.empty() ? today() : options.date;
+  static_cast<void>(day_number(date));
+  const std::map<std::string, std::string> metadata = metadata_of(options.metadata);
+  const ModelRecordings input = read_model_recordings(options.input);
+  FleetRow row =
+      fleet_row(options.robot, date, input.recordings, input.model, format_model(input.model),
+                fit_options(options.input), options.input.legs);
+  row.metadata = metadata;
+  add_to_fleet(options.store, row, options.replace);
+  fmt::print("{}: robot {} on {}, chi2 {:.1f} ({} dof), {} coefficients\n",
+             escaped_controls(options.store), escaped_controls(row.robot), row.date, row.chi2,
+             row.dof, row.columns.size());
+  print_notes(input);
+}
+
+void run_merge(const MergeCommand& options) {
+  const std::size_t rows =
+      merge_fleets(options.out, {options.shards.begin(), options.shards.end()});
+  fmt::print("{}: {} {}\n", escaped_controls(options.out), rows,
+             rows == 1 ? "day of a robot" : "days of robots");
+}
+
+ordered_json json(const FleetRobot& one) {
+  return {{"robot", one.robot},
+          {"days", one.days},
+          {"value", one.value},
+          {"sd", one.sd},
+          {"shrunken", one.shrunken},
+          {"sd_shrunken", one.shrunken_sd},
+          {"differs", one.differs},
+          {"p_differs", one.p_differs},
+          {"drifts", one.drifts},
+          {"slope_per_day", one.has_slope ? ordered_json(one.slope) : ordered_json(nullptr)},
+          {"sd_slope_per_day", one.has_slope ? ordered_json(one.slope_sd) : ordered_json(nullptr)},
+          {"p_drifts", one.p_drifts}};
+}
+
+ordered_json json(const FleetCoefficient& one) {
+  ordered_json result{
+      {"shape", one.shape},     {"robots", one.robots},       {"mean", one.mean},
+      {"sd", one.sd},           {"p_common", one.p_common},   {"common", one.common},
+      {"tau", one.tau},         {"p_tau", one.p_tau},         {"Q", one.Q},
+      {"Q_dof", one.Q_dof},     {"slope_per_day", one.slope}, {"sd_slope_per_day", one.slope_sd},
+      {"p_slope", one.p_slope}, {"all_drift", one.all_drift}};
+  ordered_json keys = ordered_json::array();
+  for (const FleetKey& key : one.goes_with) {
+    ordered_json groups = ordered_json::array();
+    for (const FleetGroup& group : key.groups) {
+      groups.push_back({{"value", group.value},
+                        {"robots", group.robots},
+                        {"mean", group.mean},
+                        {"sd", group.sd},
+                        {"p_value", group.p_value}});
+    }
+    keys.push_back({{"key", key.key},
+                    {"p_adjusted", key.p_adjusted},
+                    {"groups", groups},
+                    {"same_as", key.same_as}});
+  }
+  result["goes_with"] = keys;
+  ordered_json robots = ordered_json::array();
+  for (const FleetRobot& robot : one.members) robots.push_back(json(robot));
+  result["each"] = robots;
+  return result;
+}
+
+ordered_json json(const FleetReport& report) {
+  ordered_json result{{"robots", report.robots}, {"days", report.days},   {"chi2", report.chi2},
+                      {"dof", report.dof},       {"level", report.level}, {"keys", report.keys}};
+  ordered_json findings = ordered_json::array();
+  for (const FleetFinding& one : report.findings) {
+    ordered_json coefficients = ordered_json::array();
+    for (const FleetCoefficient& each : one.coefficients) coefficients.push_back(json(each));
+    ordered_json alike = ordered_json::array();
+    for (const FleetLookAlike& rival : one.look_alikes) {
+      alike.push_back({{"effect", rival.effect}, {"cosine", rival.cosine}});
+    }
+    findings.push_back({{"effect", one.effect},
+                        {"channel", one.channel},
+                        {"of_model", one.of_model},
+                        {"p_adjusted", one.p_adjusted},
+                        {"coefficients", coefficients},
+                        {"indistinguishable_from", alike}});
+  }
+  result["findings"] = findings;
+  ordered_json tests = ordered_json::array();
+  for (const PooledTest& one : report.tests) {
+    tests.push_back({{"effect", one.effect},
+                     {"channel", one.channel},
+                     {"shape", one.shape},
+                     {"score", one.score},
+                     {"dof", one.dof},
+                     {"p_value", one.p_value},
+                     {"coefficients", numbers_or_null(one.coefficients)},
+                     {"sd", numbers_or_null(one.sd)}});
+  }
+  result["pooled_tests"] = tests;
+  result["heldout_rms_m"] = report.held_out_rms;
+  result["notes"] = report.notes;
+  return result;
+}
+
+void run_report(const ReportCommand& options) {
+  const FleetReport report = fleet_report(read_fleet(options.store), options.level);
+  Files files;
+  if (!options.json.empty()) files.emplace_back(options.json, json(report).dump(2) + "\n");
+  if (options.page.wanted()) add_page(files, fleet_page(report, options.store), options.page);
+  files.write();
+  const std::vector<std::string> lines = in_words(report);
+  for (const std::string& line : lines) fmt::print("{}\n", escaped_controls(line));
+  for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
+}
+
+void setup_fleet_add(const Command& fleet) {
+  auto options = std::make_shared<AddCommand>();
+  const Command command = fleet.add_subcommand("add", "Add a robot's day to a fleet's store");
+  command.add_option("FLEET", options->store, "Store of the fleet, made where it is not there")
+      .required()
+      .type_name("FILE");
+  command.add_option("ROBOT", options->robot, "The robot's name").required().type_name("NAME");
+  add_fitted_recordings(command, options->input);
+  command.add_option("--date", options->date, "Its day (YYYY-MM-DD; else today, UTC)")
+      .type_name("DATE");
+  command
+      .add_option("--meta", options->metadata,
+                  "What effects may go with (tyre, floor, software); service=DATE: days of drift "
+                  "count from there")
+      .one_value_each()
+      .type_name("KEY=VALUE");
+  command.add_flag("--replace", options->replace,
+                   "Replace that robot's day where it is there already");
+  command.callback([options] { run_add(*options); });
+}
+
+void setup_fleet_merge(const Command& fleet) {
+  auto options = std::make_shared<MergeCommand>();
+  const Command command = fleet.add_subcommand("merge", "Add all days of other stores to a store");
+  command.add_option("FLEET", options->out, "Store of the fleet, made where it is not there")
+      .required()
+      .type_name("FILE");
+  command.add_option("SHARD", options->shards, "Stores whose days it gets, all or none")
+      .required()
+      .type_name("FILE");
+  command.callback([options] { run_merge(*options); });
+}
+
+void setup_fleet_report(const Command& fleet) {
+  auto options = std::make_shared<ReportCommand>();
+  const Command command =
+      fleet.add_subcommand("report", "Say what robots have in common, and which differ or drift");
+  command.add_option("FLEET", options->store, "Store of the fleet").required().type_name("FILE");
+  command.add_option("--json", options->json, "Write every figure as JSON").type_name("FILE");
+  command.add_option("--level", options->level, "Level of significance of all that is said")
+      .check(between(1e-6, 0.5))
+      .capture_default_str();
+  add_html_option(command, options->page);
+  add_plots_option(command, options->page);
+  command.callback([options] { run_report(*options); });
+}
+
+}  // namespace
+
+void setup_fleet(const Command& app) {
+  const Command command =
+      app.add_subcommand("fleet", "Pool many robots: what is common, who differs, who drifts");
+  setup_fleet_add(command);
+  setup_fleet_merge(command);
+  setup_fleet_report(command);
+}
+
+}  // namespace trussmap::app
