@@ -105,6 +105,9 @@ struct ModelFit {
 // out of it stays out. Of these rows the result is the least squares solution, of all sessions at
 // once, to the tolerance. fit_model of all recordings lays the rows on the map of all, and so
 // differs by a share of the map's uncertainty (docs/methods.md).
+//
+// The frame is the first session's, as that of fit_model, but that where nothing measures a
+// direction one coordinate of a landmark is held instead of a heading.
 
 struct SummarisedFitOptions {
   FitOptions fit;
@@ -115,32 +118,34 @@ struct SummarisedFitOptions {
 class SummarisedFit {
  public:
   /// Throws std::invalid_argument where the model has what cannot be summarised: an effect per
-  /// session or of the variable `session`, a delay, steering.
+  /// session or of the variable `session`, a delay, steering, noise with heavy tails; or where the
+  /// tolerance is not positive.
   explicit SummarisedFit(const Model& model, const SummarisedFitOptions& options = {});
   ~SummarisedFit();
   SummarisedFit(SummarisedFit&&) noexcept;
   SummarisedFit& operator=(SummarisedFit&&) noexcept;
 
-  /// Takes a session in, or where it throws, not at all. The first one lays the map's frame, as
-  /// fit_model does, but that where nothing measures a direction one coordinate of a landmark is
-  /// held instead of a heading; and it has to show every coefficient. Throws as fit_model does,
-  /// InputError where no landmark was sighted, and SolveError
-  /// where a further session shares nothing with the map, or brings a compass, a survey, truth or
-  /// fixes to a map whose first session had no such frame.
+  /// Takes a session in, or where it throws leaves all as it was. The first one lays the frame, and
+  /// has to show every coefficient. Throws as fit_model does, InputError where no landmark was
+  /// sighted, SolveError where a further session is not tied to the map, or brings what gives a
+  /// position or a direction (truth, fixes, compass, surveyed landmarks) to a map whose first
+  /// session had none.
   void add(const Recording& recording);
 
   [[nodiscard]] int sessions() const;
   [[nodiscard]] Model model() const;  ///< with the coefficients found
   [[nodiscard]] std::vector<EffectEstimate> effects() const;
-  /// In order of first sighting; covariances by the whole second derivatives, noise included.
+  /// In order of first sighting; covariances by chi^2's whole second derivatives.
   [[nodiscard]] std::vector<FittedLandmark> landmarks() const;
-  [[nodiscard]] double chi2() const;
-  [[nodiscard]] int dof() const;
-  /// How many older sessions the last add took anew.
+  [[nodiscard]] double chi2() const;  ///< of all sessions
+  [[nodiscard]] int dof() const;      ///< measured values less unknowns, as ModelFit's
+  /// Sightings, fixes and loops that the gate left out, session by session.
+  [[nodiscard]] const std::vector<std::string>& left_out() const;
+  /// How often the last add took an older session anew.
   [[nodiscard]] int taken_anew() const;
-  /// How far the result is from the least squares solution, by every session's exact gradient: for
-  /// checks, it costs a step of all sessions.
-  [[nodiscard]] double exact_error() const;
+  /// How far the result is from the least squares solution, m, rad, units of coefficients, by every
+  /// session's exact gradient: for checks, it costs a step of all sessions.
+  [[nodiscard]] double exact_error();
 
  private:
   class Impl;

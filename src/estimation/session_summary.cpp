@@ -3,6 +3,7 @@
 #include "estimation/session_summary.hpp"
 
 #include "estimation/noise_states.hpp"
+#include "estimation/recording_descent.hpp"
 #include "trussmap/error.hpp"
 
 #include <limits>
@@ -19,17 +20,28 @@ constexpr double kVeryStill = 1e-9;
 constexpr double kSlack = 1e-9;  // rad: slopes by the coefficients are not older than that
 constexpr int kMostSteps = 50;
 
-bool knows_map(MeasurementKind kind) {
-  return kind == MeasurementKind::survey || kind == MeasurementKind::survey_heading;
+bool is_survey(const Measurement& one) {
+  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::survey_heading;
 }
 
 void require_one_session(const SessionRows& rows) {
   bool good = rows.problem.sessions.size() == 1;
-  for (const Measurement& one : rows.problem.measurements) good = good && !knows_map(one.kind);
+  for (const Measurement& one : rows.problem.measurements) good = good && !is_survey(one);
   if (!good) throw std::invalid_argument("a summary is of one session, and of no survey");
 }
 
 }  // namespace
+
+void drop_survey(SessionRows& rows) {
+  std::vector<Measurement>& all = rows.problem.measurements;
+  while (!all.empty() && is_survey(all.back())) all.pop_back();
+  const auto shorten = [&](auto& per_measurement) {
+    if (!per_measurement.empty()) per_measurement.resize(all.size());
+  };
+  shorten(rows.weights);
+  shorten(rows.problem.noise_terms);
+  shorten(rows.problem.within);
+}
 
 /// Second derivatives and gradient, between own unknowns p and shared ones u.
 struct SessionSummary::Coupled {
@@ -55,6 +67,7 @@ SessionSummary::SessionSummary(SessionRows rows) {
   system_->set_slack(kSlack);
   if (!rows_->weights.empty()) system_->set_weights(rows_->weights);
   coefficients_ = static_cast<int>(unknown_coefficients(rows_->border).size());
+  taken_.state = std::move(rows_->state);
 }
 
 int SessionSummary::shared() const {
@@ -165,10 +178,10 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   const Eigen::Index all = touched.own_width + touched.width;
   if (plain) return whole.topLeftCorner(all, all);  // of `to` what there is of it comes first
   Eigen::MatrixXd result = F.transpose() * whole * F;
-  if (one.kind == MeasurementKind::segment && coefficients_ > 0) {
+  if (one.kind == MeasurementKind::segment && taken_.bends != nullptr) {
     for (std::size_t row = 0; row < SegmentBends().size(); ++row) {
       result.bottomRightCorner(coefficients_, coefficients_) -=
-          weighted[static_cast<Eigen::Index>(row)] * bends_[k][row];
+          weighted[static_cast<Eigen::Index>(row)] * (*taken_.bends)[k][row];
     }
   }
   return result;
@@ -178,21 +191,22 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
 void SessionSummary::bend(const Eigen::VectorXd& offsets) {
   constexpr double kBent = 1e-4;  // of coefficients
   if (coefficients_ == 0) return;
-  if (bent_at_.size() > 0 && (offsets - bent_at_).cwiseAbs().maxCoeff() < kBent) return;
-  bends_.resize(problem().measurements.size());
-  for (std::size_t k = 0; k < bends_.size(); ++k) {
+  const bool before = taken_.bends != nullptr;
+  if (before && (offsets - taken_.bent_at).cwiseAbs().maxCoeff() < kBent) return;
+  std::vector<SegmentBends> bends(problem().measurements.size());
+  for (std::size_t k = 0; k < bends.size(); ++k) {
     const Measurement& one = problem().measurements[k];
     if (one.kind != MeasurementKind::segment) continue;
-    bends_[k] = segment_bends(problem(), one, rows_->border, offsets);
+    bends[k] = segment_bends(problem(), one, rows_->border, offsets);
   }
-  bent_at_ = offsets;
+  taken_.bends = std::make_shared<const std::vector<SegmentBends>>(std::move(bends));
+  taken_.bent_at = offsets;
 }
 
 /// The system is linearised at the state; `curved` takes in what Gauss and Newton leave out.
 SessionSummary::Coupled SessionSummary::couple(RecordingState& state,
                                                const Eigen::VectorXd& coefficients, bool curved) {
   const Eigen::VectorXd offsets = offsets_at(rows_->border, coefficients);
-  if (curved) bend(offsets);
   const Eigen::MatrixXd& M = system_->border();
   const BlockSystem& normal = system_->normal_equations();
   const Eigen::Index C = coefficients_;
@@ -266,10 +280,14 @@ void SessionSummary::factorise() {
   try {
     system_->normal_equations().factorise();
   } catch (const NotPositiveDefinite&) {
-    throw SolveError(
-        problem().sessions.front() +
-        ": its path is not determined where the landmarks are known; sight more of them");
+    refuse_loose();
   }
+}
+
+void SessionSummary::refuse_loose() const {
+  throw SolveError(
+      problem().sessions.front() +
+      ": its path is not determined where the landmarks are known; sight more of them");
 }
 
 SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, RecordingState& state,
@@ -278,6 +296,7 @@ SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, Reco
   const Eigen::VectorXd coefficients = u.tail(coefficients_);
   const bool whole = kind == SecondDerivatives::whole;
   relax(state, coefficients, whole ? kStill : kVeryStill);
+  if (whole && with_information) bend(offsets_at(rows_->border, coefficients));
   BlockSystem& normal = system_->normal_equations();
   Coupled coupled = couple(state, coefficients, whole);
   try {
@@ -307,25 +326,26 @@ SessionSummary::Quadratic SessionSummary::reduced(const Eigen::VectorXd& u, Reco
   return result;
 }
 
+/// Whether it is does not depend on where it is summarised: asked once.
+void SessionSummary::require_determined(const Eigen::VectorXd& u) {
+  RecordingState state = taken_.state;
+  place(u, state);
+  static_cast<void>(system_->linearise(state, u.tail(coefficients_)));
+  if (!find_loose_nodes(*system_).empty()) refuse_loose();
+}
+
 void SessionSummary::linearise(const Eigen::VectorXd& u, SecondDerivatives kind) {
-  quadratic_ = reduced(u, rows_->state, kind, true);
-  quadratic_.kind = kind;
+  if (quadratic().at.size() == 0) require_determined(u);
+  RecordingState state = taken_.state;
+  Quadratic next = reduced(u, state, kind, true);
+  next.kind = kind;
+  taken_.quadratic = std::move(next);
+  taken_.state = std::move(state);
 }
 
 SessionSummary::Quadratic SessionSummary::value_at(const Eigen::VectorXd& u) {
-  RecordingState state = rows_->state;
-  return value_of(u, state);
-}
-
-SessionSummary::Quadratic SessionSummary::value_of(const Eigen::VectorXd& u,
-                                                   RecordingState& state) {
+  RecordingState state = taken_.state;
   return reduced(u, state, SecondDerivatives::whole, false);
-}
-
-RecordingState SessionSummary::state_at(const Eigen::VectorXd& u) {
-  RecordingState state = rows_->state;
-  static_cast<void>(value_of(u, state));
-  return state;
 }
 
 }  // namespace trussmap

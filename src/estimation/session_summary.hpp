@@ -23,6 +23,9 @@
 //
 // Cost: chains of poses are eliminated in the order of their number times that of the landmarks.
 // Memory: the session's rows, and H.
+//
+// Errors with heavy tails count as student_tails.hpp took them when the rows were laid: half_chi2
+// is then not that of their distribution.
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
@@ -31,6 +34,7 @@
 #include "estimation/second_order.hpp"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -44,6 +48,10 @@ struct SessionRows {
   bool tells_position = true;   ///< whether anything of it, or survey, measures one in the map
   bool tells_direction = true;  ///< likewise
 };
+
+/// Takes the survey out, which comes last among the measurements: who takes sessions together has
+/// it.
+void drop_survey(SessionRows& rows);
 
 /// Gauss and Newton's are positive semidefinite, wherever they are taken; the whole ones where the
 /// sum of all sessions has its minimum.
@@ -74,18 +82,29 @@ class SessionSummary {
   /// Measured values, those of weight 0 apart.
   [[nodiscard]] int measured_values() const;
 
-  /// Takes the summary at u. Throws SolveError where its path is not determined there.
+  /// Where the summary was taken, with all that the next one goes on from.
+  struct Taken {
+    Quadratic quadratic;
+    RecordingState state;  ///< with the best path
+    /// Per measurement, of segments; shared, for hardly one summary in ten has new ones.
+    std::shared_ptr<const std::vector<SegmentBends>> bends;
+    Eigen::VectorXd bent_at;  ///< offsets of the coefficients there
+  };
+
+  /// Takes the summary at u. Throws SolveError where its path is not determined there, and is then
+  /// as before.
   void linearise(const Eigen::VectorXd& u, SecondDerivatives kind = SecondDerivatives::whole);
-  /// The last one.
-  [[nodiscard]] const Quadratic& quadratic() const { return quadratic_; }
+  [[nodiscard]] const Taken& taken() const { return taken_; }
+  /// Goes back to an earlier one of this session.
+  void restore(Taken taken) { taken_ = std::move(taken); }
+  /// The last one; empty before.
+  [[nodiscard]] const Quadratic& quadratic() const { return taken_.quadratic; }
   /// phi and g at another u, exactly; the summary stays as it is.
   [[nodiscard]] Quadratic value_at(const Eigen::VectorXd& u);
   /// g as the summary has it there.
   [[nodiscard]] Eigen::VectorXd predicted_gradient(const Eigen::VectorXd& u) const {
-    return quadratic_.gradient + quadratic_.information * (u - quadratic_.at);
+    return quadratic().gradient + quadratic().information * (u - quadratic().at);
   }
-  /// The best path for u.
-  [[nodiscard]] RecordingState state_at(const Eigen::VectorXd& u);
   /// u of a state and coefficients.
   [[nodiscard]] Eigen::VectorXd shared_of(const RecordingState& state,
                                           const Eigen::VectorXd& coefficients) const;
@@ -102,18 +121,17 @@ class SessionSummary {
   [[nodiscard]] Coupled couple(RecordingState& state, const Eigen::VectorXd& coefficients,
                                bool curved);
   void relax(RecordingState& state, const Eigen::VectorXd& coefficients, double still);
+  void require_determined(const Eigen::VectorXd& u);
   void factorise();
+  [[noreturn]] void refuse_loose() const;
   void bend(const Eigen::VectorXd& offsets);
   [[nodiscard]] Quadratic reduced(const Eigen::VectorXd& u, RecordingState& state,
                                   SecondDerivatives kind, bool with_information);
-  [[nodiscard]] Quadratic value_of(const Eigen::VectorXd& u, RecordingState& state);
 
   std::unique_ptr<SessionRows> rows_;  ///< the system refers to them
   std::unique_ptr<RecordingSystem> system_;
   int coefficients_ = 0;
-  Quadratic quadratic_;
-  std::vector<SegmentBends> bends_;  ///< per measurement, of segments
-  Eigen::VectorXd bent_at_;          ///< offsets of the coefficients
+  Taken taken_;
 };
 
 }  // namespace trussmap

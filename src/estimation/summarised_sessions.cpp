@@ -7,27 +7,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 namespace trussmap {
 namespace {
 
-bool same_number(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
+void append_to(Eigen::VectorXd& all, const Eigen::VectorXd& values) {
+  all.conservativeResize(all.size() + values.size());
+  all.tail(values.size()) = values;
 }
 
 }  // namespace
 
 std::optional<double> SummarisedSessions::orientation(int landmark) const {
-  const auto at = places_.orientation.find(landmark);
-  if (at == places_.orientation.end()) return std::nullopt;
-  return places_.x[at->second];
+  const auto at = sum_.orientation.find(landmark);
+  if (at == sum_.orientation.end()) return std::nullopt;
+  return sum_.x[at->second];
 }
 
 /// By a landmark of the map, or to the map's frame.
-bool SummarisedSessions::is_tied(const RecordingProblem& problem) const {
-  return std::ranges::any_of(problem.landmarks, [&](const auto& one) { return has(one); }) ||
+bool SummarisedSessions::is_tied(const RecordingProblem& problem,
+                                 const std::vector<KnownPlace>& known) const {
+  const auto is_known = [](const std::vector<KnownPlace>& places, const std::string& landmark) {
+    return std::ranges::find(places, landmark, &KnownPlace::landmark) != places.end();
+  };
+  return std::ranges::any_of(problem.landmarks,
+                             [&](const std::string& one) {
+                               return has(one) || is_known(sum_.known, one) || is_known(known, one);
+                             }) ||
          std::ranges::any_of(problem.measurements, [](const Measurement& one) {
            return one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix;
          });
@@ -35,98 +44,104 @@ bool SummarisedSessions::is_tied(const RecordingProblem& problem) const {
 
 /// Gives what the session brings its place in x.
 SummarisedSessions::Member SummarisedSessions::joined(SessionRows rows) {
-  const RecordingState state = rows.state;
-  Member member{SessionSummary(std::move(rows)), {}, {}, 0.0};
+  Member member{SessionSummary(std::move(rows)), {}, {}};
+  const RecordingState& state = member.summary.taken().state;
   const RecordingProblem& problem = member.summary.problem();
   const auto append = [&](const Eigen::VectorXd& values) {
-    const Eigen::Index at = places_.x.size();
-    for (Eigen::VectorXd* all : {&places_.x, &places_.origin}) {
-      all->conservativeResize(at + values.size());
-      all->tail(values.size()) = values;
-    }
+    const Eigen::Index at = sum_.x.size();
+    append_to(sum_.x, values);
+    append_to(sum_.origin, values);
     return at;
   };
   std::vector<int> numbers;
   for (std::size_t k = 0; k < problem.landmarks.size(); ++k) {
     const auto [found, fresh] =
-        places_.number.try_emplace(problem.landmarks[k], static_cast<int>(places_.names.size()));
+        sum_.number.try_emplace(problem.landmarks[k], static_cast<int>(sum_.names.size()));
     if (fresh) {
-      places_.names.push_back(problem.landmarks[k]);
-      places_.at.push_back(append(state.landmarks[k]));
+      sum_.names.push_back(problem.landmarks[k]);
+      sum_.at.push_back(append(state.landmarks[k]));
     }
     numbers.push_back(found->second);
-    member.at.push_back(places_.at[idx(found->second)]);
-    member.at.push_back(places_.at[idx(found->second)] + 1);
+    member.at.push_back(sum_.at[idx(found->second)]);
+    member.at.push_back(sum_.at[idx(found->second)] + 1);
   }
   for (std::size_t k = 0; k < problem.oriented.size(); ++k) {
-    const auto [found, fresh] =
-        places_.orientation.try_emplace(numbers[idx(problem.oriented[k])], 0);
+    const auto [found, fresh] = sum_.orientation.try_emplace(numbers[idx(problem.oriented[k])], 0);
     if (fresh) found->second = append(Eigen::VectorXd::Constant(1, state.orientations[k]));
     member.at.push_back(found->second);
   }
-  for (int c = 0; c < coefficients_; ++c) member.at.push_back(c);
+  for (int c = 0; c < sum_.coefficients; ++c) member.at.push_back(c);
   return member;
 }
 
 Eigen::VectorXd SummarisedSessions::local(const Member& member) const {
-  return places_.x(member.at);
+  return sum_.x(member.at);
 }
 
 void SummarisedSessions::count(const Member& member, double sign) {
   const SessionSummary::Quadratic& one = member.summary.quadratic();
-  const Eigen::VectorXd pull =
-      one.information * (one.at - places_.origin(member.at)) - one.gradient;
+  const Eigen::VectorXd pull = one.information * (one.at - sum_.origin(member.at)) - one.gradient;
   const auto n = static_cast<Eigen::Index>(member.at.size());
   for (Eigen::Index c = 0; c < n; ++c) {
     const Eigen::Index column = member.at[idx(static_cast<int>(c))];
     for (Eigen::Index r = 0; r < n; ++r) {
-      information_(member.at[idx(static_cast<int>(r))], column) += sign * one.information(r, c);
+      sum_.information(member.at[idx(static_cast<int>(r))], column) += sign * one.information(r, c);
     }
-    pull_[column] += sign * pull[c];
+    sum_.pull[column] += sign * pull[c];
   }
 }
 
 /// Priors and known places.
 void SummarisedSessions::count_known() {
-  for (Eigen::Index c = 0; c < coefficients_; ++c) {
-    information_(c, c) += prior_[c];
-    pull_[c] -= prior_[c] * places_.origin[c];
+  for (Eigen::Index c = 0; c < sum_.coefficients; ++c) {
+    sum_.information(c, c) += sum_.prior[c];
+    sum_.pull[c] -= sum_.prior[c] * sum_.origin[c];
   }
   const auto count = [&](Eigen::Index at, double sd, double value) {
     const double information = 1.0 / (sd * sd);
-    information_(at, at) += information;
-    pull_[at] += information * (value - places_.origin[at]);
+    sum_.information(at, at) += information;
+    sum_.pull[at] += information * (value - sum_.origin[at]);
   };
-  for (const KnownPlace& one : places_.known) {
-    const auto number = places_.number.find(one.landmark);
-    if (number == places_.number.end()) continue;
-    const Eigen::Index at = places_.at[idx(number->second)];
+  for (const KnownPlace& one : sum_.known) {
+    const auto number = sum_.number.find(one.landmark);
+    if (number == sum_.number.end()) continue;
+    const Eigen::Index at = sum_.at[idx(number->second)];
     count(at, one.sd, one.place.x());
     count(at + 1, one.sd, one.place.y());
-    const auto turned = places_.orientation.find(number->second);
-    if (turned == places_.orientation.end() || std::isnan(one.heading)) continue;
-    const double now = places_.x[turned->second];
+    const auto turned = sum_.orientation.find(number->second);
+    if (turned == sum_.orientation.end() || std::isnan(one.heading)) continue;
+    const double now = sum_.x[turned->second];
     count(turned->second, one.sd_heading, now + wrap_angle(one.heading - now));
   }
 }
 
 void SummarisedSessions::count_all() {
-  information_ = Eigen::MatrixXd::Zero(places_.x.size(), places_.x.size());
-  pull_ = Eigen::VectorXd::Zero(places_.x.size());
+  sum_.information = Eigen::MatrixXd::Zero(sum_.x.size(), sum_.x.size());
+  sum_.pull = Eigen::VectorXd::Zero(sum_.x.size());
   count_known();
   for (const Member& member : sessions_) count(member, 1.0);
 }
 
-/// Of H, with what is held apart from all else.
+/// What no step moves: what is held, and orientations of which every yaw has been left out.
+std::vector<Eigen::Index> SummarisedSessions::apart() const {
+  std::vector<Eigen::Index> result = sum_.held;
+  for (const auto& [landmark, at] : sum_.orientation) {
+    if (sum_.information(at, at) == 0.0) result.push_back(at);
+  }
+  return result;
+}
+
+/// Of H, with what is apart from all else.
 DenseCholesky SummarisedSessions::factor() const {
-  Eigen::MatrixXd H = information_;
-  for (const Eigen::Index at : held_) {
+  constexpr double kLeastShare = 1e-10;  // rounding leaves a thousandth of it where nothing is told
+  Eigen::MatrixXd H = sum_.information;
+  for (const Eigen::Index at : apart()) {
     H.row(at).setZero();
     H.col(at).setZero();
     H(at, at) = 1.0;
   }
   DenseCholesky result(H);
-  if (!result.positive_definite()) {
+  if (!result.positive_definite() || result.least_pivot_share() < kLeastShare) {
     throw SolveError(
         "the sessions leave the map or a coefficient undetermined; sight more landmarks, or "
         "survey one");
@@ -135,75 +150,118 @@ DenseCholesky SummarisedSessions::factor() const {
 }
 
 Eigen::VectorXd SummarisedSessions::step(const DenseCholesky& factor) const {
-  Eigen::VectorXd gradient = information_ * (places_.x - places_.origin) - pull_;
-  for (const Eigen::Index at : held_) gradient[at] = 0.0;
+  Eigen::VectorXd gradient = sum_.information * (sum_.x - sum_.origin) - sum_.pull;
+  for (const Eigen::Index at : sum_.held) gradient[at] = 0.0;
   return -factor.solve(gradient);
 }
 
+/// How x changes as the map turns by 1 rad, where nothing measures a direction: about the first
+/// landmark, or about the place that turning strains least.
+Eigen::VectorXd SummarisedSessions::turn_of_map(bool position) const {
+  const auto n = sum_.x.size();
+  const Vector2 first = sum_.x.segment<2>(sum_.at.front());
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(n);
+  Eigen::MatrixXd shifts = Eigen::MatrixXd::Zero(n, 2);
+  for (const Eigen::Index at : sum_.at) {
+    turn.segment<2>(at) = quarter_turn(Vector2(sum_.x.segment<2>(at) - first));
+    shifts.block<2, 2>(at, 0).setIdentity();
+  }
+  for (const auto& [landmark, at] : sum_.orientation) turn[at] = 1.0;
+  if (!position) return turn;
+  const Eigen::MatrixXd strains = sum_.information * shifts;
+  const Matrix2 stiffness = shifts.transpose() * strains;
+  return turn - shifts * stiffness.ldlt().solve(strains.transpose() * turn);
+}
+
 void SummarisedSessions::hold(bool position, bool direction) {
-  held_.clear();
-  if (places_.at.empty()) return;
-  const Eigen::Index first = places_.at.front();
-  if (!position) held_ = {first, first + 1};
+  sum_.held.clear();
+  if (sum_.at.empty()) return;
+  if (!position) sum_.held = {sum_.at.front(), sum_.at.front() + 1};
   if (direction) return;
-  Eigen::Index most = -1;
-  double lever = 0.0;
-  for (const Eigen::Index at : places_.at) {
-    const Vector2 from_first = places_.x.segment<2>(at) - places_.x.segment<2>(first);
-    for (const int place : {0, 1}) {
-      if (std::abs(from_first[1 - place]) <= lever) continue;
-      lever = std::abs(from_first[1 - place]);
-      most = at + place;
+  const Eigen::VectorXd turn = turn_of_map(position);
+  Eigen::Index most = sum_.at.front();
+  for (const Eigen::Index at : sum_.at) {
+    for (const Eigen::Index place : {at, at + 1}) {
+      if (std::abs(turn[place]) > std::abs(turn[most])) most = place;
     }
   }
-  if (most >= 0) held_.push_back(most);
+  if (std::abs(turn[most]) > 0.0) sum_.held.push_back(most);
+}
+
+/// With the coefficients of the first session.
+void SummarisedSessions::begin(const EffectParameters& border) {
+  sum_ = {};
+  for (const int place : unknown_coefficients(border)) {
+    const double sd = border[idx(place)].prior_sd;
+    append_to(sum_.prior, Eigen::VectorXd::Constant(1, 1.0 / (sd * sd)));
+  }
+  sum_.coefficients = static_cast<int>(sum_.prior.size());
+  sum_.x = sum_.origin = Eigen::VectorXd::Zero(sum_.coefficients);
+}
+
+/// Sessions come with copies of one survey: the same numbers count once.
+void SummarisedSessions::know(const std::vector<KnownPlace>& known) {
+  for (KnownPlace one : known) {
+    const auto is_same_place = [&](const KnownPlace& other) {
+      return other.landmark == one.landmark && other.place == one.place;
+    };
+    const auto has_same_heading = [&](const KnownPlace& other) {
+      return is_same_place(other) && other.heading == one.heading;
+    };
+    if (std::ranges::any_of(sum_.known, is_same_place)) {
+      if (std::isnan(one.heading) || std::ranges::any_of(sum_.known, has_same_heading)) continue;
+      one.sd = std::numeric_limits<double>::infinity();
+    }
+    sum_.known.push_back(one);
+  }
+}
+
+void SummarisedSessions::take_in(SessionRows rows, const std::vector<KnownPlace>& known) {
+  const bool first = sessions_.empty();
+  const bool position = rows.tells_position;
+  const bool direction = rows.tells_direction;
+  if (first) begin(rows.border);
+  know(known);
+  sum_.taken_anew = 0;
+  sessions_.push_back(joined(std::move(rows)));
+  sessions_.back().summary.linearise(local(sessions_.back()), SecondDerivatives::gauss_newton);
+  count_all();
+  if (first) hold(position, direction);
+  settle();
+}
+
+/// To what there was before a session that cannot be taken in.
+void SummarisedSessions::go_back(Sum before, std::size_t sessions) {
+  sessions_.erase(sessions_.begin() + static_cast<std::ptrdiff_t>(sessions), sessions_.end());
+  for (Member& member : sessions_) {
+    if (!member.before) continue;
+    member.summary.restore(std::move(member.before->taken));
+    member.missed = std::move(member.before->missed);
+    member.trial = member.before->trial;
+    member.before.reset();
+  }
+  sum_ = std::move(before);
 }
 
 void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& known) {
-  const std::vector<int> unknown = unknown_coefficients(rows.border);
-  const bool first = sessions_.empty();
-  if (!first && static_cast<int>(unknown.size()) != coefficients_) {
-    throw std::invalid_argument("every session has the same coefficients");
-  }
-  if (first) {
-    coefficients_ = static_cast<int>(unknown.size());
-    prior_.resize(coefficients_);
-    for (int c = 0; c < coefficients_; ++c) {
-      const double sd = rows.border[idx(unknown[idx(c)])].prior_sd;
-      prior_[c] = 1.0 / (sd * sd);
+  if (!sessions_.empty()) {
+    if (static_cast<int>(unknown_coefficients(rows.border).size()) != sum_.coefficients) {
+      throw std::invalid_argument("every session has the same coefficients");
     }
-    places_.x = places_.origin = Eigen::VectorXd::Zero(coefficients_);
+    if (!is_tied(rows.problem, known)) {
+      throw SolveError(rows.problem.sessions.front() +
+                       " stands apart: no landmark ties it to the sessions before");
+    }
   }
-  if (!first && !is_tied(rows.problem)) {
-    throw SolveError(rows.problem.sessions.front() +
-                     " stands apart: no landmark ties it to the sessions before");
-  }
-  const Places before = places_;
-  for (const KnownPlace& one : known) {
-    const bool copy =
-        std::any_of(places_.known.begin(), places_.known.end(), [&](const KnownPlace& other) {
-          return other.landmark == one.landmark && other.place == one.place &&
-                 same_number(other.heading, one.heading);
-        });
-    if (!copy) places_.known.push_back(one);
-  }
-  taken_anew_ = 0;
+  Sum before = sum_;
   const std::size_t count = sessions_.size();
   try {
-    const bool position = rows.tells_position;
-    const bool direction = rows.tells_direction;
-    sessions_.push_back(joined(std::move(rows)));
-    if (first) hold(position, direction);
-    sessions_.back().summary.linearise(local(sessions_.back()), SecondDerivatives::gauss_newton);
-    count_all();
-    settle();
-  } catch (const SolveError&) {
-    // Others that were taken anew stay so: each is what its session says, wherever it was taken.
-    places_ = before;
-    sessions_.erase(sessions_.begin() + static_cast<std::ptrdiff_t>(count), sessions_.end());
-    count_all();
+    take_in(std::move(rows), known);
+  } catch (...) {
+    go_back(std::move(before), count);
     throw;
   }
+  for (Member& member : sessions_) member.before.reset();
 }
 
 double SummarisedSessions::chi2() const {
@@ -213,10 +271,10 @@ double SummarisedSessions::chi2() const {
     const Eigen::VectorXd move = local(member) - one.at;
     half += one.half_chi2 + one.gradient.dot(move) + 0.5 * move.dot(one.information * move);
   }
-  double chi2 = 2.0 * half + places_.x.head(coefficients_).cwiseAbs2().dot(prior_);
-  for (const KnownPlace& one : places_.known) {
-    const auto number = places_.number.find(one.landmark);
-    if (number == places_.number.end()) continue;
+  double chi2 = 2.0 * half + sum_.x.head(sum_.coefficients).cwiseAbs2().dot(sum_.prior);
+  for (const KnownPlace& one : sum_.known) {
+    const auto number = sum_.number.find(one.landmark);
+    if (number == sum_.number.end()) continue;
     chi2 += (position(number->second) - one.place).squaredNorm() / (one.sd * one.sd);
     const std::optional<double> turned = orientation(number->second);
     if (!turned || std::isnan(one.heading)) continue;
@@ -227,54 +285,35 @@ double SummarisedSessions::chi2() const {
 }
 
 int SummarisedSessions::dof() const {
-  int values = static_cast<int>(held_.size()) - static_cast<int>(places_.x.size());
+  int values = static_cast<int>(sum_.held.size()) - static_cast<int>(sum_.x.size());
   for (const Member& member : sessions_) {
     values += member.summary.measured_values() - member.summary.own_unknowns();
   }
-  for (Eigen::Index c = 0; c < coefficients_; ++c) values += prior_[c] > 0.0 ? 1 : 0;
-  for (const KnownPlace& one : places_.known) {
-    const auto number = places_.number.find(one.landmark);
-    if (number == places_.number.end()) continue;
-    values += 2;
-    if (places_.orientation.contains(number->second) && !std::isnan(one.heading)) ++values;
+  for (Eigen::Index c = 0; c < sum_.coefficients; ++c) values += sum_.prior[c] > 0.0 ? 1 : 0;
+  for (const KnownPlace& one : sum_.known) {
+    const auto number = sum_.number.find(one.landmark);
+    if (number == sum_.number.end()) continue;
+    if (std::isfinite(one.sd)) values += 2;
+    if (sum_.orientation.contains(number->second) && !std::isnan(one.heading)) ++values;
   }
   return values;
 }
 
 Eigen::MatrixXd SummarisedSessions::covariance() const {
   Eigen::MatrixXd result = factor().inverse();
-  for (const Eigen::Index at : held_) result(at, at) = 0.0;
+  for (const Eigen::Index at : apart()) result(at, at) = 0.0;
   return result;
 }
 
 std::vector<Matrix2> SummarisedSessions::landmark_covariances() const {
   const Eigen::MatrixXd all = covariance();
   std::vector<Matrix2> result;
-  for (const Eigen::Index at : places_.at) result.push_back(all.block<2, 2>(at, at));
+  for (const Eigen::Index at : sum_.at) result.push_back(all.block<2, 2>(at, at));
   return result;
 }
 
 Eigen::MatrixXd SummarisedSessions::coefficient_covariance() const {
-  return covariance().topLeftCorner(coefficients_, coefficients_);
-}
-
-RecordingState SummarisedSessions::path(int session) {
-  Member& member = sessions_[idx(session)];
-  return member.summary.state_at(local(member));
-}
-
-double SummarisedSessions::exact_error() {
-  Eigen::VectorXd gradient = information_ * (places_.x - places_.origin) - pull_;
-  for (Member& member : sessions_) {
-    const Eigen::VectorXd u = local(member);
-    const Eigen::VectorXd missed =
-        member.summary.value_at(u).gradient - member.summary.predicted_gradient(u);
-    for (std::size_t k = 0; k < member.at.size(); ++k) {
-      gradient[member.at[k]] += missed[static_cast<Eigen::Index>(k)];
-    }
-  }
-  for (const Eigen::Index at : held_) gradient[at] = 0.0;
-  return factor().solve(gradient).cwiseAbs().maxCoeff();
+  return covariance().topLeftCorner(sum_.coefficients, sum_.coefficients);
 }
 
 }  // namespace trussmap

@@ -23,9 +23,10 @@
 // sessions anew.
 //
 // The frame is the first session's: where nothing measures a position its first landmark is held,
-// and where nothing measures a direction the coordinate that turning the map about that landmark
-// moves most. (Held by a heading, as a fit of all at once is, the map would turn by far more than
-// it changes its shape, and nothing but that would have every session taken anew.)
+// and where nothing measures a direction the coordinate that turning the map (about that landmark,
+// or the place that is known) moves most. (Held by a heading, as a fit of all at once is, the map
+// would turn by far more than it changes its shape, and nothing but that would have every session
+// taken anew.)
 #pragma once
 
 #include "estimation/session_summary.hpp"
@@ -47,7 +48,7 @@ struct SummaryOptions {
 struct KnownPlace {
   std::string landmark;
   Vector2 place = Vector2::Zero();  ///< m, map frame
-  double sd = 0.0;                  ///< m per coordinate
+  double sd = 0.0;                  ///< m per coordinate; infinite: the heading alone is known
   double heading = kAbsent;         ///< rad, of the landmark's own axis; NaN: not known
   double sd_heading = 0.0;          ///< rad
 };
@@ -57,24 +58,29 @@ class SummarisedSessions {
   explicit SummarisedSessions(const SummaryOptions& options = {}) : options_(options) {}
 
   /// Takes a session in; the known places count beside the sessions, the same numbers once. The
-  /// state of the session is near the map's where both have a landmark, and in its frame. Throws
-  /// SolveError where the sum has no minimum or the session does not join the frame of the first,
-  /// std::invalid_argument where its coefficients are others; nothing is taken in then.
+  /// state of the session is near the map's where both have a landmark, and in its frame: nothing
+  /// of it may give a position or direction where the first session left one to be held. Throws
+  /// SolveError where the sum has no minimum or no landmark, truth or fix ties the session to the
+  /// map, std::invalid_argument where its coefficients are others; whatever is thrown, all is then
+  /// as it was.
   void add(SessionRows rows, const std::vector<KnownPlace>& known = {});
 
   [[nodiscard]] int sessions() const { return static_cast<int>(sessions_.size()); }
   /// In order of first sighting.
-  [[nodiscard]] const std::vector<std::string>& landmarks() const { return places_.names; }
+  [[nodiscard]] const std::vector<std::string>& landmarks() const { return sum_.names; }
   [[nodiscard]] bool has(const std::string& landmark) const {
-    return places_.number.contains(landmark);
+    return sum_.number.contains(landmark);
   }
   [[nodiscard]] Vector2 position(int landmark) const {
-    return places_.x.segment<2>(places_.at[idx(landmark)]);
+    return sum_.x.segment<2>(sum_.at[idx(landmark)]);
+  }
+  [[nodiscard]] bool has_orientation(const std::string& landmark) const {
+    return has(landmark) && sum_.orientation.contains(sum_.number.at(landmark));
   }
   /// rad, not wrapped; nothing where no yaw was read.
   [[nodiscard]] std::optional<double> orientation(int landmark) const;
   /// The unknown ones.
-  [[nodiscard]] Eigen::VectorXd coefficients() const { return places_.x.head(coefficients_); }
+  [[nodiscard]] Eigen::VectorXd coefficients() const { return sum_.x.head(sum_.coefficients); }
   /// Of the measurements and the coefficients' priors, as the summaries have it.
   [[nodiscard]] double chi2() const;
   /// Measured values less unknowns.
@@ -82,13 +88,8 @@ class SummarisedSessions {
   /// Of each landmark alone, m^2; zero where held.
   [[nodiscard]] std::vector<Matrix2> landmark_covariances() const;
   [[nodiscard]] Eigen::MatrixXd coefficient_covariance() const;
-  /// A session's best path on the map.
-  [[nodiscard]] RecordingState path(int session);
-
   /// How often a session was taken anew by the last add, the new one's own times apart.
-  [[nodiscard]] int taken_anew() const { return taken_anew_; }
-  /// What its summaries' errors may have left of the tolerance.
-  [[nodiscard]] double expected_error() const { return expected_error_; }
+  [[nodiscard]] int taken_anew() const { return sum_.taken_anew; }
   /// Largest difference that one exact step from here would make: what is really left. Takes every
   /// session's gradient: for checks.
   [[nodiscard]] double exact_error();
@@ -100,10 +101,17 @@ class SummarisedSessions {
     std::vector<Eigen::Index> at;  ///< in x, of each of its shared unknowns
     Eigen::VectorXd missed;        ///< by a trial move, of the gradient
     double trial = 0.0;            ///< the move's q
+    /// What it was before the session that is being added, where it has been taken anew since.
+    struct Before {
+      SessionSummary::Taken taken;
+      Eigen::VectorXd missed;
+      double trial = 0.0;
+    };
+    std::optional<Before> before = std::nullopt;
   };
 
-  /// What is known of the map, and where it stands in x.
-  struct Places {
+  /// What the sessions and all that is known beside them add up to.
+  struct Sum {
     std::vector<std::string> names;
     std::map<std::string, int> number;        ///< of a landmark
     std::vector<Eigen::Index> at;             ///< in x, of each landmark
@@ -111,10 +119,22 @@ class SummarisedSessions {
     std::vector<KnownPlace> known;
     Eigen::VectorXd x;       ///< coefficients, then what was met, in order
     Eigen::VectorXd origin;  ///< x as first met: differences from it keep their digits
+    int coefficients = 0;
+    Eigen::VectorXd prior;           ///< information of each coefficient
+    std::vector<Eigen::Index> held;  ///< places in x
+    Eigen::MatrixXd information;     ///< H
+    Eigen::VectorXd pull;            ///< G(x) = H (x - origin) - pull
+    int taken_anew = 0;
   };
 
-  [[nodiscard]] bool is_tied(const RecordingProblem& problem) const;
+  [[nodiscard]] bool is_tied(const RecordingProblem& problem,
+                             const std::vector<KnownPlace>& known) const;
+  void begin(const EffectParameters& border);
+  void know(const std::vector<KnownPlace>& known);
+  void take_in(SessionRows rows, const std::vector<KnownPlace>& known);
+  void go_back(Sum before, std::size_t sessions);
   void hold(bool position, bool direction);
+  [[nodiscard]] Eigen::VectorXd turn_of_map(bool position) const;
   [[nodiscard]] Member joined(SessionRows rows);
   [[nodiscard]] Eigen::VectorXd local(const Member& member) const;
   void count(const Member& member, double sign);
@@ -125,25 +145,20 @@ class SummarisedSessions {
   [[nodiscard]] double effect_of(const Member& member, const Eigen::VectorXd& missed,
                                  const DenseCholesky& factor) const;
   void try_out(Member& member, const DenseCholesky& factor);
+  [[nodiscard]] std::vector<Eigen::Index> apart() const;
   [[nodiscard]] DenseCholesky factor() const;
   [[nodiscard]] Eigen::MatrixXd covariance() const;
   [[nodiscard]] DenseCholesky safe_factor();
   [[nodiscard]] Eigen::VectorXd step(const DenseCholesky& factor) const;
   [[nodiscard]] std::vector<double> effects_of_moves(const DenseCholesky& factor) const;
   [[nodiscard]] std::vector<std::size_t> worth_taking_anew(const std::vector<double>& effects,
-                                                           double safety);
+                                                           double safety) const;
+  [[nodiscard]] bool take_wholly();
   void settle();
 
   SummaryOptions options_;
   std::vector<Member> sessions_;
-  Places places_;
-  Eigen::VectorXd prior_;  ///< information of each coefficient
-  int coefficients_ = 0;
-  std::vector<Eigen::Index> held_;  ///< places in x
-  Eigen::MatrixXd information_;     ///< H
-  Eigen::VectorXd pull_;            ///< G(x) = H (x - origin) - pull
-  int taken_anew_ = 0;
-  double expected_error_ = 0.0;
+  Sum sum_;
 };
 
 }  // namespace trussmap

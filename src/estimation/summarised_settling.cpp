@@ -34,14 +34,14 @@ double largest(const Eigen::VectorXd& values) {
 }  // namespace
 
 void SummarisedSessions::take_anew(Member& member, SecondDerivatives kind) {
-  const bool counted = member.summary.quadratic().at.size() > 0;
-  if (counted) count(member, -1.0);
-  try {
-    member.summary.linearise(local(member), kind);
-  } catch (const SolveError&) {
-    if (counted) count(member, 1.0);
-    throw;
+  if (&member != &sessions_.back()) {
+    ++sum_.taken_anew;
+    if (!member.before) {
+      member.before = {member.summary.taken(), member.missed, member.trial};
+    }
   }
+  count(member, -1.0);
+  member.summary.linearise(local(member), kind);
   count(member, 1.0);
 }
 
@@ -64,9 +64,9 @@ void SummarisedSessions::take_anew(Member& member, const DenseCholesky& factor) 
 /// The largest change of x by so much more of the session's gradient.
 double SummarisedSessions::effect_of(const Member& member, const Eigen::VectorXd& missed,
                                      const DenseCholesky& factor) const {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(places_.x.size());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(sum_.x.size());
   gradient(member.at) = missed;
-  for (const Eigen::Index at : held_) gradient[at] = 0.0;
+  for (const Eigen::Index at : sum_.held) gradient[at] = 0.0;
   return largest(factor.solve(gradient));
 }
 
@@ -74,10 +74,10 @@ double SummarisedSessions::effect_of(const Member& member, const Eigen::VectorXd
 void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> normal;
-  Eigen::VectorXd draw(places_.x.size());
+  Eigen::VectorXd draw(sum_.x.size());
   for (double& one : draw) one = kTrial * normal(random);
   Eigen::VectorXd move = factor.solve_half(draw);
-  for (const Eigen::Index at : held_) move[at] = 0.0;
+  for (const Eigen::Index at : sum_.held) move[at] = 0.0;
   const Eigen::VectorXd own = move(member.at);
   const Eigen::VectorXd there = member.summary.quadratic().at + own;
   member.trial = size_of(own, member.summary.quadratic());
@@ -90,13 +90,13 @@ void SummarisedSessions::try_out(Member& member, const DenseCholesky& factor) {
 /// a direction that suits it.
 std::vector<double> SummarisedSessions::effects_of_moves(const DenseCholesky& factor) const {
   Eigen::MatrixXd missed =
-      Eigen::MatrixXd::Zero(places_.x.size(), static_cast<Eigen::Index>(sessions_.size()));
+      Eigen::MatrixXd::Zero(sum_.x.size(), static_cast<Eigen::Index>(sessions_.size()));
   for (std::size_t s = 0; s < sessions_.size(); ++s) {
     const Member& member = sessions_[s];
     if (!(member.trial > 0.0)) continue;
     missed.col(static_cast<Eigen::Index>(s))(member.at) = member.missed / member.trial;
   }
-  for (const Eigen::Index at : held_) missed.row(at).setZero();
+  for (const Eigen::Index at : sum_.held) missed.row(at).setZero();
   const Eigen::MatrixXd moved = factor.solve(missed);
   std::vector<double> effects;
   for (Eigen::Index s = 0; s < moved.cols(); ++s) effects.push_back(largest(moved.col(s)));
@@ -111,16 +111,15 @@ std::vector<double> SummarisedSessions::effects_of_moves(const DenseCholesky& fa
 
 /// The sessions of largest effect, so that those of the others add up to the tolerance at most.
 std::vector<std::size_t> SummarisedSessions::worth_taking_anew(const std::vector<double>& effects,
-                                                               double safety) {
+                                                               double safety) const {
   std::vector<std::size_t> order(effects.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return effects[a] < effects[b]; });
-  expected_error_ = 0.0;
+  double left = 0.0;
   std::size_t stay = 0;
-  while (stay < order.size() &&
-         expected_error_ + safety * effects[order[stay]] <= options_.tolerance) {
-    expected_error_ += safety * effects[order[stay++]];
+  while (stay < order.size() && left + safety * effects[order[stay]] <= options_.tolerance) {
+    left += safety * effects[order[stay++]];
   }
   std::vector<std::size_t> result(order.begin() + static_cast<std::ptrdiff_t>(stay), order.end());
   std::sort(result.begin(), result.end());
@@ -142,22 +141,33 @@ DenseCholesky SummarisedSessions::safe_factor() {
   return factor();
 }
 
+/// Those of which Gauss and Newton's second derivatives stood in; whether there was one.
+bool SummarisedSessions::take_wholly() {
+  bool any = false;
+  for (Member& member : sessions_) {
+    if (member.summary.quadratic().kind == SecondDerivatives::whole) continue;
+    take_anew(member, SecondDerivatives::whole);
+    any = true;
+  }
+  return any;
+}
+
 void SummarisedSessions::settle() {
   Member& fresh = sessions_.back();
   double safety = kSafety;
   double thought = 0.0;  // effects of those just taken anew
   for (int round = 0; round < kMostRounds; ++round) {
     const Eigen::VectorXd change = step(safe_factor());
-    places_.x += change;
+    sum_.x += change;
     if (round == 0 || largest(local(fresh) - fresh.summary.quadratic().at) > kFresh) {
       take_anew(fresh, SecondDerivatives::whole);
       thought = 0.0;
       continue;
     }
     const DenseCholesky H = safe_factor();
-    for (Member& member : sessions_) {
-      if (member.summary.quadratic().kind == SecondDerivatives::whole) continue;
-      take_anew(member, SecondDerivatives::whole);
+    if (take_wholly()) {
+      thought = 0.0;
+      continue;
     }
     if (fresh.trial == 0.0) try_out(fresh, H);
     // What sessions taken anew have turned out to miss says how far thoughts of the others are off.
@@ -169,11 +179,24 @@ void SummarisedSessions::settle() {
     for (const std::size_t s : again) {
       take_anew(sessions_[s], H);
       thought += effects[s];
-      if (s + 1 < sessions_.size()) ++taken_anew_;
     }
   }
   throw SolveError(fresh.summary.problem().sessions.front() +
                    " does not settle on the map of the other sessions");
+}
+
+double SummarisedSessions::exact_error() {
+  Eigen::VectorXd gradient = sum_.information * (sum_.x - sum_.origin) - sum_.pull;
+  for (Member& member : sessions_) {
+    const Eigen::VectorXd u = local(member);
+    const Eigen::VectorXd missed =
+        member.summary.value_at(u).gradient - member.summary.predicted_gradient(u);
+    for (std::size_t k = 0; k < member.at.size(); ++k) {
+      gradient[member.at[k]] += missed[static_cast<Eigen::Index>(k)];
+    }
+  }
+  for (const Eigen::Index at : sum_.held) gradient[at] = 0.0;
+  return largest(factor().solve(gradient));
 }
 
 }  // namespace trussmap

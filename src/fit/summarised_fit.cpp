@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "estimation/student_tails.hpp"
 #include "estimation/summarised_sessions.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/well_formed.hpp"
@@ -32,8 +33,14 @@ void require_summable(const Effect& effect) {
   }
 }
 
-bool is_known(const Measurement& one) {
-  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::survey_heading;
+void require_summable(const Model& model, double tolerance) {
+  for (const Effect& effect : model.effects) require_summable(effect);
+  if (std::ranges::any_of(model.noise.processes, has_used_tails)) {
+    throw std::invalid_argument(
+        "noise with heavy tails: sessions that are added one after the other have none, expected a "
+        "fit of all at once");
+  }
+  if (!(tolerance > 0.0)) throw std::invalid_argument("the tolerance has to be positive");
 }
 
 /// What says where the map's axes are, and which way they point.
@@ -48,7 +55,7 @@ class SummarisedFit::Impl {
  public:
   Impl(Model model, const SummarisedFitOptions& options)
       : options_(options), model_(std::move(model)), sessions_({options.tolerance}) {
-    for (const Effect& effect : model_.effects) require_summable(effect);
+    require_summable(model_, options.tolerance);
   }
 
   void add(const Recording& recording) {
@@ -58,14 +65,25 @@ class SummarisedFit::Impl {
                        "sights no landmark, by which sessions are tied, expected some");
     }
     const bool first = sessions_.sessions() == 0;
-    if (!first) require_joining(recording);
+    if (!first) require_frame(recording);
     FitState fit = first ? fit_first(recording) : fit_further(recording);
-    SessionRows rows;
-    if (first) {
-      const RecordingGauge gauge = choose_gauge(fit.problem);
-      rows.tells_position = !gauge.hold_landmark;
-      rows.tells_direction = !gauge.hold_heading;
+    std::map<std::string, SurveyPoint> survey = survey_;
+    for (SurveyPoint point : recording.survey) {
+      const auto before = survey.find(point.landmark);
+      if (before != survey.end() && std::isnan(point.heading)) {
+        point.heading = before->second.heading;
+      }
+      survey.insert_or_assign(point.landmark, point);
     }
+    std::vector<std::string> left_out = left_out_;
+    for (const std::string& text : left_out_texts(fit)) {
+      left_out.push_back(joined(recording.name, ": ", text));
+    }
+    SessionRows rows;
+    const RecordingGauge gauge = choose_gauge(fit.problem);
+    rows.tells_position = !gauge.hold_landmark;
+    rows.tells_direction = !gauge.hold_heading;
+    const Frame frame{rows.tells_position, rows.tells_direction};
     rows.weights = weights_without(fit.adjustment.left_out, fit.problem.measurements.size());
     rows.border = std::move(fit.columns.border);
     if (options_.fit.fit_effects) {
@@ -73,17 +91,19 @@ class SummarisedFit::Impl {
     }
     rows.state = std::move(fit.adjustment.state);
     rows.problem = std::move(fit.problem);
-    drop_known(rows);
+    drop_survey(rows);
     sessions_.add(std::move(rows), known_of(recording));
     if (first) {
-      model_ = fit.model;
-      frame_ = frame_of(recording);
+      model_ = std::move(fit.model);
+      frame_ = frame;
     }
     take_coefficients();
-    for (const SurveyPoint& one : recording.survey) survey_[one.landmark] = {one.x, one.y};
+    survey_ = std::move(survey);
+    left_out_ = std::move(left_out);
   }
 
   [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const std::vector<std::string>& left_out() const { return left_out_; }
   [[nodiscard]] SummarisedSessions& sessions() { return sessions_; }
   [[nodiscard]] const SummarisedSessions& sessions() const { return sessions_; }
 
@@ -109,7 +129,7 @@ class SummarisedFit::Impl {
       FittedLandmark one{sessions_.landmarks()[k], sessions_.position(static_cast<int>(k)),
                          covariances[k]};
       const auto surveyed = survey_.find(one.name);
-      if (surveyed != survey_.end()) one.survey = surveyed->second;
+      if (surveyed != survey_.end()) one.survey = Vector2(surveyed->second.x, surveyed->second.y);
       result.push_back(std::move(one));
     }
     return result;
@@ -133,7 +153,9 @@ class SummarisedFit::Impl {
   /// On the map, which counts as a survey of its uncertainty, by the coefficients found so far.
   [[nodiscard]] FitState fit_further(const Recording& recording) const {
     Recording laid = recording;
-    laid.survey.clear();
+    if (!options_.fit.use_survey) laid.survey.clear();
+    std::erase_if(laid.survey,
+                  [&](const SurveyPoint& point) { return sessions_.has(point.landmark); });
     const std::vector<FittedLandmark> map = landmarks();
     for (std::size_t k = 0; k < map.size(); ++k) {
       const double sd = std::max(kLeastSd, std::sqrt(0.5 * map[k].covariance.trace()));
@@ -150,28 +172,51 @@ class SummarisedFit::Impl {
     return fit_recordings({laid}, model_, how);
   }
 
-  /// What the recording says of the frame, as far as it is used.
-  [[nodiscard]] Frame frame_of(const Recording& recording) const {
+  /// A further session may only give a position or a direction where the first one did: what is
+  /// held in place of them would contradict it.
+  void require_frame(const Recording& recording) const {
+    if (frame_.position && frame_.direction) return;
     const FitOptions& use = options_.fit;
-    const bool truth = use.use_truth && !recording.truth.empty();
-    const std::size_t fixes = use.use_fixes ? recording.fixes.size() : 0;
-    const std::size_t surveyed = use.use_survey ? recording.survey.size() : 0;
-    return {truth || fixes > 0 || surveyed > 0,
-            truth || fixes > 1 || surveyed > 1 || recording.drive.has_compass()};
+    const News surveyed = news_of_survey(recording);
+    const bool position = (use.use_truth && !recording.truth.empty()) ||
+                          (use.use_fixes && !recording.fixes.empty()) || surveyed.place;
+    // Where the map has one known place, to turn about, a second gives a direction.
+    const bool direction = position || surveyed.heading || recording.drive.has_compass();
+    if (!(position && !frame_.position) && !(direction && !frame_.direction)) return;
+    throw SolveError(joined(recording.name, " has ",
+                            position ? "a survey, truth or fixes" : "a direction (compass, survey)",
+                            ", and the first session too little of it to lay the frame: the map "
+                            "would turn or shift; expected such a session first"));
   }
 
-  void require_joining(const Recording& recording) const {
-    const Frame own = frame_of(recording);
-    if ((own.position && !frame_.position) || (own.direction && !frame_.direction)) {
-      throw SolveError(joined(recording.name, " has ",
-                              own.position && !frame_.position ? "a survey, truth or fixes"
-                                                               : "a direction (compass, survey)",
-                              ", and the first session none: its frame would turn or shift the "
-                              "map; expected such a session first"));
-    }
-    const auto in_map = [&](const Sighting& one) { return sessions_.has(one.landmark); };
-    if (own.position || std::ranges::any_of(recording.sightings, in_map)) return;
-    throw SolveError(recording.name + " stands apart: no landmark ties it to the sessions before");
+  /// What surveys, this one and those before, say of the map with this session, and not of the map
+  /// without it.
+  struct News {
+    bool place = false;    ///< of a landmark that was not sighted, or not surveyed, before
+    bool heading = false;  ///< likewise of one whose yaw was read
+  };
+
+  [[nodiscard]] News news_of_survey(const Recording& recording) const {
+    News news;
+    if (!options_.fit.use_survey) return news;
+    const auto hear = [&](const SurveyPoint& point) {
+      const auto sights = [&](const Sighting& one) { return one.landmark == point.landmark; };
+      const auto reads = [&](const Sighting& one) { return sights(one) && !std::isnan(one.yaw); };
+      const auto told = survey_.find(point.landmark);
+      const bool in_map = sessions_.has(point.landmark);
+      const bool turned = sessions_.has_orientation(point.landmark);
+      if (in_map || std::ranges::any_of(recording.sightings, sights)) {
+        news.place = news.place || !in_map || told == survey_.end();
+      }
+      if (std::isnan(point.heading)) return;
+      if (turned || std::ranges::any_of(recording.sightings, reads)) {
+        news.heading =
+            news.heading || !turned || told == survey_.end() || std::isnan(told->second.heading);
+      }
+    };
+    for (const auto& [landmark, point] : survey_) hear(point);
+    std::ranges::for_each(recording.survey, hear);
+    return news;
   }
 
   [[nodiscard]] std::vector<KnownPlace> known_of(const Recording& recording) const {
@@ -182,15 +227,6 @@ class SummarisedFit::Impl {
       known.push_back({one.landmark, {one.x, one.y}, sd, one.heading, model_.noise.yaw});
     }
     return known;
-  }
-
-  /// Survey comes last among the measurements, and no lasting noise acts on it.
-  static void drop_known(SessionRows& rows) {
-    std::vector<Measurement>& all = rows.problem.measurements;
-    while (!all.empty() && is_known(all.back())) all.pop_back();
-    rows.weights.resize(all.size());
-    if (!rows.problem.noise_terms.empty()) rows.problem.noise_terms.resize(all.size());
-    if (!rows.problem.within.empty()) rows.problem.within.resize(all.size());
   }
 
   void take_coefficients() {
@@ -207,7 +243,8 @@ class SummarisedFit::Impl {
   Model model_;
   SummarisedSessions sessions_;
   Frame frame_;
-  std::map<std::string, Vector2> survey_;
+  std::map<std::string, SurveyPoint> survey_;  ///< of all sessions, the last of each landmark
+  std::vector<std::string> left_out_;
 };
 
 SummarisedFit::SummarisedFit(const Model& model, const SummarisedFitOptions& options)
@@ -244,11 +281,15 @@ int SummarisedFit::dof() const {
   return impl_->sessions().dof();
 }
 
+const std::vector<std::string>& SummarisedFit::left_out() const {
+  return impl_->left_out();
+}
+
 int SummarisedFit::taken_anew() const {
   return impl_->sessions().taken_anew();
 }
 
-double SummarisedFit::exact_error() const {
+double SummarisedFit::exact_error() {
   return impl_->sessions().exact_error();
 }
 

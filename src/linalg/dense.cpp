@@ -31,6 +31,12 @@ Eigen::MatrixXd DenseCholesky::solve(const Eigen::MatrixXd& b) const {
   return factor_.solve(b);
 }
 
+double DenseCholesky::least_pivot_share() const {
+  const Eigen::MatrixXd L = factor_.matrixL();
+  if (L.rows() == 0) return 1.0;
+  return (L.diagonal().array().square() / L.rowwise().squaredNorm().array()).minCoeff();
+}
+
 Eigen::VectorXd DenseCholesky::solve_half(const Eigen::VectorXd& b) const {
   return factor_.matrixU().solve(b);
 }

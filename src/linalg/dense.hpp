@@ -42,6 +42,9 @@ class DenseCholesky {
   [[nodiscard]] Eigen::MatrixXd inverse() const;                             ///< A^-1
   [[nodiscard]] Eigen::MatrixXd inverse_factor() const;                      ///< L^-1
   [[nodiscard]] double log_determinant() const;                              ///< of A
+  /// Least L(i,i)^2/A(i,i): what an unknown keeps of its own where those before it are free. 1:
+  /// all are independent; 0, but for rounding: A is singular.
+  [[nodiscard]] double least_pivot_share() const;
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;
