@@ -331,7 +331,11 @@ void SessionSummary::require_determined(const Eigen::VectorXd& u) {
   RecordingState state = taken_.state;
   place(u, state);
   static_cast<void>(system_->linearise(state, u.tail(coefficients_)));
-  if (!find_loose_nodes(*system_).empty()) refuse_loose();
+  try {
+    if (!find_loose_nodes(*system_).empty()) refuse_loose();
+  } catch (const NotPositiveDefinite&) {
+    refuse_loose();  // where all weights are 0
+  }
 }
 
 void SessionSummary::linearise(const Eigen::VectorXd& u, SecondDerivatives kind) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/dense.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -33,8 +35,11 @@ Eigen::MatrixXd DenseCholesky::solve(const Eigen::MatrixXd& b) const {
 
 double DenseCholesky::least_pivot_share() const {
   const Eigen::MatrixXd L = factor_.matrixL();
-  if (L.rows() == 0) return 1.0;
-  return (L.diagonal().array().square() / L.rowwise().squaredNorm().array()).minCoeff();
+  double least = 1.0;
+  for (Eigen::Index k = 0; k < L.rows(); ++k) {
+    least = std::min(least, L(k, k) * L(k, k) / L.row(k).squaredNorm());
+  }
+  return least;
 }
 
 Eigen::VectorXd DenseCholesky::solve_half(const Eigen::VectorXd& b) const {

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/summarised_sessions.hpp"
 
-#include "estimation/common_errors.hpp"
 #include "estimation/recording_adjustment.hpp"
-#include "estimation/recording_start.hpp"
-#include "estimation/simulated_recordings.hpp"
+#include "estimation/summarised_days.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/simulation.hpp"
+#include "trussmap/threads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,81 +21,12 @@
 namespace trussmap {
 namespace {
 
+using testing::border_of;
+using testing::Days;
+using testing::days_of;
 using testing::Equipment;
-using testing::simulate_recording;
-
-struct Days {
-  std::vector<Recording> recordings;
-  Model model;
-  bool effects = false;  ///< common errors are free
-  bool lever = false;    ///< or where the sensor stands ahead of the axle
-};
-
-/// One tour a day, of one mesh.
-Days days_of(const Equipment& equipment, int count, bool effects, std::uint64_t seed) {
-  Days days;
-  days.effects = effects;
-  for (int k = 0; k < count; ++k) {
-    const auto one = simulate_recording(equipment, seed + static_cast<std::uint64_t>(k));
-    days.recordings.push_back(one.recording);
-    days.recordings.back().name = "day " + std::to_string(k + 1);
-    days.model = one.model;
-  }
-  return days;
-}
-
-EffectPattern lever_of(const std::vector<Recording>& recordings) {
-  EffectPattern result;
-  result.name = "lever";
-  ViewPattern unit;
-  unit.ahead = 1.0;
-  for (const Recording& one : recordings) {
-    result.sightings.emplace_back(one.sightings.size(), unit);
-  }
-  return result;
-}
-
-EffectParameters border_of(const std::vector<Recording>& recordings, const Days& days) {
-  if (days.lever) return {lever_of(recordings)};
-  return days.effects ? common_error_columns(recordings, days.model.robot) : EffectParameters();
-}
-
-bool is_known(const Measurement& one) {
-  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::survey_heading;
-}
-
-std::vector<KnownPlace> known_of(const Recording& recording, const Model& model) {
-  std::vector<KnownPlace> known;
-  for (const SurveyPoint& one : recording.survey) {
-    known.push_back({one.landmark, {one.x, one.y}, model.noise.survey, one.heading, 0.01});
-  }
-  return known;
-}
-
-/// A day's rows, laid on the map that there is.
-SessionRows rows_of(const Recording& recording, const Days& days, const SummarisedSessions& map) {
-  Recording laid = recording;
-  if (map.sessions() > 0) {
-    laid.survey.clear();
-    for (std::size_t k = 0; k < map.landmarks().size(); ++k) {
-      const Vector2 at = map.position(static_cast<int>(k));
-      laid.survey.push_back({map.landmarks()[k], at.x(), at.y(), 0.02});
-    }
-  }
-  SessionRows rows;
-  rows.problem = make_problem({laid}, days.model);
-  rows.border = border_of({laid}, days);
-  const RecordingGauge gauge = choose_gauge(rows.problem);
-  rows.tells_direction = !gauge.hold_heading;
-  rows.tells_position = !gauge.hold_landmark;
-  rows.state = adjust(rows.problem, rows.border).state;
-  while (is_known(rows.problem.measurements.back())) rows.problem.measurements.pop_back();
-  if (!rows.problem.noise_terms.empty()) {
-    rows.problem.noise_terms.resize(rows.problem.measurements.size());
-    rows.problem.within.resize(rows.problem.measurements.size());
-  }
-  return rows;
-}
+using testing::known_of;
+using testing::rows_of;
 
 SummarisedSessions summarised(const Days& days, const SummaryOptions& options = {}) {
   SummarisedSessions map(options);
@@ -153,6 +84,11 @@ double largest_difference(const SummarisedSessions& map, const Reference& all) {
     const Vector2 there = first + R * (all.state.landmarks[k] - first);
     largest = std::max(largest, (map.position(static_cast<int>(k)) - there).cwiseAbs().maxCoeff());
   }
+  for (std::size_t k = 0; k < all.problem.oriented.size(); ++k) {
+    const double there = all.state.orientations[k] + std::atan2(across, along);
+    const std::optional<double> here = map.orientation(all.problem.oriented[k]);
+    largest = std::max(largest, here ? std::abs(wrap_angle(*here - there)) : INFINITY);
+  }
   if (all.coefficients.size() > 0) {
     largest = std::max(largest, (map.coefficients() - all.coefficients).cwiseAbs().maxCoeff());
   }
@@ -191,6 +127,131 @@ TEST(SummarisedSessions, HoldWhereViewsAndLastingNoiseAreCurved) {
   EXPECT_EQ(map.dof(), all.dof);
 }
 
+/// Fixes, loops, landmarks with axes, ranges and bearings alone.
+TEST(SummarisedSessions, AreTheFitOfAllDaysWhateverWasMeasured) {
+  std::vector<WheeledRobot> robots(5);
+  robots[0].fix_rate = 0.5;
+  robots[1].loops = true;
+  for (const std::size_t k : {2U, 3U}) robots[k].markers = robots[k].range_sensor = true;
+  for (const std::size_t k : {3U, 4U}) robots[k].compass = false;
+  robots[4].range_sensor = true;
+  robots[4].sensor_parts = SensorParts::bearing_alone;
+  for (std::size_t k = 0; k < robots.size(); ++k) {
+    for (const bool survey : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << k << survey);
+      const Days days = days_of(robots[k], survey, 3, 101);
+      SummarisedSessions map = summarised(days);
+      const Reference all = adjusted_at_once(days);
+      EXPECT_LT(largest_difference(map, all), 1e-8);
+      EXPECT_LT(map.exact_error(), 1e-8);
+      EXPECT_NEAR(map.chi2(), all.chi2, 1e-4);
+      EXPECT_EQ(map.dof(), all.dof);
+    }
+  }
+}
+
+/// The bounds above are those of a fit: a day left out shows.
+TEST(SummarisedSessions, WithoutADayAreNotTheFitOfAll) {
+  Days days = days_of({true, false, false, 1}, 5, true, 21);
+  const Reference all = adjusted_at_once(days);
+  days.recordings.pop_back();
+  EXPECT_GT(largest_difference(summarised(days), all), 1e-5);
+}
+
+TEST(SummarisedSessions, TakeLandmarksInThatLaterDaysSeeFirst) {
+  Days days = days_of(WheeledRobot{}, true, 4, 111);
+  for (std::size_t day = 0; day < 3; ++day) {
+    std::erase_if(days.recordings[day].sightings, [&](const Sighting& one) {
+      return one.landmark == "L1_1" || (day < 2 && one.landmark == "L2_0");
+    });
+  }
+  SummarisedSessions map = summarised(days);
+  const Reference all = adjusted_at_once(days);
+  EXPECT_EQ(map.landmarks().size(), 9U);
+  EXPECT_EQ(map.landmarks().back(), "L1_1");
+  EXPECT_LT(largest_difference(map, all), 1e-8);
+  EXPECT_EQ(map.dof(), all.dof);
+}
+
+/// The turn is about that landmark then, wherever the first one lies.
+TEST(SummarisedSessions, TurnAboutTheOnlyPlaceThatIsKnown) {
+  WheeledRobot robot;
+  robot.compass = false;
+  Days days = days_of(robot, true, 3, 121);
+  for (const std::string known : {"L0_2", "L2_0", "L2_2"}) {
+    Days one = days;
+    for (Recording& recording : one.recordings) {
+      std::erase_if(recording.survey,
+                    [&](const SurveyPoint& point) { return point.landmark != known; });
+    }
+    SummarisedSessions map = summarised(one);
+    const Reference all = adjusted_at_once(one);
+    EXPECT_LT(map.exact_error(), 1e-8);
+    EXPECT_NEAR(map.chi2(), all.chi2, 1e-4);
+    EXPECT_EQ(map.dof(), all.dof);
+    for (std::size_t k = 1; k < map.landmarks().size(); ++k) {
+      const double here = (map.position(static_cast<int>(k)) - map.position(0)).norm();
+      const double there = (all.state.landmarks[k] - all.state.landmarks[0]).norm();
+      EXPECT_NEAR(here, there, 1e-8);
+    }
+  }
+}
+
+/// A day that hangs on one landmark alone can turn about it; so can a path that sees but one.
+TEST(SummarisedSessions, ThatCanTurnAreRefused) {
+  WheeledRobot robot;
+  robot.compass = false;
+  Days days = days_of(robot, false, 2, 131);
+  SummarisedSessions map;
+  map.add(rows_of(days.recordings[0], days, map));
+  Recording hanging = days.recordings[1];
+  for (Sighting& one : hanging.sightings) {
+    if (one.landmark != "L1_1") one.landmark.insert(0, "other ");
+  }
+  EXPECT_THROW(map.add(rows_of(hanging, days, map)), SolveError);
+  EXPECT_EQ(map.sessions(), 1);
+  Recording single = days.recordings[1];
+  std::erase_if(single.sightings, [](const Sighting& one) { return one.landmark != "L1_1"; });
+  EXPECT_THROW(map.add(rows_of(single, days, map)), SolveError);
+  map.add(rows_of(days.recordings[1], days, map));
+  EXPECT_LT(map.exact_error(), 1e-8);
+}
+
+/// As an adjustment does, where the gate leaves out every yaw of a landmark.
+TEST(SummarisedSessions, AnOrientationOfWhichNoYawIsLeftStays) {
+  WheeledRobot robot;
+  robot.markers = true;
+  const Days days = days_of(robot, false, 2, 141);
+  SummarisedSessions map;
+  SessionRows rows = rows_of(days.recordings[0], days, map);
+  rows.weights.assign(rows.problem.measurements.size(), 1.0);
+  const int unseen = rows.problem.pose_end() + 3;
+  for (std::size_t k = 0; k < rows.weights.size(); ++k) {
+    if (rows.problem.measurements[k].to == unseen) rows.weights[k] = 0.0;
+  }
+  const double before = rows.state.orientations[3];
+  const int landmark = rows.problem.oriented[3];
+  map.add(std::move(rows));
+  ASSERT_TRUE(map.orientation(landmark));
+  EXPECT_EQ(*map.orientation(landmark), before);
+  map.add(rows_of(days.recordings[1], days, map));  // which reads it
+  EXPECT_NE(*map.orientation(landmark), before);
+  EXPECT_LT(map.exact_error(), 1e-8);
+}
+
+/// As in an adjustment of all: a second survey of the same numbers may bring a heading.
+TEST(SummarisedSessions, KnowAPlaceOnce) {
+  WheeledRobot robot;
+  robot.markers = true;
+  Days days = days_of(robot, true, 2, 151);
+  for (SurveyPoint& one : days.recordings[0].survey) one.heading = std::nan("");
+  SummarisedSessions map = summarised(days);
+  const Reference all = adjusted_at_once(days);
+  EXPECT_LT(largest_difference(map, all), 1e-8);
+  EXPECT_NEAR(map.chi2(), all.chi2, 1e-4);
+  EXPECT_EQ(map.dof(), all.dof);
+}
+
 TEST(SummarisedSessions, InAnotherOrderAreTheSame) {
   Days days = days_of({true, false, false, 1}, 5, true, 41);
   const SummarisedSessions map = summarised(days);
@@ -203,13 +264,19 @@ TEST(SummarisedSessions, InAnotherOrderAreTheSame) {
   }
 }
 
+/// And on other numbers of threads.
 TEST(SummarisedSessions, GiveTheSameBitsAgain) {
   const Days days = days_of({true, false, true, 1}, 3, true, 51);
   const SummarisedSessions map = summarised(days);
-  const SummarisedSessions again = summarised(days);
-  EXPECT_EQ(map.coefficients(), again.coefficients());
-  for (int k = 0; k < static_cast<int>(map.landmarks().size()); ++k) {
-    EXPECT_EQ(map.position(k), again.position(k));
+  for (const int count : {1, 3}) {
+    set_threads(count);
+    const SummarisedSessions again = summarised(days);
+    set_threads(1);
+    EXPECT_EQ(map.coefficients(), again.coefficients());
+    EXPECT_EQ(map.chi2(), again.chi2());
+    for (int k = 0; k < static_cast<int>(map.landmarks().size()); ++k) {
+      EXPECT_EQ(map.position(k), again.position(k));
+    }
   }
 }
 
@@ -223,25 +290,63 @@ TEST(SummarisedSessions, KeepToACoarserToleranceWithLessWork) {
   EXPECT_LT(coarse.taken_anew(), fine.taken_anew());
 }
 
+/// To the last bit, and what comes after it is as if it had never been tried.
 TEST(SummarisedSessions, ASessionThatFailsChangesNothing) {
-  const Days days = days_of({true, false, false, 1}, 3, false, 71);
+  const Days days = days_of({true, false, false, 1}, 3, true, 71);
   SummarisedSessions map = summarised(days);
+  SummarisedSessions untouched = summarised(days);
+  const auto expect_untouched = [&] {
+    EXPECT_EQ(map.sessions(), untouched.sessions());
+    EXPECT_EQ(map.landmarks(), untouched.landmarks());
+    EXPECT_EQ(map.coefficients(), untouched.coefficients());
+    EXPECT_EQ(map.coefficient_covariance(), untouched.coefficient_covariance());
+    EXPECT_EQ(map.landmark_covariances(), untouched.landmark_covariances());
+    EXPECT_EQ(map.chi2(), untouched.chi2());
+    EXPECT_EQ(map.dof(), untouched.dof());
+    EXPECT_EQ(map.taken_anew(), untouched.taken_anew());
+    for (int k = 0; k < static_cast<int>(untouched.landmarks().size()); ++k) {
+      EXPECT_EQ(map.position(k), untouched.position(k));
+    }
+  };
   SummarisedSessions none;
   SessionRows elsewhere = rows_of(days.recordings[0], days, none);
   for (std::string& name : elsewhere.problem.landmarks) name.insert(0, "other ");
+  EXPECT_THROW(map.add(std::move(elsewhere)), SolveError);
+  expect_untouched();
   SessionRows told_nothing = rows_of(days.recordings[0], days, map);
   told_nothing.problem.landmarks.back() = "new";
+  told_nothing.weights.assign(told_nothing.problem.measurements.size(), 1.0);
+  const int last = told_nothing.problem.landmark_count() - 1;
+  for (std::size_t k = 0; k < told_nothing.weights.size(); ++k) {
+    if (told_nothing.problem.measurements[k].to == last) told_nothing.weights[k] = 0.0;
+  }
+  // The others have been taken anew, by Gauss's and Newton's derivatives, when it is given up.
+  EXPECT_THROW(map.add(std::move(told_nothing), {{"L9_9", {1.0, 2.0}, 0.1}}), SolveError);
+  expect_untouched();
+  SessionRows of_two = rows_of(days.recordings[0], days, map);
+  of_two.problem.sessions.emplace_back("another");
+  EXPECT_THROW(map.add(std::move(of_two)), std::invalid_argument);
+  expect_untouched();
+  EXPECT_LT(map.exact_error(), 1e-8);
+  map.add(rows_of(days.recordings[0], days, map));
+  untouched.add(rows_of(days.recordings[0], days, untouched));
+  expect_untouched();
+}
+
+/// Not even the first.
+TEST(SummarisedSessions, MayBeginAgainAfterAFirstSessionThatFails) {
+  const Days days = days_of({true, false, false, 1}, 1, true, 72);
+  SummarisedSessions map;
+  SessionRows told_nothing = rows_of(days.recordings[0], days, map);
   told_nothing.weights.assign(told_nothing.problem.measurements.size(), 0.0);
-  const Vector2 before = map.position(3);
-  const double chi2 = map.chi2();
-  const std::size_t landmarks = map.landmarks().size();
-  EXPECT_THROW(map.add(elsewhere), SolveError);
-  EXPECT_THROW(map.add(told_nothing), SolveError);
-  EXPECT_EQ(map.sessions(), 3);
-  EXPECT_EQ(map.landmarks().size(), landmarks);
-  EXPECT_EQ(map.position(3), before);
-  EXPECT_NEAR(map.chi2(), chi2, 1e-8);
-  map.add(rows_of(days.recordings[0], days, map));  // and it goes on
+  EXPECT_THROW(map.add(std::move(told_nothing)), SolveError);
+  EXPECT_EQ(map.sessions(), 0);
+  EXPECT_EQ(map.chi2(), 0.0);
+  EXPECT_EQ(map.dof(), 0);
+  EXPECT_EQ(map.exact_error(), 0.0);
+  EXPECT_TRUE(map.landmark_covariances().empty());
+  EXPECT_EQ(map.coefficient_covariance().size(), 0);
+  map.add(rows_of(days.recordings[0], days, map));
   EXPECT_LT(map.exact_error(), 1e-8);
 }
 
@@ -251,31 +356,6 @@ TEST(SummarisedSessions, RefuseOtherCoefficients) {
   map.add(rows_of(days.recordings[0], days, map));
   days.effects = false;
   EXPECT_THROW(map.add(rows_of(days.recordings[1], days, map)), std::invalid_argument);
-}
-
-/// H is the derivative of g, and g that of phi, by differences.
-TEST(SessionSummary, IsTheQuadraticOfItsSession) {
-  Days days = days_of({true, false, true, 1}, 1, false, 91);
-  days.model.noise.processes = {{Channel::bearing, ProcessKind::correlated_in_t, 0.01, 5.0}};
-  days.lever = true;
-  SummarisedSessions none;
-  SessionRows rows = rows_of(days.recordings[0], days, none);
-  const RecordingState state = rows.state;
-  SessionSummary summary(std::move(rows));
-  Eigen::VectorXd u = summary.shared_of(state, Eigen::VectorXd::Constant(1, 0.02));
-  for (Eigen::Index k = 0; k < u.size() - 1; ++k) u[k] += 0.003 * std::sin(static_cast<double>(k));
-  summary.linearise(u);
-  const SessionSummary::Quadratic& one = summary.quadratic();
-  constexpr double kStep = 1e-4;
-  for (const Eigen::Index k : {Eigen::Index{0}, Eigen::Index{5}, u.size() - 1}) {
-    const Eigen::VectorXd move = kStep * Eigen::VectorXd::Unit(u.size(), k);
-    const auto above = summary.value_at(u + move);
-    const auto below = summary.value_at(u - move);
-    const double slope = (above.half_chi2 - below.half_chi2) / (2.0 * kStep);
-    EXPECT_NEAR(slope, one.gradient[k], 1e-4 * one.gradient.norm());
-    const Eigen::VectorXd column = (above.gradient - below.gradient) / (2.0 * kStep);
-    EXPECT_LT((column - one.information.col(k)).norm(), 1e-5 * one.information.col(k).norm());
-  }
 }
 
 }  // namespace

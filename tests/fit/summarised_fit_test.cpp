@@ -82,7 +82,7 @@ TEST(SummarisedFit, IsTheFitOfAllDaysAtOnce) {
     const std::vector<Recording> days = days_of(what, 4, 11);
     const Model model = model_of(what.survey ? std::vector<std::string>{"wheelbase", "wheel scale"}
                                              : std::vector<std::string>{"wheelbase"});
-    const SummarisedFit fit = summarised(days, model);
+    SummarisedFit fit = summarised(days, model);
     const ModelFit all = fit_model(days, model);
     EXPECT_LT(fit.exact_error(), 1e-8);
     const std::vector<FittedLandmark> landmarks = fit.landmarks();
@@ -131,6 +131,10 @@ TEST(SummarisedFit, LeavesOutWhatContradictsTheMap) {
     EXPECT_LT((one.position - places.at(one.name)).norm(), 0.02);
   }
   EXPECT_LT(fit.dof(), clean.dof());
+  ASSERT_FALSE(fit.left_out().empty());
+  EXPECT_EQ(fit.left_out().front().rfind("day 3: standing on landmark L0_0 at t = ", 0), 0U)
+      << fit.left_out().front();
+  EXPECT_TRUE(clean.left_out().empty());
 }
 
 TEST(SummarisedFit, EffectsThatAreHeldActAndStay) {
@@ -158,6 +162,106 @@ TEST(SummarisedFit, RefusesWhatCannotBeSummarised) {
   model.effects[0].channel = Channel::delay;
   model.effects[0].shape = {Shape("1")};
   EXPECT_THROW(SummarisedFit{model}, std::invalid_argument);
+  model = Model{};
+  model.noise.processes = {{Channel::bearing, ProcessKind::white, 0.01, 0.0, 4.0}};
+  EXPECT_THROW(SummarisedFit{model}, std::invalid_argument);
+  for (const double tolerance : {0.0, -1e-8, std::nan("")}) {
+    EXPECT_THROW(SummarisedFit(Model{}, {{}, tolerance}), std::invalid_argument);
+  }
+}
+
+TEST(SummarisedFit, OfNoSessionIsEmpty) {
+  SummarisedFit fit(model_of({"wheelbase"}));
+  EXPECT_EQ(fit.sessions(), 0);
+  EXPECT_TRUE(fit.landmarks().empty());
+  EXPECT_EQ(fit.chi2(), 0.0);
+  EXPECT_EQ(fit.dof(), 0);
+  EXPECT_EQ(fit.exact_error(), 0.0);
+  ASSERT_EQ(fit.effects().size(), 1U);
+  EXPECT_EQ(fit.effects()[0].effect.name, "wheelbase");
+}
+
+TEST(SummarisedFit, ASessionWithoutSightingsOrRowsIsRefused) {
+  const std::vector<Recording> days = days_of({}, 2, 61);
+  for (const bool first : {true, false}) {
+    SummarisedFit fit{Model{}};
+    if (!first) fit.add(days[0]);
+    Recording blind = days[1];
+    blind.sightings.clear();
+    EXPECT_THROW(fit.add(blind), InputError);
+    EXPECT_THROW(fit.add(Recording{}), std::invalid_argument);
+    EXPECT_EQ(fit.sessions(), first ? 0 : 1);
+  }
+}
+
+/// Rooms that a survey alone ties together.
+TEST(SummarisedFit, ASessionElsewhereIsTiedByItsSurvey) {
+  std::vector<Recording> days = days_of({true, true, false}, 2, 71);
+  for (Sighting& one : days[1].sightings) one.landmark.insert(0, "B");
+  for (SurveyPoint& one : days[1].survey) {
+    one.landmark.insert(0, "B");
+    one.x += 40.0;
+  }
+  SummarisedFit fit = summarised(days, Model{});
+  EXPECT_LT(fit.exact_error(), 1e-8);
+  const ModelFit all = fit_model(days, Model{});
+  ASSERT_EQ(fit.landmarks().size(), all.landmarks.size());
+  for (std::size_t k = 0; k < all.landmarks.size(); ++k) {
+    const double sd = std::sqrt(all.landmarks[k].covariance.trace());
+    EXPECT_LT((fit.landmarks()[k].position - all.landmarks[k].position).norm(), 0.05 * sd);
+  }
+  EXPECT_EQ(fit.dof(), all.dof);
+}
+
+/// What is held in place of a direction or position would contradict what measures it: what a
+/// survey lists and no session has sighted lays no frame.
+TEST(SummarisedFit, AFrameThatComesLaterIsRefused) {
+  const auto keep = [](Recording& day, const std::vector<std::string>& names) {
+    std::erase_if(day.survey, [&](const SurveyPoint& one) {
+      return std::ranges::find(names, one.landmark) == names.end();
+    });
+  };
+  std::vector<Recording> days = days_of({false, true, false}, 3, 81);
+  const auto unsight = [](Recording& day, const std::string& name) {
+    std::erase_if(day.sightings, [&](const Sighting& one) { return one.landmark == name; });
+  };
+  {  // of two surveyed landmarks one is sighted: a compass, or the other, would turn the map
+    Recording first = days[0];
+    keep(first, {"L1_1", "L2_2"});
+    unsight(first, "L2_2");
+    Recording same = days[1];
+    same.survey = first.survey;
+    Recording compass = days_of({true, false, false}, 1, 82).front();
+    SummarisedFit fit{Model{}};
+    fit.add(first);
+    EXPECT_NE(refusal(fit, same).find("expected such a session first"), std::string::npos);
+    EXPECT_NE(refusal(fit, compass).find("expected such a session first"), std::string::npos);
+    unsight(same, "L2_2");
+    EXPECT_EQ(refusal(fit, same), "accepted");
+    EXPECT_LT(fit.exact_error(), 1e-8);
+  }
+  {  // none is
+    Recording first = days[0];
+    keep(first, {"L2_2"});
+    unsight(first, "L2_2");
+    Recording sights = days[1];
+    sights.survey.clear();
+    SummarisedFit fit{Model{}};
+    fit.add(first);
+    EXPECT_NE(refusal(fit, sights).find("expected such a session first"), std::string::npos);
+  }
+  {  // a fix a day
+    for (Recording& day : days) {
+      day.survey.clear();
+      day.fixes = {{day.sightings[3].t, 1.0, 2.0}};
+    }
+    SummarisedFit fit{Model{}};
+    fit.add(days[0]);
+    EXPECT_NE(refusal(fit, days[1]).find("expected such a session first"), std::string::npos);
+    days[1].fixes.clear();
+    EXPECT_EQ(refusal(fit, days[1]), "accepted");
+    EXPECT_LT(fit.exact_error(), 1e-8);
+  }
 }
 
 TEST(SummarisedFit, ASessionThatDoesNotJoinIsRefusedAndTheMapStays) {
