@@ -196,11 +196,13 @@ TEST(SummarisedFit, ASessionWithoutSightingsOrRowsIsRefused) {
 
 /// Rooms that a survey alone ties together.
 TEST(SummarisedFit, ASessionElsewhereIsTiedByItsSurvey) {
-  std::vector<Recording> days = days_of({true, true, false}, 2, 71);
+  std::vector<Recording> days = days_of({false, true, false}, 2, 71);
   for (Sighting& one : days[1].sightings) one.landmark.insert(0, "B");
   for (SurveyPoint& one : days[1].survey) {
     one.landmark.insert(0, "B");
-    one.x += 40.0;
+    const Vector2 there = Vector2(40.0, 0.0) + rotation(2.5) * Vector2(one.x, one.y);
+    one.x = there.x();
+    one.y = there.y();
   }
   SummarisedFit fit = summarised(days, Model{});
   EXPECT_LT(fit.exact_error(), 1e-8);
