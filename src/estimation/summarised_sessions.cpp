@@ -3,11 +3,13 @@
 #include "estimation/summarised_sessions.hpp"
 
 #include "geometry/index.hpp"
+#include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -27,19 +29,46 @@ std::optional<double> SummarisedSessions::orientation(int landmark) const {
   return sum_.x[at->second];
 }
 
-/// By a landmark of the map, or to the map's frame.
-bool SummarisedSessions::is_tied(const RecordingProblem& problem,
-                                 const std::vector<KnownPlace>& known) const {
-  const auto is_known = [](const std::vector<KnownPlace>& places, const std::string& landmark) {
-    return std::ranges::find(places, landmark, &KnownPlace::landmark) != places.end();
+/// By two places, or by one and a direction.
+void SummarisedSessions::require_tied(const SessionRows& rows,
+                                      const std::vector<KnownPlace>& known) const {
+  const RecordingProblem& problem = rows.problem;
+  const auto is_in_map = [&](const std::string& landmark) {
+    const auto is_it = [&](const KnownPlace& one) { return one.landmark == landmark; };
+    return has(landmark) || std::ranges::any_of(sum_.known, is_it) ||
+           std::ranges::any_of(known, is_it);
   };
-  return std::ranges::any_of(problem.landmarks,
-                             [&](const std::string& one) {
-                               return has(one) || is_known(sum_.known, one) || is_known(known, one);
-                             }) ||
-         std::ranges::any_of(problem.measurements, [](const Measurement& one) {
-           return one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix;
-         });
+  const auto has_axis = [&](const std::string& landmark) {
+    const auto is_it = [&](const KnownPlace& one) {
+      return one.landmark == landmark && !std::isnan(one.heading);
+    };
+    return has_orientation(landmark) || std::ranges::any_of(sum_.known, is_it) ||
+           std::ranges::any_of(known, is_it);
+  };
+  std::set<std::string> places;
+  bool direction = false;
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+    const Measurement& one = problem.measurements[k];
+    if (!rows.weights.empty() && rows.weights[k] == 0.0) continue;
+    if (one.kind == MeasurementKind::truth) return;
+    if (one.kind == MeasurementKind::segment && one.rows == 4) direction = true;
+    if (one.kind == MeasurementKind::sighting_yaw && has_axis(problem.landmark_of(one.to))) {
+      direction = true;
+    }
+    if (one.kind == MeasurementKind::fix) places.insert(describe(problem, one));
+    if (!is_sighting(one.kind)) continue;
+    const std::string& landmark = problem.landmarks[idx(one.to)];
+    if (is_in_map(landmark)) places.insert("landmark " + landmark);
+  }
+  if (places.empty()) {
+    throw SolveError(problem.sessions.front() +
+                     " stands apart: no landmark ties it to the sessions before");
+  }
+  if (places.size() > 1 || direction) return;
+  throw SolveError(
+      trussmap::joined(problem.sessions.front(), " can turn about ", *places.begin(),
+                       ", by which alone it is tied to the sessions before; sight another "
+                       "landmark of theirs"));
 }
 
 /// Gives what the session brings its place in x.
@@ -133,7 +162,7 @@ std::vector<Eigen::Index> SummarisedSessions::apart() const {
 
 /// Of H, with what is apart from all else.
 DenseCholesky SummarisedSessions::factor() const {
-  constexpr double kLeastShare = 1e-10;  // rounding leaves a thousandth of it where nothing is told
+  constexpr double kLeastShare = 1e-8;  // where nothing is told rounding leaves 1e-11
   Eigen::MatrixXd H = sum_.information;
   for (const Eigen::Index at : apart()) {
     H.row(at).setZero();
@@ -248,10 +277,7 @@ void SummarisedSessions::add(SessionRows rows, const std::vector<KnownPlace>& kn
     if (static_cast<int>(unknown_coefficients(rows.border).size()) != sum_.coefficients) {
       throw std::invalid_argument("every session has the same coefficients");
     }
-    if (!is_tied(rows.problem, known)) {
-      throw SolveError(rows.problem.sessions.front() +
-                       " stands apart: no landmark ties it to the sessions before");
-    }
+    require_tied(rows, known);
   }
   Sum before = sum_;
   const std::size_t count = sessions_.size();

@@ -60,9 +60,9 @@ class SummarisedSessions {
   /// Takes a session in; the known places count beside the sessions, the same numbers once. The
   /// state of the session is near the map's where both have a landmark, and in its frame: nothing
   /// of it may give a position or direction where the first session left one to be held. Throws
-  /// SolveError where the sum has no minimum or no landmark, truth or fix ties the session to the
-  /// map, std::invalid_argument where its coefficients are others; whatever is thrown, all is then
-  /// as it was.
+  /// SolveError where the sum has no minimum or neither truth, two places (landmarks, fixes) nor
+  /// one and a direction tie the session to the map, std::invalid_argument where its coefficients
+  /// are others; whatever is thrown, all is then as it was.
   void add(SessionRows rows, const std::vector<KnownPlace>& known = {});
 
   [[nodiscard]] int sessions() const { return static_cast<int>(sessions_.size()); }
@@ -127,8 +127,7 @@ class SummarisedSessions {
     int taken_anew = 0;
   };
 
-  [[nodiscard]] bool is_tied(const RecordingProblem& problem,
-                             const std::vector<KnownPlace>& known) const;
+  void require_tied(const SessionRows& rows, const std::vector<KnownPlace>& known) const;
   void begin(const EffectParameters& border);
   void know(const std::vector<KnownPlace>& known);
   void take_in(SessionRows rows, const std::vector<KnownPlace>& known);
