@@ -33,17 +33,11 @@ std::optional<double> SummarisedSessions::orientation(int landmark) const {
 void SummarisedSessions::require_tied(const SessionRows& rows,
                                       const std::vector<KnownPlace>& known) const {
   const RecordingProblem& problem = rows.problem;
-  const auto is_in_map = [&](const std::string& landmark) {
-    const auto is_it = [&](const KnownPlace& one) { return one.landmark == landmark; };
-    return has(landmark) || std::ranges::any_of(sum_.known, is_it) ||
-           std::ranges::any_of(known, is_it);
-  };
-  const auto has_axis = [&](const std::string& landmark) {
-    const auto is_it = [&](const KnownPlace& one) {
-      return one.landmark == landmark && !std::isnan(one.heading);
+  const auto is_known = [&](const std::string& landmark, bool with_heading) {
+    const auto tells = [&](const KnownPlace& one) {
+      return one.landmark == landmark && !(with_heading && std::isnan(one.heading));
     };
-    return has_orientation(landmark) || std::ranges::any_of(sum_.known, is_it) ||
-           std::ranges::any_of(known, is_it);
+    return std::ranges::any_of(sum_.known, tells) || std::ranges::any_of(known, tells);
   };
   std::set<std::string> places;
   bool direction = false;
@@ -52,13 +46,14 @@ void SummarisedSessions::require_tied(const SessionRows& rows,
     if (!rows.weights.empty() && rows.weights[k] == 0.0) continue;
     if (one.kind == MeasurementKind::truth) return;
     if (one.kind == MeasurementKind::segment && one.rows == 4) direction = true;
-    if (one.kind == MeasurementKind::sighting_yaw && has_axis(problem.landmark_of(one.to))) {
-      direction = true;
+    if (one.kind == MeasurementKind::sighting_yaw) {
+      const std::string& landmark = problem.landmark_of(one.to);
+      direction = direction || has_orientation(landmark) || is_known(landmark, true);
     }
     if (one.kind == MeasurementKind::fix) places.insert(describe(problem, one));
     if (!is_sighting(one.kind)) continue;
     const std::string& landmark = problem.landmarks[idx(one.to)];
-    if (is_in_map(landmark)) places.insert("landmark " + landmark);
+    if (has(landmark) || is_known(landmark, false)) places.insert("landmark " + landmark);
   }
   if (places.empty()) {
     throw SolveError(problem.sessions.front() +

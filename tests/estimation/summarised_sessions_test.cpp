@@ -229,6 +229,22 @@ TEST(SummarisedSessions, ThatCanTurnAreRefused) {
   EXPECT_LT(map.exact_error(), 1e-8);
 }
 
+/// Unless that landmark has an axis, which both have read.
+TEST(SummarisedSessions, MayHangOnALandmarkWithAnAxis) {
+  WheeledRobot robot;
+  robot.compass = false;
+  robot.markers = true;
+  Days days = days_of(robot, false, 2, 135);
+  for (Sighting& one : days.recordings[1].sightings) {
+    if (one.landmark != "L1_1") one.landmark.insert(0, "other ");
+  }
+  SummarisedSessions map = summarised(days);
+  const Reference all = adjusted_at_once(days);
+  EXPECT_EQ(map.landmarks().size(), 17U);
+  EXPECT_LT(largest_difference(map, all), 1e-8);
+  EXPECT_EQ(map.dof(), all.dof);
+}
+
 /// As an adjustment does, where the gate leaves out every yaw of a landmark.
 TEST(SummarisedSessions, AnOrientationOfWhichNoYawIsLeftStays) {
   WheeledRobot robot;
