@@ -9,8 +9,9 @@
 // first) and the nine numbers of the view. Of ways in the axes of their start, where no number of
 // the view is asked for, in closed form: with f = R w, v the way in map axes,
 //
-//   by theta twice  -f.v      by theta and its end  f turned by a quarter, by its start the
-//   opposite
+//   by theta twice                -f.v
+//   by theta and the way's end    f turned by a quarter
+//   by theta and its start        the opposite
 //
 // else by numerical derivatives of measurement_rows: central differences, whose error is about 1e-9
 // of the value.
