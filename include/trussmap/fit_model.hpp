@@ -89,6 +89,69 @@ struct ModelFit {
 [[nodiscard]] ModelFit fit_model(const std::vector<Recording>& recordings, const Model& model,
                                  const FitOptions& options = {});
 
+// ----------------------------------------
+// Day after day. A session that has been fitted enters the next fit as what it says of landmarks
+// and coefficients, its path eliminated: the quadratic of its own least squares there, with all
+// second derivatives. Adding a day costs a day, a few factorisations of the sum, and a step of each
+// session that is taken anew, from the rows that are kept of it, for the map has moved so far from
+// where its quadratic was taken that it would matter.
+//
+//   SummarisedFit fit(model);
+//   for (const Recording& day : days) fit.add(day);
+//   fit.landmarks(), fit.model()
+//
+// Every session's rows are laid when it is added, on the map that there is then: its effects'
+// columns, and the noise of its segments, are those of its path on that map, and what the gate left
+// out of it stays out. Of these rows the result is the least squares solution, of all sessions at
+// once, to the tolerance. fit_model of all recordings lays the rows on the map of all, and so
+// differs by a share of the map's uncertainty (docs/methods.md).
+//
+// The frame is the first session's, as that of fit_model, but that where nothing measures a
+// direction one coordinate of a landmark is held instead of a heading.
+
+struct SummarisedFitOptions {
+  FitOptions fit;
+  /// m, rad, units of coefficients: how far the result may be from the least squares solution.
+  double tolerance = 1e-8;
+};
+
+class SummarisedFit {
+ public:
+  /// Throws std::invalid_argument where the model has what cannot be summarised: an effect per
+  /// session or of the variable `session`, a delay, steering, noise with heavy tails; or where the
+  /// tolerance is not positive.
+  explicit SummarisedFit(const Model& model, const SummarisedFitOptions& options = {});
+  ~SummarisedFit();
+  SummarisedFit(SummarisedFit&&) noexcept;
+  SummarisedFit& operator=(SummarisedFit&&) noexcept;
+
+  /// Takes a session in, or where it throws leaves all as it was. The first one lays the frame, and
+  /// has to show every coefficient. Throws as fit_model does, InputError where no landmark was
+  /// sighted, SolveError where a further session is not tied to the map by two places or by one and
+  /// a direction, or brings what gives a position or a direction (truth, fixes, compass, surveyed
+  /// landmarks) to a map whose first session had none.
+  void add(const Recording& recording);
+
+  [[nodiscard]] int sessions() const;
+  [[nodiscard]] Model model() const;  ///< with the coefficients found
+  [[nodiscard]] std::vector<EffectEstimate> effects() const;
+  /// In order of first sighting; covariances by chi^2's whole second derivatives.
+  [[nodiscard]] std::vector<FittedLandmark> landmarks() const;
+  [[nodiscard]] double chi2() const;  ///< of all sessions
+  [[nodiscard]] int dof() const;      ///< measured values less unknowns, as ModelFit's
+  /// Sightings, fixes and loops that the gate left out, session by session.
+  [[nodiscard]] const std::vector<std::string>& left_out() const;
+  /// How often the last add took an older session anew.
+  [[nodiscard]] int taken_anew() const;
+  /// How far the result is from the least squares solution, m, rad, units of coefficients, by every
+  /// session's exact gradient: for checks, it costs a step of all sessions.
+  [[nodiscard]] double exact_error();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// The map of a fit, as it is drawn.
 struct FittedMap {
   std::vector<FittedLandmark> landmarks;

@@ -21,7 +21,10 @@ constexpr std::size_t kColumnsAtOnce = 8;
 
 std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge& gauge) {
   std::vector<int> sizes(idx(problem.nodes()));
-  for (int node = 0; node < problem.nodes(); ++node) sizes[idx(node)] = problem.size_of(node);
+  for (int node = 0; node < problem.nodes(); ++node) {
+    const bool of_map = problem.is_landmark(node) || problem.is_orientation(node);
+    sizes[idx(node)] = gauge.hold_map && of_map ? 0 : problem.size_of(node);
+  }
   if (gauge.hold_landmark) sizes[0] = 0;
   sizes.resize(sizes.size() + problem.noise_states.size(), 1);
   return sizes;
@@ -74,10 +77,14 @@ bool touches_drives(const EffectParameters& border) {
 }  // namespace
 
 RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectParameters& border)
+    : RecordingSystem(problem, border, choose_gauge(problem)) {}
+
+RecordingSystem::RecordingSystem(const RecordingProblem& problem, const EffectParameters& border,
+                                 const RecordingGauge& gauge)
     : problem_(problem),
       border_(border),
       unknown_(unknown_coefficients(border)),
-      gauge_(choose_gauge(problem)),
+      gauge_(gauge),
       root_weights_(problem.measurements.size()),
       normal_(lay_out(problem, gauge_)),
       J_(problem.measurements.size()) {
@@ -197,7 +204,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
 
 /// One of which every yaw has been left out stays where it is.
 void RecordingSystem::hold_unseen_orientations() {
-  if (problem_.oriented.empty()) return;
+  if (problem_.oriented.empty() || gauge_.hold_map) return;
   const Eigen::VectorXd diagonal = normal_.diagonal();
   for (int node = problem_.pose_end(); node < problem_.nodes(); ++node) {
     if (diagonal[normal_.offset(node)] > 0.0) continue;

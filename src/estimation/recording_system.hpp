@@ -33,6 +33,7 @@ struct RecordingGauge {
   bool hold_landmark = false;  ///< the first one
   bool hold_heading = false;   ///< of the first pose
   bool hold_position = false;  ///< of the first pose, where there is no landmark to hold
+  bool hold_map = false;       ///< all landmarks and orientations: poses and noise alone are free
 };
 
 /// What no measurement of the problem fixes. Throws SolveError where sessions have nothing in
@@ -51,6 +52,13 @@ class RecordingSystem {
   RecordingSystem(const RecordingProblem& problem, const EffectParameters& border);
   RecordingSystem(const RecordingProblem& problem, EffectParameters&& border) = delete;
   RecordingSystem(RecordingProblem&& problem, const EffectParameters& border) = delete;
+  /// Holds what the caller says instead of what choose_gauge does.
+  RecordingSystem(const RecordingProblem& problem, const EffectParameters& border,
+                  const RecordingGauge& gauge);
+  RecordingSystem(const RecordingProblem& problem, EffectParameters&& border,
+                  const RecordingGauge& gauge) = delete;
+  RecordingSystem(RecordingProblem&& problem, const EffectParameters& border,
+                  const RecordingGauge& gauge) = delete;
 
   /// `coefficients` are the unknown ones. chi^2 (with priors), and with it r, J, M, A, B, D at
   /// these values. With headings held, a step moves positions (and coefficients) only.
@@ -61,6 +69,10 @@ class RecordingSystem {
   void set_slack(double turn) { slack_ = turn; }
   static constexpr double kFineSlack = 1e-6;   ///< what it is at first
   static constexpr double kRoughSlack = 1e-3;  ///< on the way to a fit
+  /// Adds to A, until the next linearise, a symmetric matrix by what a measurement touches, in the
+  /// order and the widths of node_rows: what Gauss and Newton leave out of chi^2's second
+  /// derivatives. Zero by what is held.
+  void add_curvature(std::size_t measurement, const Eigen::MatrixXd& curvature);
   /// Multiplies the information of each measurement from the next linearise on.
   void set_weights(const std::vector<double>& weights);
 
@@ -106,6 +118,12 @@ class RecordingSystem {
   }
   [[nodiscard]] const Eigen::VectorXd& residuals() const { return residuals_; }
   [[nodiscard]] const Eigen::MatrixXd& border() const { return M_; }
+  /// J'r, by the nodes.
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
+  /// The square root of what a measurement's information counts.
+  [[nodiscard]] double root_weight(std::size_t measurement) const {
+    return root_weights_[measurement];
+  }
   /// Squared whitened error of each measurement, as if all weights were 1; of one with heavy tails
   /// what is as unlikely (tail_deviance).
   [[nodiscard]] const std::vector<double>& squared_errors() const { return squared_errors_; }
@@ -163,6 +181,8 @@ class RecordingSystem {
   }
   void linearise_states(const Eigen::VectorXd& states);
   void add_states_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
+  void add_block(int node, const Eigen::MatrixXd& block);
+  void add_block_between(int pair, const Eigen::MatrixXd& block);
   [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
   void hold_unseen_orientations();
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);

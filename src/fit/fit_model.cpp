@@ -61,6 +61,14 @@ FitterOptions fitter_options(const FitOptions& options) {
   return how;
 }
 
+std::vector<std::string> left_out_texts(const FitState& fit) {
+  std::vector<std::string> texts;
+  for (const int k : fit.adjustment.left_out) {
+    texts.push_back(left_out_text(fit, fit.problem.measurements[idx(k)]));
+  }
+  return texts;
+}
+
 int estimated_coefficients(const FitState& fit) {
   return static_cast<int>(unknown_coefficients(fit.columns.border).size());
 }
@@ -76,9 +84,7 @@ ModelFit model_fit(FitState state, const FitOptions& options) {
   fit.coefficients = estimated_coefficients(state);
   fit.p_value = state.adjustment.p_value;
   fit.settled = state.settled;
-  for (const int k : state.adjustment.left_out) {
-    fit.left_out.push_back(left_out_text(state, state.problem.measurements[idx(k)]));
-  }
+  fit.left_out = left_out_texts(state);
   fit.warnings = state.adjustment.warnings;
   std::ranges::move(mirror_warnings(state.problem, state.adjustment),
                     std::back_inserter(fit.warnings));

@@ -74,6 +74,9 @@ struct FitState {
 [[nodiscard]] ModelFit refit(const std::vector<Recording>& recordings, const Model& model,
                              const ModelFit& near);
 
+/// What the gate left out of it, in the user's words.
+[[nodiscard]] std::vector<std::string> left_out_texts(const FitState& fit);
+
 /// How many coefficients were estimated.
 [[nodiscard]] int estimated_coefficients(const FitState& fit);
 

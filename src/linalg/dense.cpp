@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/dense.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -26,6 +28,23 @@ Eigen::Vector3d symmetric_eigenvalues(const Matrix3& A) {
 }
 
 DenseCholesky::DenseCholesky(const Eigen::MatrixXd& A) : factor_(A) {}
+
+Eigen::MatrixXd DenseCholesky::solve(const Eigen::MatrixXd& b) const {
+  return factor_.solve(b);
+}
+
+double DenseCholesky::least_pivot_share() const {
+  const Eigen::MatrixXd L = factor_.matrixL();
+  double least = 1.0;
+  for (Eigen::Index k = 0; k < L.rows(); ++k) {
+    least = std::min(least, L(k, k) * L(k, k) / L.row(k).squaredNorm());
+  }
+  return least;
+}
+
+Eigen::VectorXd DenseCholesky::solve_half(const Eigen::VectorXd& b) const {
+  return factor_.matrixU().solve(b);
+}
 
 Eigen::MatrixXd DenseCholesky::inverse() const {
   return factor_.solve(Eigen::MatrixXd::Identity(factor_.rows(), factor_.cols()));

@@ -37,9 +37,14 @@ class DenseCholesky {
   explicit DenseCholesky(const Eigen::MatrixXd& A);
 
   [[nodiscard]] bool positive_definite() const { return factor_.info() == Eigen::Success; }
-  [[nodiscard]] Eigen::MatrixXd inverse() const;         ///< A^-1
-  [[nodiscard]] Eigen::MatrixXd inverse_factor() const;  ///< L^-1
-  [[nodiscard]] double log_determinant() const;          ///< of A
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;       ///< A^-1 b
+  [[nodiscard]] Eigen::VectorXd solve_half(const Eigen::VectorXd& b) const;  ///< L^-T b
+  [[nodiscard]] Eigen::MatrixXd inverse() const;                             ///< A^-1
+  [[nodiscard]] Eigen::MatrixXd inverse_factor() const;                      ///< L^-1
+  [[nodiscard]] double log_determinant() const;                              ///< of A
+  /// Least L(i,i)^2/A(i,i): what an unknown keeps of its own where those before it are free. 1:
+  /// all are independent; 0, but for rounding: A is singular.
+  [[nodiscard]] double least_pivot_share() const;
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;
