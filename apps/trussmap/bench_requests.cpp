@@ -113,24 +113,19 @@ LocalReply shown_effect(const json& asked, const BenchView& view) {
 BenchWork::Step step_of(const json& asked, const BenchView& view) {
   const auto what = asked.at("do").get<std::string>();
   if (what == "add") {
-    return
-        [effect = effect_of(asked, view)](Workbench& bench, const Workbench::Progress& progress) {
-          bench.add(effect, progress);
-        };
+    return [effect = effect_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
+      bench.add(effect, watch);
+    };
   }
   if (what == "remove") {
     const auto effect = asked.at("effect").get<std::size_t>();
     if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
-    return [effect](Workbench& bench, const Workbench::Progress& progress) {
-      bench.remove(effect, progress);
-    };
+    return [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.remove(effect, watch); };
   }
   if (what == "go") {
     const auto step = asked.at("step").get<std::size_t>();
     if (step >= view.log.steps.size()) throw Refusal{400, "there is no such step"};
-    return [step](Workbench& bench, const Workbench::Progress& progress) {
-      bench.go_to(step, progress);
-    };
+    return [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); };
   }
   throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove or go", what)};
 }

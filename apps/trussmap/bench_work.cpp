@@ -84,47 +84,62 @@ std::string BenchWork::status() const {
   return result.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-Workbench::Progress BenchWork::reporter() {
-  const std::scoped_lock lock(mutex_);
-  clock_.emplace(stages());
-  began_ = std::chrono::steady_clock::now();
-  return [this](TryingStage) {
-    const std::scoped_lock inner(mutex_);
-    clock_->next(seconds());
-  };
+WorkbenchWatch BenchWork::watch() {
+  {
+    const std::scoped_lock lock(mutex_);
+    clock_.emplace(stages());
+    began_ = std::chrono::steady_clock::now();
+  }
+  return {[this](TryingStage stage) {
+            const std::scoped_lock lock(mutex_);
+            if (stage == TryingStage::fitting) clock_.emplace(stages());
+            clock_->next(seconds());
+          },
+          [this](const TriedModel& now, const WorkbenchLog& log) {
+            show(now, log, true);
+            const std::scoped_lock lock(mutex_);
+            note_ = "The noise is still being estimated: figures may change a little.";
+            began_ = std::chrono::steady_clock::now();
+          }};
 }
 
-/// On disk first: what is shown is never lost.
+void BenchWork::show(const TriedModel& now, const WorkbenchLog& log, bool provisional) {
+  std::string json = workbench_json(now, log, job_.subject, provisional);
+  const std::scoped_lock lock(mutex_);
+  const std::size_t version = view_ ? view_->version + 1 : 1;
+  view_ = std::make_shared<const BenchView>(BenchView{version, now, log, std::move(json)});
+}
+
+/// On disk first: what is shown as done is never lost.
 void BenchWork::publish(const Workbench& bench) {
   const WorkbenchLog& log = bench.log();
   write_files({}, {{job_.folder,
                     {{kLog, format_workbench_log(log, job_.recordings)},
                      {kModel, format_model(bench.now().fit().model)}},
                     {}}});
-  std::string json = workbench_json(bench, job_.subject);
-  const std::scoped_lock lock(mutex_);
-  const std::size_t version = view_ ? view_->version + 1 : 1;
-  view_ = std::make_shared<const BenchView>(BenchView{version, bench.now(), log, std::move(json)});
+  show(bench.now(), log, false);
 }
 
 void BenchWork::work(const Step& step) {
   std::string failed;
+  const std::shared_ptr<const BenchView> before = view();
   try {
-    step(*bench_, reporter());
+    step(*bench_, watch());
     publish(*bench_);
   } catch (const std::exception& error) {
     failed = error.what();
+    if (before && view() != before) show(before->now, before->log, false);
   }
   const std::scoped_lock lock(mutex_);
   failed_ = std::move(failed);
+  note_.clear();
   busy_ = false;
 }
 
 void BenchWork::run() {
-  const auto first = [this](Workbench&, const Workbench::Progress& progress) {
-    bench_ = log_
-                 ? std::make_unique<Workbench>(job_.recordings, *log_, job_.options, progress)
-                 : std::make_unique<Workbench>(job_.recordings, job_.model, job_.options, progress);
+  const auto first = [this](Workbench&, const WorkbenchWatch& watch) {
+    bench_ = log_ ? std::make_unique<Workbench>(job_.recordings, *log_, job_.options, watch)
+                  : std::make_unique<Workbench>(job_.recordings, job_.model, job_.options, watch);
   };
   work(first);
   while (true) {

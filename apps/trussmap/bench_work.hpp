@@ -54,7 +54,7 @@ class BenchWork {
   [[nodiscard]] std::shared_ptr<const BenchView> view() const;
 
   enum class Taken { yes, busy, outdated };
-  using Step = std::function<void(Workbench&, const Workbench::Progress&)>;
+  using Step = std::function<void(Workbench&, const WorkbenchWatch&)>;
   /// A step on what `version` left. What goes wrong in it is said in the next status.
   Taken begin(std::size_t version, Step step);
 
@@ -65,7 +65,8 @@ class BenchWork {
   void run();
   void work(const Step& step);
   void publish(const Workbench& bench);
-  [[nodiscard]] Workbench::Progress reporter();
+  void show(const TriedModel& now, const WorkbenchLog& log, bool provisional);
+  [[nodiscard]] WorkbenchWatch watch();
   [[nodiscard]] double seconds() const;
 
   BenchJob job_;

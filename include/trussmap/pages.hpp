@@ -34,7 +34,8 @@ struct FleetReport;
 struct PageContent;
 struct TourResult;
 struct EffectPreview;
-class Workbench;
+class TriedModel;
+struct WorkbenchLog;
 
 /// Copies share the content, which nothing changes: threads may use them at once.
 class Page {
@@ -109,8 +110,10 @@ struct TruthCalibration {
 /// The page of a workbench: it asks the program that serves it for what it shows. Its content
 /// security policy lets this script run and no other, and ask no other program.
 [[nodiscard]] std::string workbench_page(const PageRuntime& runtime);
-/// What that page shows, as JSON: verdict, cards, charts, steps (docs/workbench.md).
-[[nodiscard]] std::string workbench_json(const Workbench& bench, const std::string& subject);
+/// What that page shows, as JSON: verdict, cards, charts, steps. `provisional`: by the noise as
+/// stated, while it is still being estimated.
+[[nodiscard]] std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
+                                         const std::string& subject, bool provisional = false);
 /// The same of an effect that is looked at: "+ name" beside the present model's error `arrival_rms`
 /// [m]. Of one that the model has, without figures of what it would save.
 [[nodiscard]] std::string preview_json(const EffectPreview& preview, double arrival_rms);

@@ -119,17 +119,24 @@ struct WorkbenchLog {
 /// From the given model to this step, by `from`.
 [[nodiscard]] std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step);
 
+/// What is told while a step is made; each may be empty.
+struct WorkbenchWatch {
+  std::function<void(TryingStage)> progress = {};
+  /// The model by the noise that it states, and the log with its step, while the noise is still
+  /// being estimated: a first look, whose figures change a little. Only where that changes
+  /// anything.
+  std::function<void(const TriedModel&, const WorkbenchLog&)> provisional = {};
+};
+
 class Workbench {
  public:
-  using Progress = std::function<void(TryingStage)>;
-
   /// Begins with the model as given.
   Workbench(std::vector<Recording> recordings, const Model& model,
-            const DiagnoseOptions& options = {}, const Progress& progress = {});
+            const DiagnoseOptions& options = {}, const WorkbenchWatch& watch = {});
   /// Goes on where a log ends. Throws std::invalid_argument on a log without steps or with steps
   /// that come from none.
   Workbench(std::vector<Recording> recordings, WorkbenchLog log,
-            const DiagnoseOptions& options = {}, const Progress& progress = {});
+            const DiagnoseOptions& options = {}, const WorkbenchWatch& watch = {});
 
   [[nodiscard]] const TriedModel& now() const { return *now_; }
   [[nodiscard]] const WorkbenchLog& log() const { return log_; }
@@ -137,14 +144,14 @@ class Workbench {
   // Each makes a step, or throws like fit_model (std::invalid_argument: an effect of this name is
   // there already, or cannot be applied; std::out_of_range) and leaves all as it was.
 
-  void add(const Effect& effect, const Progress& progress = {});
-  void remove(std::size_t effect, const Progress& progress = {});
+  void add(const Effect& effect, const WorkbenchWatch& watch = {});
+  void remove(std::size_t effect, const WorkbenchWatch& watch = {});
   /// Back, or on, to a step that was made.
-  void go_to(std::size_t step, const Progress& progress = {});
+  void go_to(std::size_t step, const WorkbenchWatch& watch = {});
 
  private:
-  [[nodiscard]] TriedModel tried(const Model& model, const Progress& progress) const;
-  void take(WorkbenchStep step, const Progress& progress);
+  [[nodiscard]] TriedModel tried(const WorkbenchLog& log, const WorkbenchWatch& watch) const;
+  void take(WorkbenchStep step, const WorkbenchWatch& watch);
 
   std::shared_ptr<const std::vector<Recording>> recordings_;
   DiagnoseOptions options_;

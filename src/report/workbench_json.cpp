@@ -265,9 +265,8 @@ ordered_json noise_json(const TriedModel& now) {
 
 }  // namespace
 
-std::string workbench_json(const Workbench& bench, const std::string& subject) {
-  const TriedModel& now = bench.now();
-  const WorkbenchLog& log = bench.log();
+std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
+                           const std::string& subject, bool provisional) {
   const std::vector<std::size_t> way = way_to(log, log.at);
   ordered_json steps = ordered_json::array();
   for (std::size_t k = 0; k < log.steps.size(); ++k) steps.push_back(step_json(log, k, way));
@@ -279,6 +278,7 @@ std::string workbench_json(const Workbench& bench, const std::string& subject) {
                                    : route_chart("map", "The map, routes by what is left",
                                                  now.map(), routes, worst);
   return safe_text({{"subject", subject},
+                    {"provisional", provisional},
                     {"at", log.at},
                     {"steps", std::move(steps)},
                     {"verdict", verdict_json(now)},

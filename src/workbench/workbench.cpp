@@ -24,6 +24,14 @@ void check(const WorkbenchLog& log) {
   }
 }
 
+void put_figures(WorkbenchStep& step, const TriedModel& model) {
+  const HeldOut& held_out = model.diagnosis().held_out;
+  step.arrival_rms = held_out.arrival_rms;
+  step.expected_rms = held_out.expected_rms;
+  step.chi2 = model.fit().chi2;
+  step.dof = model.fit().dof;
+}
+
 }  // namespace
 
 std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step) {
@@ -34,47 +42,58 @@ std::vector<std::size_t> way_to(const WorkbenchLog& log, std::size_t step) {
 }
 
 Workbench::Workbench(std::vector<Recording> recordings, const Model& model,
-                     const DiagnoseOptions& options, const Progress& progress)
+                     const DiagnoseOptions& options, const WorkbenchWatch& watch)
     : recordings_(std::make_shared<const std::vector<Recording>>(std::move(recordings))),
       options_(options) {
   options_.fit.fit_effects = true;
   WorkbenchStep given;
   given.model = model;
-  take(std::move(given), progress);
+  take(std::move(given), watch);
 }
 
 Workbench::Workbench(std::vector<Recording> recordings, WorkbenchLog log,
-                     const DiagnoseOptions& options, const Progress& progress)
+                     const DiagnoseOptions& options, const WorkbenchWatch& watch)
     : recordings_(std::make_shared<const std::vector<Recording>>(std::move(recordings))),
       options_(options),
       log_(std::move(log)) {
   check(log_);
   options_.fit.fit_effects = true;
-  now_ = tried(log_.steps[log_.at].model, progress);
+  now_ = tried(log_, watch);
   kept_.emplace_back(log_.at, *now_);
 }
 
-TriedModel Workbench::tried(const Model& model, const Progress& progress) const {
-  return {recordings_, model, options_, progress};
+/// The model at which this log is. By stated noise first, where somebody watches: what takes most
+/// of the time is to estimate the noise, where there is more of it than stated.
+TriedModel Workbench::tried(const WorkbenchLog& log, const WorkbenchWatch& watch) const {
+  const Model& model = log.steps[log.at].model;
+  if (watch.provisional && options_.estimate_noise) {
+    DiagnoseOptions as_stated = options_;
+    as_stated.estimate_noise = false;
+    TriedModel first(recordings_, model, as_stated, watch.progress);
+    const bool fits = first.fit().p_value > kSignificance;
+    if (fits && first.diagnosis().verdict != Diagnosis::Verdict::missing) return first;
+    WorkbenchLog with = log;
+    put_figures(with.steps[with.at], first);
+    watch.provisional(first, with);
+  }
+  return {recordings_, model, options_, watch.progress};
 }
 
 /// Nothing is changed until the model has been tried.
-void Workbench::take(WorkbenchStep step, const Progress& progress) {
-  TriedModel model = tried(step.model, progress);
-  const HeldOut& held_out = model.diagnosis().held_out;
-  step.arrival_rms = held_out.arrival_rms;
-  step.expected_rms = held_out.expected_rms;
-  step.chi2 = model.fit().chi2;
-  step.dof = model.fit().dof;
+void Workbench::take(WorkbenchStep step, const WorkbenchWatch& watch) {
+  WorkbenchLog log = log_;
+  log.steps.push_back(std::move(step));
+  log.at = log.steps.size() - 1;
+  TriedModel model = tried(log, watch);
+  put_figures(log.steps.back(), model);
   const std::size_t most = model.comparison().legs > kLegsOfSmallRecordings ? 1 : kKept;
-  log_.steps.push_back(std::move(step));
-  log_.at = log_.steps.size() - 1;
-  kept_.emplace_back(log_.at, model);
+  kept_.emplace_back(log.at, model);
   if (kept_.size() > most) kept_.erase(kept_.begin());
+  log_ = std::move(log);
   now_ = std::move(model);
 }
 
-void Workbench::add(const Effect& effect, const Progress& progress) {
+void Workbench::add(const Effect& effect, const WorkbenchWatch& watch) {
   WorkbenchStep step;
   step.kind = WorkbenchStep::Kind::add;
   step.effect = effect.name;
@@ -90,25 +109,27 @@ void Workbench::add(const Effect& effect, const Progress& progress) {
   if (preview.predicted) step.predicted_rms = preview.predicted->arrival_rms;
   step.model.effects.push_back(effect);
   step.model.effects.back().coefficients.clear();
-  take(std::move(step), progress);
+  take(std::move(step), watch);
 }
 
-void Workbench::remove(std::size_t effect, const Progress& progress) {
+void Workbench::remove(std::size_t effect, const WorkbenchWatch& watch) {
   WorkbenchStep step;
   step.kind = WorkbenchStep::Kind::remove;
   step.from = log_.at;
   step.model = log_.steps[log_.at].model;
   step.effect = step.model.effects.at(effect).name;
   step.model.effects.erase(step.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  take(std::move(step), progress);
+  take(std::move(step), watch);
 }
 
-void Workbench::go_to(std::size_t step, const Progress& progress) {
-  const Model& model = log_.steps.at(step).model;
+void Workbench::go_to(std::size_t step, const WorkbenchWatch& watch) {
+  WorkbenchLog log = log_;
+  static_cast<void>(log.steps.at(step));
+  log.at = step;
   const auto kept = std::find_if(kept_.begin(), kept_.end(),
                                  [step](const auto& one) { return one.first == step; });
-  now_ = kept != kept_.end() ? kept->second : tried(model, progress);
-  log_.at = step;
+  now_ = kept != kept_.end() ? kept->second : tried(log, watch);
+  log_ = std::move(log);
 }
 
 }  // namespace trussmap

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace trussmap {
@@ -30,8 +31,12 @@ std::vector<std::string> served(const ScratchFolder& scratch, const std::string&
   return {recording, "--model", model, "--work", (scratch.path() / "work").string()};
 }
 
-std::string version_is(int version) {
-  return "document.documentElement.dataset.version === '" + std::to_string(version) + "'";
+/// So many steps were made, the work is at this one, and none is under way.
+std::string at_step(int step, int steps) {
+  return fmt::format(
+      "document.documentElement.dataset.at === '{}' && document.documentElement.dataset.steps === "
+      "'{}' && document.documentElement.dataset.busy === 'false'",
+      step, steps);
 }
 std::string looked_at(const std::string& effect) {
   return "document.documentElement.dataset.looked === " + json(effect).dump();
@@ -46,7 +51,7 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
   const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
   Chrome chrome(scratch.path());
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   EXPECT_NE(chrome.text("#verdict").find("Missing: hard iron"), std::string::npos);
   const double before = chrome.eval("window.trussmap.state().figure.now_mm").get<double>();
   // Pointing previews, and fits nothing.
@@ -57,7 +62,7 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
   chrome.wait(looked_at("hard iron"));
   EXPECT_NE(chrome.text("#looked-saves").find("mm with it, as predicted"), std::string::npos);
   chrome.wait("document.querySelectorAll('#plot .mark-line path').length > 0");
-  EXPECT_EQ(bench.status().at("version"), 1);
+  EXPECT_EQ(bench.state().at("steps").size(), 1U);
   // A duel with its look-alike.
   chrome.click(card("hard iron") + " .name");
   chrome.eval(
@@ -66,7 +71,7 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
   chrome.wait("document.getElementById('duel-words').textContent.includes('To tell them apart')");
   // Added, the error falls, and the others lose what it took from them.
   chrome.click(card("hard iron") + " .act");
-  chrome.wait(version_is(2));
+  chrome.wait(at_step(1, 2));
   EXPECT_NE(chrome.text("#verdict").find("Nothing missing"), std::string::npos);
   const double after = chrome.eval("window.trussmap.state().figure.now_mm").get<double>();
   EXPECT_LT(after, 0.15 * before);
@@ -76,21 +81,21 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
       chrome.eval("document.querySelector('" + card("body tilt") + "') === null").get<bool>());
   // A reload in the middle keeps everything.
   chrome.reload();
-  chrome.wait(version_is(2));
+  chrome.wait(at_step(1, 2));
   EXPECT_EQ(chrome.eval("document.querySelectorAll('#steps li').length"), 2);
   // Undo, redo.
   chrome.click("#undo");
-  chrome.wait(version_is(3));
+  chrome.wait(at_step(0, 2));
   EXPECT_NE(chrome.text("#verdict").find("Missing: hard iron"), std::string::npos);
   chrome.click("#redo");
-  chrome.wait(version_is(4));
+  chrome.wait(at_step(1, 2));
   // Taken along.
   const std::string exported =
       chrome.eval("fetch('export/model.toml').then(reply => reply.text())").get<std::string>();
   EXPECT_EQ(read_model(scratch.write("exported.toml", exported)).effects.size(), 1U);
   // Removed again.
   chrome.click("#on .card .act");
-  chrome.wait(version_is(5));
+  chrome.wait(at_step(2, 3));
   EXPECT_EQ(chrome.eval("document.querySelectorAll('#on .card').length"), 0);
   EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
 }
@@ -101,7 +106,7 @@ TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
   const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
   Chrome chrome(scratch.path());
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   chrome.click("#own summary");
   chrome.eval("document.getElementById('own-channel').value = 'compass'");
   chrome.click("#own-shape");
@@ -120,7 +125,7 @@ TEST(WorkbenchInBrowser, AShapeOfOnesOwnIsPreviewedAsItIsTyped) {
   chrome.type("!");
   chrome.wait("document.getElementById('looked-name').textContent.includes('<img')");
   chrome.click("#own-add");
-  chrome.wait(version_is(2));
+  chrome.wait(at_step(1, 2));
   EXPECT_NE(chrome.text("#on").find("<img src=x"), std::string::npos);
   EXPECT_EQ(chrome.eval("document.querySelectorAll('img').length"), 0);
   EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
@@ -138,15 +143,15 @@ TEST(WorkbenchInBrowser, TwoEffectsOneAfterTheOther) {
   const ServedBench bench(served(scratch, folder, folder + "/model.toml"));
   Chrome chrome(scratch.path());
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   std::vector<std::string> added;
-  for (int step = 2; step <= 3; ++step) {
+  for (int step = 1; step <= 2; ++step) {
     const std::string name =
         chrome.eval("document.querySelector('#parts .tag.bad').closest('.card').dataset.effect")
             .get<std::string>();
     added.push_back(name);
     chrome.click(card(name) + " .act");
-    chrome.wait(version_is(step));
+    chrome.wait(at_step(step, step + 1));
   }
   std::sort(added.begin(), added.end());
   EXPECT_EQ(added, (std::vector<std::string>{"hard iron", "wheelbase"}));
@@ -163,7 +168,7 @@ TEST(WorkbenchInBrowser, WhereNothingIsMissingItSaysSo) {
   const ServedBench bench(served(scratch, folder, folder + "/model.toml"));
   Chrome chrome(scratch.path());
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   EXPECT_NE(chrome.text("#verdict").find("Nothing missing"), std::string::npos);
   EXPECT_EQ(chrome.eval("document.querySelectorAll('#parts .tag.bad').length"), 0);
   EXPECT_EQ(chrome.eval("document.getElementById('head').className"), "good");
@@ -175,14 +180,14 @@ TEST(WorkbenchInBrowser, TwoTabsShowTheSame) {
   const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
   Chrome chrome(scratch.path());
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   const std::size_t other = chrome.open_tab();
   chrome.go(bench.address());
-  chrome.wait(version_is(1));
+  chrome.wait(at_step(0, 1));
   chrome.click(card("hard iron") + " .act");
-  chrome.wait(version_is(2));
+  chrome.wait(at_step(1, 2));
   chrome.to_tab(other - 1);
-  chrome.wait(version_is(2));
+  chrome.wait(at_step(1, 2));
   EXPECT_EQ(chrome.eval("document.querySelectorAll('#on .card').length"), 1);
 }
 

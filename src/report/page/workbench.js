@@ -53,6 +53,7 @@ function setBusy(now) {
   }
   by('undo').disabled = busy || !state || state.at === 0;
   by('redo').disabled = busy || !onward.length;
+  document.documentElement.dataset.busy = String(busy);
 }
 
 function showAll() {
@@ -73,13 +74,14 @@ async function renew(to) {
     performance.mark('first-picture');
   }
   await look.renew(state);
-  document.documentElement.dataset.version = String(version);
+  document.documentElement.dataset.at = String(state.at);
+  document.documentElement.dataset.steps = String(state.steps.length);
 }
 
 let renewing = Promise.resolve();
 function onStatus(status) {
   by('doing').hidden = !status.busy;
-  by('doing').querySelector('span').textContent = status.doing || '';
+  by('doing').querySelector('span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
   if (status.failed) fail(status.failed);
   renewing = renewing.then(async () => {
     if (status.version !== version && status.version > 0) await renew(status.version);
