@@ -13,7 +13,7 @@
 // Debian's BLAS and LAPACK, whichever is installed; Fortran's calling convention.
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrtri_(const char* uplo, const char* diag, const int* n, double* a, const int* lda, int* info);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
             const int* n, const double* alpha, const double* a, const int* lda, double* b,
             const int* ldb);
@@ -37,6 +37,7 @@ namespace {
 
 constexpr int kBlock = 4;  // columns at a time
 constexpr int kTile = 256;
+constexpr int kInverseBlock = 32;
 
 using Four = double __attribute__((vector_size(32)));
 
@@ -64,6 +65,19 @@ TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int l
       for (int r = 0; r < 4; ++r) to[r] -= low[n][r];
       for (int r = 0; r < 4; ++r) to[4 + r] -= high[n][r];
     }
+  }
+  if (i + 4 <= m) {
+    Four sum[N] = {};
+    for (int q = 0; q < k; ++q) {
+      Four a0;
+      std::memcpy(&a0, a + at(i, q, lda), sizeof a0);
+      for (int n = 0; n < N; ++n) sum[n] += a0 * b[q * step + n * across];
+    }
+    for (int n = 0; n < N; ++n) {
+      double* to = c + at(i, n, ldc);
+      for (int r = 0; r < 4; ++r) to[r] -= sum[n][r];
+    }
+    i += 4;
   }
   for (; i + 2 <= m; i += 2) {
     double sum[2][N] = {};
@@ -206,6 +220,18 @@ int eliminate_large(double* panel, int rows, int width, double* update) {
   return -1;
 }
 
+/// What stands below the square in these columns goes to the right of it, too.
+TRUSSMAP_INLINE void mirror(double* matrix, int rows, int begin, int end) {
+  for (int first = begin; first < end; first += kBlock) {
+    const int n = std::min(kBlock, end - first);
+    const double* from = matrix + at(0, first, rows);
+    for (int i = end; i < rows; ++i) {
+      double* to = matrix + at(first, i, rows);
+      for (int c = 0; c < n; ++c) to[c] = from[at(i, c, rows)];
+    }
+  }
+}
+
 /// By blocks of columns from the right. With G = L21 L11^-1 and Z the inverse:
 ///   Z_21 = -Z_22 G,   Z_11 = L11^-T L11^-1 - G' Z_21
 TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* inverse,
@@ -248,37 +274,41 @@ TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* 
         z11[at(c, r, rows)] = sum;
       }
     }
-    for (int c = 0; c < n; ++c) {
-      for (int i = 0; i < m; ++i) inverse[at(j + c, end + i, rows)] = z21[at(i, c, rows)];
-    }
+    mirror(inverse, rows, j, end);
     end = j;
   }
 }
 
+/// The same with blocks as wide as products of matrices are quick, which is all that BLAS is asked
+/// for: its triangular solves and inverses run at half the speed or less.
 void invert_large(double* panel, int rows, int width, double* inverse, double* space) {
   const double one = 1.0;
   const double minus = -1.0;
   const double zero = 0.0;
-  const int height = rows - width;
-  int info = 0;
-  double* g = panel + width;
-  if (height > 0) {
-    dtrsm_("R", "L", "N", "N", &height, &width, &one, panel, &rows, g, &rows);
-  }
-  dpotri_("L", &width, panel, &rows, &info);
-  for (int c = 0; c < width; ++c) {
-    for (int i = c; i < width; ++i) inverse[at(i, c, rows)] = panel[at(i, c, rows)];
-    for (int i = c; i < width; ++i) inverse[at(c, i, rows)] = panel[at(i, c, rows)];
-  }
-  if (height == 0) return;
-  dgemm_("N", "N", &height, &width, &height, &minus, inverse + at(width, width, rows), &rows, g,
-         &rows, &zero, space, &height);
-  dgemm_("T", "N", &width, &width, &height, &minus, g, &rows, space, &height, &one, inverse, &rows);
-  for (int c = 0; c < width; ++c) {
-    for (int i = 0; i < height; ++i) {
-      inverse[at(width + i, c, rows)] = space[at(i, c, height)];
-      inverse[at(c, width + i, rows)] = space[at(i, c, height)];
+  int end = width;
+  while (end > 0) {
+    const int n = std::min(kInverseBlock, end);
+    const int j = end - n;
+    const int m = rows - end;
+    double* t = panel + at(j, j, rows);  // L11 becomes L11^-1
+    int info = 0;
+    dtrtri_("L", "N", &n, t, &rows, &info);
+    for (int c = 1; c < n; ++c) std::fill_n(t + at(0, c, rows), c, 0.0);
+    double* z11 = inverse + at(j, j, rows);
+    dgemm_("T", "N", &n, &n, &n, &one, t, &rows, t, &rows, &zero, z11, &rows);
+    if (m > 0) {
+      double* g = space;
+      double* z21 = inverse + at(end, j, rows);
+      dgemm_("N", "N", &m, &n, &n, &one, panel + at(end, j, rows), &rows, t, &rows, &zero, g, &m);
+      dgemm_("N", "N", &m, &n, &m, &minus, inverse + at(end, end, rows), &rows, g, &m, &zero, z21,
+             &rows);
+      dgemm_("T", "N", &n, &n, &m, &minus, g, &m, z21, &rows, &one, z11, &rows);
+      mirror(inverse, rows, j, end);
     }
+    for (int c = 0; c < n; ++c) {
+      for (int r = 0; r < c; ++r) z11[at(r, c, rows)] = z11[at(c, r, rows)];
+    }
+    end = j;
   }
 }
 
