@@ -37,9 +37,27 @@ namespace {
 
 constexpr int kBlock = 4;  // columns at a time
 constexpr int kTile = 256;
-constexpr int kInverseBlock = 32;
+constexpr int kInverseBlock = 16;
+constexpr int kInverseColumns = 192;
 
+using Two = double __attribute__((vector_size(16)));
 using Four = double __attribute__((vector_size(32)));
+
+/// As many rows of C -= A B as a vector has numbers.
+template <typename Rows, int N>
+TRUSSMAP_INLINE void subtract_rows(double* c, int ldc, const double* a, int lda, const double* b,
+                                   std::ptrdiff_t step, std::ptrdiff_t across, int k) {
+  Rows sum[N] = {};
+  for (int q = 0; q < k; ++q) {
+    Rows from;
+    std::memcpy(&from, a + at(0, q, lda), sizeof from);
+    for (int n = 0; n < N; ++n) sum[n] += from * b[q * step + n * across];
+  }
+  for (int n = 0; n < N; ++n) {
+    double* to = c + at(0, n, ldc);
+    for (std::size_t r = 0; r < sizeof(Rows) / sizeof(double); ++r) to[r] -= sum[n][r];
+  }
+}
 
 /// C (m x N) -= A (m x k) B (k x N), with B[q, c] at b[q * step + c * across].
 template <int N>
@@ -67,32 +85,12 @@ TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int l
     }
   }
   if (i + 4 <= m) {
-    Four sum[N] = {};
-    for (int q = 0; q < k; ++q) {
-      Four a0;
-      std::memcpy(&a0, a + at(i, q, lda), sizeof a0);
-      for (int n = 0; n < N; ++n) sum[n] += a0 * b[q * step + n * across];
-    }
-    for (int n = 0; n < N; ++n) {
-      double* to = c + at(i, n, ldc);
-      for (int r = 0; r < 4; ++r) to[r] -= sum[n][r];
-    }
+    subtract_rows<Four, N>(c + i, ldc, a + i, lda, b, step, across, k);
     i += 4;
   }
-  for (; i + 2 <= m; i += 2) {
-    double sum[2][N] = {};
-    for (int q = 0; q < k; ++q) {
-      const double* from = a + at(i, q, lda);
-      for (int n = 0; n < N; ++n) {
-        const double factor = b[q * step + n * across];
-        sum[0][n] += from[0] * factor;
-        sum[1][n] += from[1] * factor;
-      }
-    }
-    for (int n = 0; n < N; ++n) {
-      c[at(i, n, ldc)] -= sum[0][n];
-      c[at(i + 1, n, ldc)] -= sum[1][n];
-    }
+  if (i + 2 <= m) {
+    subtract_rows<Two, N>(c + i, ldc, a + i, lda, b, step, across, k);
+    i += 2;
   }
   for (; i < m; ++i) {
     for (int n = 0; n < N; ++n) {
@@ -220,12 +218,12 @@ int eliminate_large(double* panel, int rows, int width, double* update) {
   return -1;
 }
 
-/// What stands below the square in these columns goes to the right of it, too.
-TRUSSMAP_INLINE void mirror(double* matrix, int rows, int begin, int end) {
+/// What stands below the square in these columns, down to `bottom`, goes to the right of it, too.
+TRUSSMAP_INLINE void mirror(double* matrix, int rows, int begin, int end, int bottom) {
   for (int first = begin; first < end; first += kBlock) {
     const int n = std::min(kBlock, end - first);
     const double* from = matrix + at(0, first, rows);
-    for (int i = end; i < rows; ++i) {
+    for (int i = end; i < bottom; ++i) {
       double* to = matrix + at(first, i, rows);
       for (int c = 0; c < n; ++c) to[c] = from[at(i, c, rows)];
     }
@@ -241,6 +239,8 @@ TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* 
     const int n = (end - 1) % kBlock + 1;
     const int j = end - n;
     const int m = rows - end;
+    double scale[kBlock];
+    for (int c = 0; c < n; ++c) scale[c] = 1.0 / panel[at(j + c, j + c, rows)];
     double* g = panel + at(end, j, rows);  // L21 of these columns becomes G
     for (int c = n - 1; c >= 0; --c) {
       double* column = g + at(0, c, rows);
@@ -249,8 +249,7 @@ TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* 
         const double* right = g + at(0, q, rows);
         for (int i = 0; i < m; ++i) column[i] -= right[i] * factor;
       }
-      const double scale = 1.0 / panel[at(j + c, j + c, rows)];
-      for (int i = 0; i < m; ++i) column[i] *= scale;
+      for (int i = 0; i < m; ++i) column[i] *= scale[c];
     }
     double* z21 = inverse + at(end, j, rows);
     for (int c = 0; c < n; ++c) std::fill_n(z21 + at(0, c, rows), m, 0.0);
@@ -262,7 +261,7 @@ TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* 
       for (int i = c; i < n; ++i) {
         double sum = i == c ? 1.0 : 0.0;
         for (int q = c; q < i; ++q) sum -= panel[at(j + i, j + q, rows)] * t[at(q, c, n)];
-        t[at(i, c, n)] = sum / panel[at(j + i, j + i, rows)];
+        t[at(i, c, n)] = sum * scale[i];
       }
     }
     for (int c = 0; c < n; ++c) {
@@ -274,41 +273,74 @@ TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* 
         z11[at(c, r, rows)] = sum;
       }
     }
-    mirror(inverse, rows, j, end);
+    mirror(inverse, rows, j, end, rows);
     end = j;
   }
 }
 
-/// The same with blocks as wide as products of matrices are quick, which is all that BLAS is asked
-/// for: its triangular solves and inverses run at half the speed or less.
-void invert_large(double* panel, int rows, int width, double* inverse, double* space) {
-  const double one = 1.0;
-  const double minus = -1.0;
-  const double zero = 0.0;
-  int end = width;
-  while (end > 0) {
-    const int n = std::min(kInverseBlock, end);
-    const int j = end - n;
-    const int m = rows - end;
-    double* t = panel + at(j, j, rows);  // L11 becomes L11^-1
+void product(const char* first, const char* second, int m, int n, int k, double factor,
+             const double* a, int lda, const double* b, int ldb, double keep, double* c, int ldc) {
+  dgemm_(first, second, &m, &n, &k, &factor, a, &lda, b, &ldb, &keep, c, &ldc);
+}
+
+/// Z_11 = L11^-T L11^-1 of columns `begin` to `end`, as if nothing stood below them. The blocks on
+/// the diagonal of L11 become their inverses.
+void invert_square(double* panel, int rows, int begin, int end, double* inverse, double* space) {
+  for (int below = end; below > begin;) {
+    const int n = std::min(kInverseBlock, below - begin);
+    const int j = below - n;
+    const int m = end - below;
+    double* t = panel + at(j, j, rows);
     int info = 0;
     dtrtri_("L", "N", &n, t, &rows, &info);
     for (int c = 1; c < n; ++c) std::fill_n(t + at(0, c, rows), c, 0.0);
     double* z11 = inverse + at(j, j, rows);
-    dgemm_("T", "N", &n, &n, &n, &one, t, &rows, t, &rows, &zero, z11, &rows);
+    product("T", "N", n, n, n, 1.0, t, rows, t, rows, 0.0, z11, rows);
     if (m > 0) {
-      double* g = space;
-      double* z21 = inverse + at(end, j, rows);
-      dgemm_("N", "N", &m, &n, &n, &one, panel + at(end, j, rows), &rows, t, &rows, &zero, g, &m);
-      dgemm_("N", "N", &m, &n, &m, &minus, inverse + at(end, end, rows), &rows, g, &m, &zero, z21,
-             &rows);
-      dgemm_("T", "N", &n, &n, &m, &minus, g, &m, z21, &rows, &one, z11, &rows);
-      mirror(inverse, rows, j, end);
+      double* z21 = inverse + at(below, j, rows);
+      product("N", "N", m, n, n, 1.0, panel + at(below, j, rows), rows, t, rows, 0.0, space, m);
+      product("N", "N", m, n, m, -1.0, inverse + at(below, below, rows), rows, space, m, 0.0, z21,
+              rows);
+      product("T", "N", n, n, m, -1.0, space, m, z21, rows, 1.0, z11, rows);
+      mirror(inverse, rows, j, below, end);
     }
-    for (int c = 0; c < n; ++c) {
-      for (int r = 0; r < c; ++r) z11[at(r, c, rows)] = z11[at(c, r, rows)];
+    below = j;
+  }
+}
+
+/// The same by products of matrices, of which BLAS is quick; its triangular solves and inverses run
+/// at half the speed or less.
+void invert_large(double* panel, int rows, int width, double* inverse, double* space) {
+  for (int end = width; end > 0;) {
+    const int begin = std::max(0, end - kInverseColumns);
+    const int m = rows - end;
+    invert_square(panel, rows, begin, end, inverse, space);
+    if (m > 0) {
+      const auto g = [&](int column) { return space + at(0, column - begin, m); };
+      for (int below = end; below > begin;) {
+        const int n = std::min(kInverseBlock, below - begin);
+        const int j = below - n;
+        double* l21 = panel + at(end, j, rows);
+        if (below < end) {
+          product("N", "N", m, n, end - below, -1.0, g(below), m, panel + at(below, j, rows), rows,
+                  1.0, l21, rows);
+        }
+        product("N", "N", m, n, n, 1.0, l21, rows, panel + at(j, j, rows), rows, 0.0, g(j), m);
+        below = j;
+      }
+      double* z21 = inverse + at(end, begin, rows);
+      product("N", "N", m, end - begin, m, -1.0, inverse + at(end, end, rows), rows, space, m, 0.0,
+              z21, rows);
+      for (int j = begin; j < end; j += kInverseBlock) {
+        product("T", "N", end - j, std::min(kInverseBlock, end - j), m, -1.0, g(j), m,
+                z21 + at(0, j - begin, rows), rows, 1.0, inverse + at(j, j, rows), rows);
+      }
+      mirror(inverse, rows, begin, end, rows);
     }
-    end = j;
+    for (int c = begin; c < end; ++c) {
+      for (int r = begin; r < c; ++r) inverse[at(r, c, rows)] = inverse[at(c, r, rows)];
+    }
+    end = begin;
   }
 }
 
