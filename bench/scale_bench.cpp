@@ -58,7 +58,8 @@ int main(int argc, char** argv) {
     execv("/proc/self/exe", argv);
   }
   CLI::App app("Speed and scale of trussmap beside CHOLMOD and Ceres");
-  std::vector<std::string> parts{"grid", "covariances", "refinement", "increments", "nonlinear", "input"};
+  std::vector<std::string> parts{"grid",       "covariances", "refinement",
+                                 "increments", "nonlinear",   "input"};
   app.add_option("parts", parts, "which parts")->check(CLI::IsMember(parts));
   std::vector<int> sides{30, 100, 300, 1000};
   app.add_option("--sides", sides, "of the grids")->capture_default_str();

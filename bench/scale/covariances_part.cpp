@@ -28,7 +28,6 @@ namespace {
 struct Work {
   double factor = 0.0;   ///< operations
   double inverse = 0.0;  ///< operations
-  double small = 0.0;    ///< share of the factor's in fronts that own loops work on
   double bytes_factor = 0.0;
   double bytes_inverse = 0.0;
 };

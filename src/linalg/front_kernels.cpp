@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/front_kernels.hpp"
 
+#include "linalg/front_loops.hpp"
 #include "parallel/parallel_for.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <vector>
 
 // Debian's BLAS and LAPACK, whichever is installed; Fortran's calling convention.
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-void dtrtri_(const char* uplo, const char* diag, const int* n, double* a, const int* lda, int* info);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
             const int* n, const double* alpha, const double* a, const int* lda, double* b,
             const int* ldb);
@@ -24,115 +23,10 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
             const double* beta, double* c, const int* ldc);
 }
 
-// One version per instruction set, chosen when the program starts; too early for ThreadSanitizer.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define TRUSSMAP_VERSIONS __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define TRUSSMAP_VERSIONS
-#endif
-#define TRUSSMAP_INLINE __attribute__((always_inline)) inline
-
 namespace trussmap {
 namespace {
 
-constexpr int kBlock = 4;  // columns at a time
 constexpr int kTile = 256;
-constexpr int kInverseBlock = 16;
-constexpr int kInverseColumns = 192;
-
-using Two = double __attribute__((vector_size(16)));
-using Four = double __attribute__((vector_size(32)));
-
-/// As many rows of C -= A B as a vector has numbers.
-template <typename Rows, int N>
-TRUSSMAP_INLINE void subtract_rows(double* c, int ldc, const double* a, int lda, const double* b,
-                                   std::ptrdiff_t step, std::ptrdiff_t across, int k) {
-  Rows sum[N] = {};
-  for (int q = 0; q < k; ++q) {
-    Rows from;
-    std::memcpy(&from, a + at(0, q, lda), sizeof from);
-    for (int n = 0; n < N; ++n) sum[n] += from * b[q * step + n * across];
-  }
-  for (int n = 0; n < N; ++n) {
-    double* to = c + at(0, n, ldc);
-    for (std::size_t r = 0; r < sizeof(Rows) / sizeof(double); ++r) to[r] -= sum[n][r];
-  }
-}
-
-/// C (m x N) -= A (m x k) B (k x N), with B[q, c] at b[q * step + c * across].
-template <int N>
-TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int lda, const double* b,
-                                      std::ptrdiff_t step, std::ptrdiff_t across, int m, int k) {
-  int i = 0;
-  for (; i + 8 <= m; i += 8) {
-    Four low[N] = {};
-    Four high[N] = {};
-    for (int q = 0; q < k; ++q) {
-      Four a0;
-      Four a1;
-      std::memcpy(&a0, a + at(i, q, lda), sizeof a0);
-      std::memcpy(&a1, a + at(i + 4, q, lda), sizeof a1);
-      for (int n = 0; n < N; ++n) {
-        const double factor = b[q * step + n * across];
-        low[n] += a0 * factor;
-        high[n] += a1 * factor;
-      }
-    }
-    for (int n = 0; n < N; ++n) {
-      double* to = c + at(i, n, ldc);
-      for (int r = 0; r < 4; ++r) to[r] -= low[n][r];
-      for (int r = 0; r < 4; ++r) to[4 + r] -= high[n][r];
-    }
-  }
-  if (i + 4 <= m) {
-    subtract_rows<Four, N>(c + i, ldc, a + i, lda, b, step, across, k);
-    i += 4;
-  }
-  if (i + 2 <= m) {
-    subtract_rows<Two, N>(c + i, ldc, a + i, lda, b, step, across, k);
-    i += 2;
-  }
-  for (; i < m; ++i) {
-    for (int n = 0; n < N; ++n) {
-      double sum = 0.0;
-      for (int q = 0; q < k; ++q) sum += a[at(i, q, lda)] * b[q * step + n * across];
-      c[at(i, n, ldc)] -= sum;
-    }
-  }
-}
-
-TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int lda, const double* b,
-                                      std::ptrdiff_t step, std::ptrdiff_t across, int m, int n,
-                                      int k) {
-  switch (n) {
-    case 4:
-      return subtract_product<4>(c, ldc, a, lda, b, step, across, m, k);
-    case 3:
-      return subtract_product<3>(c, ldc, a, lda, b, step, across, m, k);
-    case 2:
-      return subtract_product<2>(c, ldc, a, lda, b, step, across, m, k);
-    default:
-      return subtract_product<1>(c, ldc, a, lda, b, step, across, m, k);
-  }
-}
-
-TRUSSMAP_INLINE double dot(const double* a, const double* b, int m) {
-  Four sums[2] = {};
-  int i = 0;
-  for (; i + 8 <= m; i += 8) {
-    for (std::ptrdiff_t h = 0; h < 2; ++h) {
-      Four x;
-      Four y;
-      std::memcpy(&x, a + i + 4 * h, sizeof x);
-      std::memcpy(&y, b + i + 4 * h, sizeof y);
-      sums[h] += x * y;
-    }
-  }
-  const Four both = sums[0] + sums[1];
-  double sum = (both[0] + both[1]) + (both[2] + both[3]);
-  for (; i < m; ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 /// Columns j ... j + n of the panel, to the left of which all is done.
 TRUSSMAP_INLINE int factor_columns(double* panel, int rows, int j, int n) {
@@ -216,137 +110,6 @@ int eliminate_large(double* panel, int rows, int width, double* update) {
     });
   }
   return -1;
-}
-
-/// What stands below the square in these columns, down to `bottom`, goes to the right of it, too.
-TRUSSMAP_INLINE void mirror(double* matrix, int rows, int begin, int end, int bottom) {
-  for (int first = begin; first < end; first += kBlock) {
-    const int n = std::min(kBlock, end - first);
-    const double* from = matrix + at(0, first, rows);
-    for (int i = end; i < bottom; ++i) {
-      double* to = matrix + at(first, i, rows);
-      for (int c = 0; c < n; ++c) to[c] = from[at(i, c, rows)];
-    }
-  }
-}
-
-/// By blocks of columns from the right. With G = L21 L11^-1 and Z the inverse:
-///   Z_21 = -Z_22 G,   Z_11 = L11^-T L11^-1 - G' Z_21
-TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* inverse,
-                                    double* space) {
-  int end = width;
-  while (end > 0) {
-    const int n = (end - 1) % kBlock + 1;
-    const int j = end - n;
-    const int m = rows - end;
-    double scale[kBlock];
-    for (int c = 0; c < n; ++c) scale[c] = 1.0 / panel[at(j + c, j + c, rows)];
-    double* g = panel + at(end, j, rows);  // L21 of these columns becomes G
-    for (int c = n - 1; c >= 0; --c) {
-      double* column = g + at(0, c, rows);
-      for (int q = c + 1; q < n; ++q) {
-        const double factor = panel[at(j + q, j + c, rows)];
-        const double* right = g + at(0, q, rows);
-        for (int i = 0; i < m; ++i) column[i] -= right[i] * factor;
-      }
-      for (int i = 0; i < m; ++i) column[i] *= scale[c];
-    }
-    double* z21 = inverse + at(end, j, rows);
-    for (int c = 0; c < n; ++c) std::fill_n(z21 + at(0, c, rows), m, 0.0);
-    subtract_product(z21, rows, inverse + at(end, end, rows), rows, g, 1, rows, m, n, m);
-    double* z11 = inverse + at(j, j, rows);
-    double* t = space;  // L11^-1
-    for (int c = 0; c < n; ++c) {
-      for (int i = 0; i < c; ++i) t[at(i, c, n)] = 0.0;
-      for (int i = c; i < n; ++i) {
-        double sum = i == c ? 1.0 : 0.0;
-        for (int q = c; q < i; ++q) sum -= panel[at(j + i, j + q, rows)] * t[at(q, c, n)];
-        t[at(i, c, n)] = sum * scale[i];
-      }
-    }
-    for (int c = 0; c < n; ++c) {
-      for (int r = c; r < n; ++r) {
-        double sum = 0.0;
-        for (int q = r; q < n; ++q) sum += t[at(q, r, n)] * t[at(q, c, n)];
-        sum -= dot(g + at(0, r, rows), z21 + at(0, c, rows), m);
-        z11[at(r, c, rows)] = sum;
-        z11[at(c, r, rows)] = sum;
-      }
-    }
-    mirror(inverse, rows, j, end, rows);
-    end = j;
-  }
-}
-
-void product(const char* first, const char* second, int m, int n, int k, double factor,
-             const double* a, int lda, const double* b, int ldb, double keep, double* c, int ldc) {
-  dgemm_(first, second, &m, &n, &k, &factor, a, &lda, b, &ldb, &keep, c, &ldc);
-}
-
-/// Z_11 = L11^-T L11^-1 of columns `begin` to `end`, as if nothing stood below them. The blocks on
-/// the diagonal of L11 become their inverses.
-void invert_square(double* panel, int rows, int begin, int end, double* inverse, double* space) {
-  for (int below = end; below > begin;) {
-    const int n = std::min(kInverseBlock, below - begin);
-    const int j = below - n;
-    const int m = end - below;
-    double* t = panel + at(j, j, rows);
-    int info = 0;
-    dtrtri_("L", "N", &n, t, &rows, &info);
-    for (int c = 1; c < n; ++c) std::fill_n(t + at(0, c, rows), c, 0.0);
-    double* z11 = inverse + at(j, j, rows);
-    product("T", "N", n, n, n, 1.0, t, rows, t, rows, 0.0, z11, rows);
-    if (m > 0) {
-      double* z21 = inverse + at(below, j, rows);
-      product("N", "N", m, n, n, 1.0, panel + at(below, j, rows), rows, t, rows, 0.0, space, m);
-      product("N", "N", m, n, m, -1.0, inverse + at(below, below, rows), rows, space, m, 0.0, z21,
-              rows);
-      product("T", "N", n, n, m, -1.0, space, m, z21, rows, 1.0, z11, rows);
-      mirror(inverse, rows, j, below, end);
-    }
-    below = j;
-  }
-}
-
-/// The same by products of matrices, of which BLAS is quick; its triangular solves and inverses run
-/// at half the speed or less.
-void invert_large(double* panel, int rows, int width, double* inverse, double* space) {
-  for (int end = width; end > 0;) {
-    const int begin = std::max(0, end - kInverseColumns);
-    const int m = rows - end;
-    invert_square(panel, rows, begin, end, inverse, space);
-    if (m > 0) {
-      const auto g = [&](int column) { return space + at(0, column - begin, m); };
-      for (int below = end; below > begin;) {
-        const int n = std::min(kInverseBlock, below - begin);
-        const int j = below - n;
-        double* l21 = panel + at(end, j, rows);
-        if (below < end) {
-          product("N", "N", m, n, end - below, -1.0, g(below), m, panel + at(below, j, rows), rows,
-                  1.0, l21, rows);
-        }
-        product("N", "N", m, n, n, 1.0, l21, rows, panel + at(j, j, rows), rows, 0.0, g(j), m);
-        below = j;
-      }
-      double* z21 = inverse + at(end, begin, rows);
-      product("N", "N", m, end - begin, m, -1.0, inverse + at(end, end, rows), rows, space, m, 0.0,
-              z21, rows);
-      for (int j = begin; j < end; j += kInverseBlock) {
-        product("T", "N", end - j, std::min(kInverseBlock, end - j), m, -1.0, g(j), m,
-                z21 + at(0, j - begin, rows), rows, 1.0, inverse + at(j, j, rows), rows);
-      }
-      mirror(inverse, rows, begin, end, rows);
-    }
-    for (int c = begin; c < end; ++c) {
-      for (int r = begin; r < c; ++r) inverse[at(r, c, rows)] = inverse[at(c, r, rows)];
-    }
-    end = begin;
-  }
-}
-
-/// Where a call to BLAS pays, by trial.
-bool is_large(int rows, int width) {
-  return width >= 32 && rows >= 96;
 }
 
 }  // namespace
@@ -438,14 +201,6 @@ void solve_backward_many(const double* panel, int rows, int width, double* x, in
            panel + width, &rows, &one, x, &count);
   }
   dtrsm_("R", "L", "N", "N", &count, &width, &one, panel, &rows, x, &count);
-}
-
-void invert_front(double* panel, int rows, int width, double* inverse, double* space) {
-  if (is_large(rows, width)) {
-    invert_large(panel, rows, width, inverse, space);
-  } else {
-    invert_small(panel, rows, width, inverse, space);
-  }
 }
 
 }  // namespace trussmap
