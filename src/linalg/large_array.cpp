@@ -21,7 +21,7 @@ LargeArray large_array(std::size_t count) {
     throw std::bad_alloc();
   }
   const std::size_t bytes = count * sizeof(double);
-  const bool large = bytes >= 2 * kLargePage;
+  const bool large = bytes >= kLargePage;
   // Whole pages: aligned_alloc wants a multiple of what it aligns to.
   const std::size_t rounded = (bytes + kLargePage - 1) / kLargePage * kLargePage;
   void* memory = large ? std::aligned_alloc(kLargePage, rounded)
