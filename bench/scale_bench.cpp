@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 //
 // Speed and scale, as ratios measured in one run: see README.md beside this file.
+#include "scale/ceres_rivals.hpp"
 #include "scale/measure.hpp"
 #include "scale/parts.hpp"
 
-#include <ceres/version.h>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -36,9 +36,10 @@ void print_heading() {
   char date[32] = "";
   std::strftime(date, sizeof date, "%Y-%m-%d %H:%M UTC", std::gmtime(&now));
   fmt::print("{}; {}, {} processors\n", date, processor(), sysconf(_SC_NPROCESSORS_ONLN));
+  const std::string ceres = trussmap::bench::ceres_version();
   fmt::print("g++ {}, Eigen {}.{}.{}, CHOLMOD {}.{}.{}, Ceres {}, BLAS: {}\n", __VERSION__,
              EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, CHOLMOD_MAIN_VERSION,
-             CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION, CERES_VERSION_STRING,
+             CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION, ceres.empty() ? "not there" : ceres,
              openblas_get_config != nullptr ? openblas_get_config() : "not OpenBLAS");
   double loads[1] = {};
   if (getloadavg(loads, 1) == 1) fmt::print("load of the machine at the start: {:.1f}\n", loads[0]);
@@ -57,7 +58,8 @@ int main(int argc, char** argv) {
     execv("/proc/self/exe", argv);
   }
   CLI::App app("Speed and scale of trussmap beside CHOLMOD and Ceres");
-  std::vector<std::string> parts{"grid", "refinement", "increments", "nonlinear", "input"};
+  std::vector<std::string> parts{"grid",       "covariances", "refinement",
+                                 "increments", "nonlinear",   "input"};
   app.add_option("parts", parts, "which parts")->check(CLI::IsMember(parts));
   std::vector<int> sides{30, 100, 300, 1000};
   app.add_option("--sides", sides, "of the grids")->capture_default_str();
@@ -73,11 +75,13 @@ int main(int argc, char** argv) {
 
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   print_heading();
+  const bool has_ceres = !ceres_version().empty();
   for (const std::string& part : parts) {
-    if (part == "grid") grid_part(sides, repetitions, true);
+    if (part == "grid") grid_part(sides, repetitions, has_ceres);
+    if (part == "covariances") covariances_part(sides, repetitions);
     if (part == "refinement") refinement_part(landmarks, corrections);
     if (part == "increments") increments_part(100);
-    if (part == "nonlinear" && !graphs.empty()) nonlinear_part(graphs, repetitions);
+    if (part == "nonlinear" && has_ceres && !graphs.empty()) nonlinear_part(graphs, repetitions);
     if (part == "input") input_part(500000, repetitions);
   }
   return 0;

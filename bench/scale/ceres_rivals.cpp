@@ -5,6 +5,7 @@
 #include "geometry/index.hpp"
 
 #include <ceres/ceres.h>
+#include <ceres/version.h>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -101,6 +102,10 @@ class CloseEnough : public ceres::IterationCallback {
 };
 
 }  // namespace
+
+std::string ceres_version() {
+  return CERES_VERSION_STRING;
+}
 
 double fit_with_ceres(const Grid& grid, Stages& stages) {
   std::vector<Vector2> positions = grid.about;

@@ -9,7 +9,12 @@
 #include "measure.hpp"
 #include "trussmap/pose_graph.hpp"
 
+#include <string>
+
 namespace trussmap::bench {
+
+/// Empty where this build has no Ceres; then the others throw std::logic_error.
+[[nodiscard]] std::string ceres_version();
 
 /// Least squares of all raw measurements; chi2.
 [[nodiscard]] double fit_with_ceres(const Grid& grid, Stages& stages);

@@ -13,6 +13,10 @@ namespace trussmap::bench {
 /// measurements to positions, and all covariances.
 void grid_part(const std::vector<int>& sides, int repetitions, bool ceres);
 
+/// On the same grids: all covariances beside a repeated factorisation, in turn; operations of both,
+/// counted over the fronts, and the speed of the kernels and of the memory.
+void covariances_part(const std::vector<int>& sides, int repetitions);
+
 /// Refinements with eta = 50 at random places in maps of these many landmarks.
 void refinement_part(const std::vector<int>& landmarks, int corrections);
 

@@ -68,7 +68,8 @@ class BlockSystem {
                                                  int columns) const;
 
   /// Diagonal blocks of A^-1, the covariances of all nodes: the node's stands in rows 0 ... size-1
-  /// of columns offset ... offset+size-1. Call after factorise. Cost: about two factorisations.
+  /// of columns offset ... offset+size-1. Call after factorise. Cost: twice the
+  /// operations of a factorisation, about 1.4 times its time.
   [[nodiscard]] Eigen::MatrixXd inverse_blocks() const;
 
   /// A^-1 between nodes that are coupled, and of each with itself; of Kernel::frontal alone

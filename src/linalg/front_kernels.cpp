@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/front_kernels.hpp"
 
+#include "linalg/front_loops.hpp"
 #include "parallel/parallel_for.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <vector>
 
 // Debian's BLAS and LAPACK, whichever is installed; Fortran's calling convention.
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
             const int* n, const double* alpha, const double* a, const int* lda, double* b,
             const int* ldb);
@@ -24,103 +23,10 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
             const double* beta, double* c, const int* ldc);
 }
 
-// One version per instruction set, chosen when the program starts; too early for ThreadSanitizer.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define TRUSSMAP_VERSIONS __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define TRUSSMAP_VERSIONS
-#endif
-#define TRUSSMAP_INLINE __attribute__((always_inline)) inline
-
 namespace trussmap {
 namespace {
 
-constexpr int kBlock = 4;  // columns at a time
 constexpr int kTile = 256;
-
-using Four = double __attribute__((vector_size(32)));
-
-/// C (m x N) -= A (m x k) B (k x N), with B[q, c] at b[q * step + c * across].
-template <int N>
-TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int lda, const double* b,
-                                      std::ptrdiff_t step, std::ptrdiff_t across, int m, int k) {
-  int i = 0;
-  for (; i + 8 <= m; i += 8) {
-    Four low[N] = {};
-    Four high[N] = {};
-    for (int q = 0; q < k; ++q) {
-      Four a0;
-      Four a1;
-      std::memcpy(&a0, a + at(i, q, lda), sizeof a0);
-      std::memcpy(&a1, a + at(i + 4, q, lda), sizeof a1);
-      for (int n = 0; n < N; ++n) {
-        const double factor = b[q * step + n * across];
-        low[n] += a0 * factor;
-        high[n] += a1 * factor;
-      }
-    }
-    for (int n = 0; n < N; ++n) {
-      double* to = c + at(i, n, ldc);
-      for (int r = 0; r < 4; ++r) to[r] -= low[n][r];
-      for (int r = 0; r < 4; ++r) to[4 + r] -= high[n][r];
-    }
-  }
-  for (; i + 2 <= m; i += 2) {
-    double sum[2][N] = {};
-    for (int q = 0; q < k; ++q) {
-      const double* from = a + at(i, q, lda);
-      for (int n = 0; n < N; ++n) {
-        const double factor = b[q * step + n * across];
-        sum[0][n] += from[0] * factor;
-        sum[1][n] += from[1] * factor;
-      }
-    }
-    for (int n = 0; n < N; ++n) {
-      c[at(i, n, ldc)] -= sum[0][n];
-      c[at(i + 1, n, ldc)] -= sum[1][n];
-    }
-  }
-  for (; i < m; ++i) {
-    for (int n = 0; n < N; ++n) {
-      double sum = 0.0;
-      for (int q = 0; q < k; ++q) sum += a[at(i, q, lda)] * b[q * step + n * across];
-      c[at(i, n, ldc)] -= sum;
-    }
-  }
-}
-
-TRUSSMAP_INLINE void subtract_product(double* c, int ldc, const double* a, int lda, const double* b,
-                                      std::ptrdiff_t step, std::ptrdiff_t across, int m, int n,
-                                      int k) {
-  switch (n) {
-    case 4:
-      return subtract_product<4>(c, ldc, a, lda, b, step, across, m, k);
-    case 3:
-      return subtract_product<3>(c, ldc, a, lda, b, step, across, m, k);
-    case 2:
-      return subtract_product<2>(c, ldc, a, lda, b, step, across, m, k);
-    default:
-      return subtract_product<1>(c, ldc, a, lda, b, step, across, m, k);
-  }
-}
-
-TRUSSMAP_INLINE double dot(const double* a, const double* b, int m) {
-  Four sums[2] = {};
-  int i = 0;
-  for (; i + 8 <= m; i += 8) {
-    for (std::ptrdiff_t h = 0; h < 2; ++h) {
-      Four x;
-      Four y;
-      std::memcpy(&x, a + i + 4 * h, sizeof x);
-      std::memcpy(&y, b + i + 4 * h, sizeof y);
-      sums[h] += x * y;
-    }
-  }
-  const Four both = sums[0] + sums[1];
-  double sum = (both[0] + both[1]) + (both[2] + both[3]);
-  for (; i < m; ++i) sum += a[i] * b[i];
-  return sum;
-}
 
 /// Columns j ... j + n of the panel, to the left of which all is done.
 TRUSSMAP_INLINE int factor_columns(double* panel, int rows, int j, int n) {
@@ -204,87 +110,6 @@ int eliminate_large(double* panel, int rows, int width, double* update) {
     });
   }
   return -1;
-}
-
-/// By blocks of columns from the right. With G = L21 L11^-1 and Z the inverse:
-///   Z_21 = -Z_22 G,   Z_11 = L11^-T L11^-1 - G' Z_21
-TRUSSMAP_VERSIONS void invert_small(double* panel, int rows, int width, double* inverse,
-                                    double* space) {
-  int end = width;
-  while (end > 0) {
-    const int n = (end - 1) % kBlock + 1;
-    const int j = end - n;
-    const int m = rows - end;
-    double* g = panel + at(end, j, rows);  // L21 of these columns becomes G
-    for (int c = n - 1; c >= 0; --c) {
-      double* column = g + at(0, c, rows);
-      for (int q = c + 1; q < n; ++q) {
-        const double factor = panel[at(j + q, j + c, rows)];
-        const double* right = g + at(0, q, rows);
-        for (int i = 0; i < m; ++i) column[i] -= right[i] * factor;
-      }
-      const double scale = 1.0 / panel[at(j + c, j + c, rows)];
-      for (int i = 0; i < m; ++i) column[i] *= scale;
-    }
-    double* z21 = inverse + at(end, j, rows);
-    for (int c = 0; c < n; ++c) std::fill_n(z21 + at(0, c, rows), m, 0.0);
-    subtract_product(z21, rows, inverse + at(end, end, rows), rows, g, 1, rows, m, n, m);
-    double* z11 = inverse + at(j, j, rows);
-    double* t = space;  // L11^-1
-    for (int c = 0; c < n; ++c) {
-      for (int i = 0; i < c; ++i) t[at(i, c, n)] = 0.0;
-      for (int i = c; i < n; ++i) {
-        double sum = i == c ? 1.0 : 0.0;
-        for (int q = c; q < i; ++q) sum -= panel[at(j + i, j + q, rows)] * t[at(q, c, n)];
-        t[at(i, c, n)] = sum / panel[at(j + i, j + i, rows)];
-      }
-    }
-    for (int c = 0; c < n; ++c) {
-      for (int r = c; r < n; ++r) {
-        double sum = 0.0;
-        for (int q = r; q < n; ++q) sum += t[at(q, r, n)] * t[at(q, c, n)];
-        sum -= dot(g + at(0, r, rows), z21 + at(0, c, rows), m);
-        z11[at(r, c, rows)] = sum;
-        z11[at(c, r, rows)] = sum;
-      }
-    }
-    for (int c = 0; c < n; ++c) {
-      for (int i = 0; i < m; ++i) inverse[at(j + c, end + i, rows)] = z21[at(i, c, rows)];
-    }
-    end = j;
-  }
-}
-
-void invert_large(double* panel, int rows, int width, double* inverse, double* space) {
-  const double one = 1.0;
-  const double minus = -1.0;
-  const double zero = 0.0;
-  const int height = rows - width;
-  int info = 0;
-  double* g = panel + width;
-  if (height > 0) {
-    dtrsm_("R", "L", "N", "N", &height, &width, &one, panel, &rows, g, &rows);
-  }
-  dpotri_("L", &width, panel, &rows, &info);
-  for (int c = 0; c < width; ++c) {
-    for (int i = c; i < width; ++i) inverse[at(i, c, rows)] = panel[at(i, c, rows)];
-    for (int i = c; i < width; ++i) inverse[at(c, i, rows)] = panel[at(i, c, rows)];
-  }
-  if (height == 0) return;
-  dgemm_("N", "N", &height, &width, &height, &minus, inverse + at(width, width, rows), &rows, g,
-         &rows, &zero, space, &height);
-  dgemm_("T", "N", &width, &width, &height, &minus, g, &rows, space, &height, &one, inverse, &rows);
-  for (int c = 0; c < width; ++c) {
-    for (int i = 0; i < height; ++i) {
-      inverse[at(width + i, c, rows)] = space[at(i, c, height)];
-      inverse[at(c, width + i, rows)] = space[at(i, c, height)];
-    }
-  }
-}
-
-/// Where a call to BLAS pays, by trial.
-bool is_large(int rows, int width) {
-  return width >= 32 && rows >= 96;
 }
 
 }  // namespace
@@ -376,14 +201,6 @@ void solve_backward_many(const double* panel, int rows, int width, double* x, in
            panel + width, &rows, &one, x, &count);
   }
   dtrsm_("R", "L", "N", "N", &count, &width, &one, panel, &rows, x, &count);
-}
-
-void invert_front(double* panel, int rows, int width, double* inverse, double* space) {
-  if (is_large(rows, width)) {
-    invert_large(panel, rows, width, inverse, space);
-  } else {
-    invert_small(panel, rows, width, inverse, space);
-  }
 }
 
 }  // namespace trussmap

@@ -138,7 +138,7 @@ std::vector<FrontalCholesky::FrontRange> FrontalCholesky::independent_ranges() c
 }
 
 void FrontalCholesky::factorise(const SparseMatrix& lower) {
-  if (!panels_) panels_ = std::make_unique_for_overwrite<double[]>(stored_);
+  if (!panels_) panels_ = large_array(stored_);
   std::vector<Update> waiting(parts_.size());
   const std::vector<FrontRange> ranges = independent_ranges();
   parallel_for(ranges.size(), [&](std::size_t k) { eliminate_range(ranges[k], lower, waiting); });
@@ -156,7 +156,7 @@ void FrontalCholesky::eliminate_range(const FrontRange& range, const SparseMatri
   const auto where = std::make_unique_for_overwrite<int[]>(idx(node_begin_.back()));
   for (std::size_t f = range.begin; f < range.end; ++f) {
     const Part& front = parts_[f];
-    waiting[f] = std::make_unique_for_overwrite<double[]>(area(front.height(), front.height()));
+    waiting[f] = large_array(area(front.height(), front.height()));
     assemble(front, lower, waiting, where.get(), waiting[f].get());
     const int failed =
         eliminate(panels_.get() + front.panel, front.rows, front.width, waiting[f].get());

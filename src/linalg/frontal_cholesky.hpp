@@ -24,6 +24,7 @@
 #pragma once
 
 #include "linalg/front_tree.hpp"
+#include "linalg/large_array.hpp"
 #include "linalg/sparse_cholesky.hpp"
 
 #include <cstddef>
@@ -73,7 +74,7 @@ class FrontalCholesky {
  private:
   friend class FrontalInverse;
 
-  using Update = std::unique_ptr<double[]>;
+  using Update = LargeArray;
   struct FrontRange {
     std::size_t begin, end;
   };
@@ -119,7 +120,7 @@ class FrontalCholesky {
   std::vector<int> node_begin_;  ///< per node its first unknown, and one past the last
   std::size_t stored_ = 0;
   int most_rows_ = 0;
-  std::unique_ptr<double[]> panels_;
+  LargeArray panels_;
 };
 
 /// Entries of A^-1, A in the order of the front tree.
@@ -134,7 +135,7 @@ class FrontalInverse {
   explicit FrontalInverse(const FrontalCholesky& factor);
 
   const FrontalCholesky& factor_;
-  std::unique_ptr<double[]> entries_;  ///< the fronts' first columns, as L's are stored
+  LargeArray entries_;  ///< the fronts' first columns, as L's are stored
 };
 
 }  // namespace trussmap

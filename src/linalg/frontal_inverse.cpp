@@ -24,7 +24,7 @@ void FrontalCholesky::descend(const Visit& visit) const {
     }
     most = std::max(most, begin[f] + area(front.rows, front.rows));
   }
-  const auto path = std::make_unique_for_overwrite<double[]>(most);
+  const LargeArray path = large_array(most);
   std::size_t widest = 16;
   for (const Part& front : parts_) widest = std::max(widest, area(front.rows, front.width));
   const auto panel = std::make_unique_for_overwrite<double[]>(widest);
@@ -86,7 +86,7 @@ void FrontalCholesky::copy_rows(const Part& front, const double* parent, int abo
 }
 
 FrontalInverse::FrontalInverse(const FrontalCholesky& factor)
-    : factor_(factor), entries_(std::make_unique_for_overwrite<double[]>(factor.stored_)) {
+    : factor_(factor), entries_(large_array(factor.stored_)) {
   factor.descend([&](std::size_t f, const double* inverse) {
     const FrontalCholesky::Part& front = factor.parts_[f];
     std::copy_n(inverse, area(front.rows, front.width), entries_.get() + front.panel);

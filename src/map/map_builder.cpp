@@ -435,7 +435,7 @@ class MapBuilder::State {
   }
 
   void put(int landmark, const Vector2& position) noexcept {
-    if (indexed()) nearest_.move(landmark, stored(landmark), position);
+    if (indexed()) nearest_.move(landmark, position);
     m_.graph.set_position(landmark, position);
   }
 

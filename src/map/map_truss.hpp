@@ -62,6 +62,7 @@ class MapTruss {
   [[nodiscard]] std::vector<int> next_ring(const std::vector<int>& members,
                                            const std::vector<int>& ring) const;
   [[nodiscard]] bool hardly_moves(const Moves& moves, const std::vector<int>& ring) const;
+  void fetch(const std::vector<int>& members) const;
   [[nodiscard]] Piece everything() const;
   [[nodiscard]] Piece piece_of(std::vector<int> members) const;
   [[nodiscard]] Piece connected_to(int i, std::vector<int> members) const;

@@ -202,6 +202,22 @@ TEST(FrontalCholesky, HasTheInverseOfADenseMatrix) {
   expect_inverse_like_dense(dense, as_they_come(dense), 3);
 }
 
+TEST(FrontalCholesky, HasTheInverseInFrontsOfSeveralBlocks) {
+  // Two parts that only a border joins, everything coupled otherwise: fronts of 202 to 230 columns
+  // above the border's rows, and the border's.
+  for (const int part : {101, 110, 115}) {
+    constexpr int kBorder = 20;
+    Mesh mesh;
+    for (int k = 0; k < 2 * part + kBorder; ++k) {
+      mesh.positions.emplace_back(k, 0.0);
+      mesh.sizes.push_back(2);
+      for (int i = k < part || k >= 2 * part ? 0 : part; i < k; ++i) mesh.pairs.push_back({i, k});
+    }
+    expect_like_dense(mesh, as_they_come(mesh), static_cast<unsigned>(part));
+    expect_inverse_like_dense(mesh, as_they_come(mesh), static_cast<unsigned>(part));
+  }
+}
+
 TEST(FrontalCholesky, KnowsNoInverseBetweenNodesThatNothingCouples) {
   Mesh mesh;
   for (int k = 0; k < 3; ++k) {
