@@ -16,6 +16,7 @@ ordered_json effect_view(const Effect& effect) {
                          {"formula", formula_of(effect)},
                          {"part", name_of(part_of(effect))},
                          {"channel", name_of(effect.channel)},
+                         {"does", facts_of(effect.channel).does_what},
                          {"shape", texts_of(effect.shape)}};
   if (const CatalogueEntry* entry = find_entry(effect.name)) {
     result["cause"] = entry->cause;

@@ -11,23 +11,32 @@ async function answered(reply) {
 
 export const ask = path => fetch(path).then(answered);
 
-export const tell = (path, body, signal) => fetch(path, {
-  method: 'POST', signal, headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)
+export const tell = (path, body) => fetch(path, {
+  method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)
 }).then(answered);
 
-/// Only the last of several questions is answered; the others end in nothing.
+/// One question at a time. Of those that come meanwhile the last is asked next; the others end in
+/// nothing: pointing across many cards must not keep the program busy with what nobody looks at.
 export function lastOnly(path) {
-  let under = null;
-  return async body => {
-    under?.abort();
-    const mine = under = new AbortController();
+  let under = false;
+  let next = null;
+  const run = async body => {
+    under = true;
     try {
-      const reply = await tell(path, body, mine.signal);
-      return under === mine ? reply : null;
-    } catch (error) {
-      if (error.name === 'AbortError' || under !== mine) return null;
-      throw error;
+      return await tell(path, body);
+    } finally {
+      under = false;
+      if (next) {
+        const {body: waiting, done, failed} = next;
+        next = null;
+        run(waiting).then(done, failed);
+      }
     }
+  };
+  return body => {
+    if (!under) return run(body);
+    next?.done(null);
+    return new Promise((done, failed) => { next = {body, done, failed}; });
   };
 }
 

@@ -33,7 +33,7 @@ function showWords(reply) {
   by('looked-words').textContent = reply.words;
   by('looked-saves').textContent = looked.on ? '' : saves(reply);
   by('looked-why').textContent = [
-    reply.formula, reply.cause && `Comes from ${reply.cause}.`,
+    reply.formula, reply.does && `Acts on ${reply.does}.`, reply.cause && `Comes from ${reply.cause}.`,
     reply.remedy && `What helps for good: ${reply.remedy}.`].filter(Boolean).join(' \u00b7 ');
   by('add').hidden = looked.on;
   const rival = reply.rivals[0];
