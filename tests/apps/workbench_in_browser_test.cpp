@@ -55,6 +55,7 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
   EXPECT_NE(chrome.text("#verdict").find("Missing: hard iron"), std::string::npos);
   const double before = chrome.eval("window.trussmap.state().figure.now_mm").get<double>();
   // Pointing previews, and fits nothing.
+  chrome.click("[data-part=\"wheels\"] > .act");
   chrome.point_at(card("spin loss"));
   chrome.wait(looked_at("spin loss"));
   EXPECT_EQ(chrome.text("#looked-name"), "spin loss");

@@ -5,10 +5,13 @@
 // by what each would save. Look-alikes are stacked in one card.
 import {make} from './figure.js';
 
-const SHOWN = 4;  // of a part, before "more"
+const SHOWN = 4;  // of a part, before "more": of those that are more than chance
 const open = new Set();  // parts whose cards are all shown
 
-const saving = mm => (mm > 0 ? '\u2212' : '+') + Math.abs(mm).toFixed(Math.abs(mm) < 10 ? 1 : 0) + ' mm';
+function saving(mm) {
+  const size = Math.abs(mm).toFixed(Math.abs(mm) < 10 ? 1 : 0);
+  return (Number(size) === 0 ? '' : mm > 0 ? '\u2212' : '+') + size + ' mm';
+}
 
 /// What pointing, focusing and pressing do; the same for each card.
 function card(name, more, does) {
@@ -49,9 +52,9 @@ function stacked(cards) {
                                       .map(name => byName.get(name)).filter(Boolean)}));
 }
 
-export function showOn(list, state, busy, does) {
+export function showOn(list, state, does) {
   list.replaceChildren(...state.on.map(one => {
-    const item = card(one.name, [act('Remove', `Remove ${one.name}`, busy, () => does.remove(one))], {
+    const item = card(one.name, [act('Remove', `Remove ${one.name}`, does.busy(), () => does.remove(one))], {
       look: () => does.lookOn(one), leave: does.leave, pin: () => does.pinOn(one)});
     item.dataset.effect = one.id;
     item.append(make('p', {textContent: one.words}),
@@ -61,38 +64,39 @@ export function showOn(list, state, busy, does) {
   if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
 }
 
-function candidate(one, busy, does) {
+function candidate(one, does) {
   const item = card(one.name, [
     make('span', {className: 'save', textContent: saving(one.saves_mm)}),
-    act('Add', `Add ${one.name}`, busy, () => does.add(one))], {
+    act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
   item.dataset.finding = one.finding;
   item.append(make('p', {}, tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
     item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
-                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, busy, does))));
+                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does))));
   }
   return item;
 }
 
-export function showCandidates(box, state, busy, does) {
+export function showCandidates(box, state, does) {
   const cards = stacked(state.cards.filter(one => one.saves_mm > 0 || one.status === 'missing'));
   const parts = new Map();
   for (const one of cards) {
     if (!parts.has(one.part)) parts.set(one.part, []);
     parts.get(one.part).push(one);
   }
-  const again = () => showCandidates(box, state, busy, does);
+  const again = () => showCandidates(box, state, does);
   box.replaceChildren(...[...parts].map(([part, all]) => {
-    const shown = open.has(part) ? all : all.slice(0, SHOWN);
-    const list = make('ul', {className: 'cards'}, ...shown.map(one => candidate(one, busy, does)));
+    const telling = all.filter(one => one.significant || one.status === 'missing');
+    const shown = open.has(part) ? all : telling.slice(0, SHOWN);
+    const list = make('ul', {className: 'cards'}, ...shown.map(one => candidate(one, does)));
     const section = make('section', {className: 'part'}, make('h4', {textContent: part}), list);
     section.dataset.part = part;
     if (all.length > shown.length) {
-      const more = act(`${all.length - shown.length} more`, `More of ${part}`, false,
-                       () => { open.add(part); again(); });
-      section.append(more);
+      const count = all.length - shown.length;
+      const text = count + (shown.length < telling.length ? ' more' : ' that are as chance would have them');
+      section.append(act(text, `${text}, ${part}`, false, () => { open.add(part); again(); }));
     }
     return section;
   }));

@@ -25,7 +25,7 @@ export const request = () => looked && {...looked.ask};
 function saves(reply) {
   if (reply.leaves_mm === null) return '';
   return `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
-         `\u03c7\u00b2 less by ${reply.chi2_less.toPrecision(3)} (${reply.dof}), p ${reply.p}`;
+         `\u03c7\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
 }
 
 function showWords(reply) {

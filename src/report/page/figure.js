@@ -119,10 +119,10 @@ function addTools(figure, entry) {
   const svg = make('button', {type: 'button', textContent: 'Save SVG'});
   svg.addEventListener('click', async () =>
       save(chart.id + '.svg', 'image/svg+xml', await svgOf(entry)));
-  svg.setAttribute('aria-label', `Save the chart "${chart.title}" as SVG`);
+  svg.setAttribute('aria-label', `Save SVG of the chart "${chart.title}"`);
   const csv = make('button', {type: 'button', textContent: 'Save CSV'});
   csv.addEventListener('click', () => save(chart.id + '.csv', 'text/csv', csvOf(chart)));
-  csv.setAttribute('aria-label', `Save the data of "${chart.title}" as CSV`);
+  csv.setAttribute('aria-label', `Save CSV of the data of "${chart.title}"`);
   const details = make('details', {}, make('summary', {textContent: 'Data as a table'}));
   details.addEventListener('toggle', () => {
     if (details.open && details.children.length === 1) {

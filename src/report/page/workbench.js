@@ -36,6 +36,7 @@ async function step(what) {
 }
 
 const does = {
+  busy: () => busy,
   look: look.look, lookOn: look.lookOn, leave: look.leave, pin: look.pinCard, pinOn: look.pinOn,
   add: card => { onward = []; step({do: 'add', finding: card.finding}); },
   remove: one => { onward = []; step({do: 'remove', effect: one.effect}); }
@@ -58,8 +59,8 @@ function setBusy(now) {
 
 function showAll() {
   showState(state, busy, go);
-  showOn(by('on'), state, busy, does);
-  showCandidates(by('parts'), state, busy, does);
+  showOn(by('on'), state, does);
+  showCandidates(by('parts'), state, does);
   setBusy(busy);
 }
 

@@ -62,5 +62,5 @@ export function addZoom(entry, make) {
     return made;
   };
   return [button('+', 'Zoom into', STEP), button('\u2212', 'Zoom out of', 1 / STEP),
-          button('Show all', 'Show the whole of', 1e-9)];
+          button('Show all', 'Show all of', 1e-9)];
 }
