@@ -23,6 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostCards = 240;
+constexpr double kMapHeight = 320.0;  // so that the plot below is on the same screen
 
 std::string step_name(const WorkbenchStep& step) {
   Effect effect;
@@ -274,9 +275,10 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
   const double worst = routes.empty() ? 0.0 : routes.front().rms;
   ordered_json strips = ordered_json::array();
   for (const Chart& strip : time_strips(now.recordings())) strips.push_back(chart_view(strip));
-  const Chart map = routes.empty() ? truss_chart("map", "The map", now.map(), {}, 1.0)
-                                   : route_chart("map", "The map, routes by what is left",
-                                                 now.map(), routes, worst);
+  Chart map = routes.empty()
+                  ? truss_chart("map", "The map", now.map(), {}, 1.0)
+                  : route_chart("map", "The map, routes by what is left", now.map(), routes, worst);
+  map.height = kMapHeight;
   return safe_text({{"subject", subject},
                     {"provisional", provisional},
                     {"at", log.at},

@@ -50,9 +50,7 @@ constexpr const char* kBody = R"html(<header id="head">
 </form></details>
 <details id="unseen"><summary>What these recordings cannot show</summary><ul></ul></details>
 </section>
-<section id="view" aria-label="Map and plot">
-<figure class="chart" id="map"><h3></h3><div class="picture tall-480"></div>
-<figcaption></figcaption></figure>
+<section id="view" aria-label="The effect that is looked at, and the map" tabindex="0">
 <div id="looked" aria-live="polite">
 <h2 id="looked-name">Point at an effect</h2>
 <p id="looked-words">Its curve appears here before anything is fitted.</p>
@@ -60,18 +58,20 @@ constexpr const char* kBody = R"html(<header id="head">
 <div id="sliders"></div>
 <p id="duel-line" hidden><label>Set against <select id="duel"></select></label>
 <span id="duel-words"></span></p>
-<p id="looked-why"></p>
 <button type="button" id="add" hidden>Add it to the model</button>
+<p id="looked-why"></p>
 </div>
 <figure class="chart" id="plot" hidden><h3></h3><div class="picture tall-260"></div>
-<figcaption></figcaption></figure>
+<details class="read"><summary>How to read it</summary><p></p></details></figure>
+<figure class="chart" id="map"><h3></h3><div class="picture tall-320"></div>
+<details class="read"><summary>How to read it</summary><p></p></details></figure>
 </section>
-<section id="error" aria-labelledby="error-title">
+<section id="error" aria-labelledby="error-title" tabindex="0">
 <h2 id="error-title">Dead reckoning is off by</h2>
 <p id="figure"><span id="figure-now">&#8211;</span></p>
 <p id="figure-more"></p>
 <figure class="chart" id="staircase"><h3></h3><div class="picture"></div>
-<figcaption></figcaption></figure>
+<details class="read"><summary>How to read it</summary><p></p></details></figure>
 <h3>Steps</h3>
 <ol id="steps"></ol>
 <h3>Noise</h3>
@@ -89,7 +89,7 @@ constexpr const char* kBody = R"html(<header id="head">
 
 std::string workbench_page(const PageRuntime& runtime) {
   const std::string style = fmt::format(
-      "\n{}.tall-480 {{ min-height: 480px; }}\n.tall-260 {{ min-height: 260px; }}\n",
+      "\n{}.tall-320 {{ min-height: 320px; }}\n.tall-260 {{ min-height: 260px; }}\n",
       runtime.style);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

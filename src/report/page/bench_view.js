@@ -17,7 +17,8 @@ export function showFigure(id, chart) {
   figure.hidden = !chart;
   if (!chart) return;
   figure.querySelector('h3').textContent = chart.title;
-  figure.querySelector('figcaption').textContent = chart.caption;
+  const caption = figure.querySelector('.read p');
+  if (caption) caption.textContent = chart.caption;
   showChart(figure, chart);
 }
 
@@ -74,7 +75,7 @@ function showStrips(state) {
   box.dataset.shown = state.subject;
   for (const chart of state.strips) {
     const figure = make('figure', {className: 'chart strip', id: chart.id},
-                        make('h3'), make('div', {className: 'picture'}), make('figcaption'));
+                        make('h3'), make('div', {className: 'picture'}));
     box.append(figure);
     showFigure(chart.id, chart);
   }
