@@ -139,7 +139,7 @@ LocalReply step(const json& asked, BenchWork& work, const BenchView& view) {
     case BenchWork::Taken::outdated:
       break;
   }
-  return refusal(409, "the model has changed in another window; this one shows it now");
+  return refusal(409, "the model has changed meanwhile; the page shows it now");
 }
 
 LocalReply answer_get(const LocalRequest& request, const BenchWork& work,
@@ -162,6 +162,10 @@ LocalReply answer_get(const LocalRequest& request, const BenchWork& work,
 LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   const std::shared_ptr<const BenchView> view = shown(work);
   const json asked = json::parse(request.body);
+  // Findings are numbered anew by every step.
+  if (asked.value("version", view->version) != view->version) {
+    throw Refusal{409, "the model has changed meanwhile; the page shows it now"};
+  }
   if (request.path == "preview") return preview(asked, *view);
   if (request.path == "best") return best(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);

@@ -9,8 +9,9 @@
 //   POST best    {"finding", "values"}            POST shown {"effect"}
 //   POST step    {"version", "do": "add" | "remove" | "go", ...}
 //
-// Every answer that is none is {"error": one line}. Formulas are evaluated by the library's parser
-// alone, and only where they are short and shallow.
+// A "version" that is not the present one is refused, in any of them. Every answer that is none is
+// {"error": one line}. Formulas are evaluated by the library's parser alone, and only where they
+// are short and shallow.
 #pragma once
 
 #include "bench_work.hpp"

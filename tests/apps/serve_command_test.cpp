@@ -223,6 +223,9 @@ TEST(ServeCommand, TwoWindowsDoNotFight) {
   EXPECT_EQ(second.status, 409) << second.body;  // under way, or of a version that is gone
   static_cast<void>(bench.settled());
   EXPECT_EQ(bench.post("step", add).status, 409);
+  // Findings have other numbers now: a preview of the state before is refused, too.
+  const json stale = {{"version", first.at("version")}, {"finding", finding}};
+  EXPECT_EQ(bench.post("preview", stale.dump()).status, 409);
   EXPECT_EQ(bench.state().at("steps").size(), 2U);
 }
 

@@ -5,7 +5,10 @@
 
 async function answered(reply) {
   const body = await reply.json().catch(() => ({}));
-  if (!reply.ok) throw new Error(body.error || `the program answered ${reply.status}`);
+  if (!reply.ok) {
+    throw Object.assign(new Error(body.error || `the program answered ${reply.status}`),
+                        {status: reply.status});
+  }
   return body;
 }
 

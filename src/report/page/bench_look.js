@@ -14,6 +14,7 @@ const shown = lastOnly('shown');
 const best = lastOnly('best');
 
 let state = null;
+let version = 0;     // of the state
 let pinned = null;   // what to go back to
 let looked = null;   // what is shown
 let asked = 0;
@@ -48,7 +49,7 @@ async function show(target) {
   const key = JSON.stringify([target.on, target.ask]);
   try {
     const known = answers.get(key);
-    const reply = known || await (target.on ? shown : preview)(target.ask);
+    const reply = known || await (target.on ? shown : preview)({version, ...target.ask});
     if (!reply || mine !== asked) return;
     answers.set(key, reply);
     showWords(reply);
@@ -56,7 +57,7 @@ async function show(target) {
     target.fault?.('');
     document.documentElement.dataset.looked = target.name;
   } catch (error) {
-    if (mine !== asked) return;
+    if (mine !== asked || error.status === 409) return;  // another state is on its way
     if (target.fault) target.fault(error.message);
     else by('looked-words').textContent = error.message;
   }
@@ -72,7 +73,7 @@ function sliderOf(one, k, values) {
     show({...looked, ask: {...looked.ask, values: values.slice()}});
   });
   input.addEventListener('change', async () => {
-    const reply = await best({finding: looked.ask.finding, values}).catch(() => null);
+    const reply = await best({version, finding: looked.ask.finding, values}).catch(() => null);
     if (!reply) return;
     reply.values.forEach((at, j) => { values[j] = at; });
     showSliders(looked.card, values);
@@ -129,8 +130,9 @@ export function begin() {
 }
 
 /// Another model: what was looked at is pinned again where it still is there, else the best.
-export function renew(next) {
+export function renew(next, its) {
   state = next;
+  version = its;
   answers.clear();
   const on = state.on.find(one => pinned && one.id === pinned.name);
   const card = state.cards.find(one => pinned && one.id === pinned.name && !pinned.on);

@@ -74,7 +74,7 @@ async function renew(to) {
     beginOwn(state, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
-  await look.renew(state);
+  await look.renew(state, version);
   document.documentElement.dataset.at = String(state.at);
   document.documentElement.dataset.steps = String(state.steps.length);
 }
