@@ -22,6 +22,7 @@ using nlohmann::json;
 constexpr std::size_t kMostShapes = 8;
 constexpr std::size_t kLongestName = 80;
 constexpr std::size_t kMostRivals = 3;
+constexpr double kLargestFactor = 100.0;  // of the noise
 
 /// An answer that is none.
 struct Refusal {
@@ -110,6 +111,20 @@ LocalReply shown_effect(const json& asked, const BenchView& view) {
   return {.body = preview_json(preview, view.now.diagnosis().held_out.arrival_rms)};
 }
 
+/// Of every finding, its adjusted p-value were the noise so many times as large.
+LocalReply with_noise(const json& asked, const BenchView& view) {
+  const auto factor = asked.at("factor").get<double>();
+  if (!(factor > 0.0) || factor > kLargestFactor) {
+    throw Refusal{400,
+                  fmt::format("a factor of the noise is above 0 and at most {}", kLargestFactor)};
+  }
+  json p = json::array();
+  const std::size_t count = view.now.diagnosis().findings.size();
+  for (std::size_t k = 0; k < count; ++k)
+    p.push_back(p_with_noise(view.now.diagnosis(), k, factor));
+  return {.body = json{{"level", kSignificance}, {"p", std::move(p)}}.dump()};
+}
+
 BenchWork::Step step_of(const json& asked, const BenchView& view) {
   const auto what = asked.at("do").get<std::string>();
   if (what == "add") {
@@ -169,6 +184,7 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   if (request.path == "preview") return preview(asked, *view);
   if (request.path == "best") return best(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);
+  if (request.path == "noise") return with_noise(asked, *view);
   if (request.path == "step") return step(asked, work, *view);
   return refusal(404, "there is nothing here");
 }

@@ -7,6 +7,7 @@
 //   GET  state           what it shows            GET  status        as of the events
 //   POST preview {"finding", "values", "rivals"} or {"effect": {"name", "channel", "shape"}, ...}
 //   POST best    {"finding", "values"}            POST shown {"effect"}
+//   POST noise   {"factor"}
 //   POST step    {"version", "do": "add" | "remove" | "go", ...}
 //
 // A "version" that is not the present one is refused, in any of them. Every answer that is none is

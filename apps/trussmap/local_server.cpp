@@ -41,7 +41,7 @@ using Response = http::response<http::string_body>;
 using namespace std::chrono_literals;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
-constexpr std::uint64_t kMostBody = 64 * 1024;
+constexpr std::uint64_t kMostBody = std::uint64_t{64} * 1024;
 constexpr int kMostConnections = 64;
 constexpr auto kSilence = 60s;
 constexpr auto kLook = 50ms;  // for events

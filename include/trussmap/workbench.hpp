@@ -52,6 +52,12 @@ struct EffectParameter {
   double most = 0.0;
 };
 
+/// Chance of as much as a finding's score, were all noise `factor` times as large as it is believed
+/// to be: of score over max(factor^2, what the effect leaves of chi^2 per degree of freedom), times
+/// the tests, at most 1. Less noise than believed makes nothing surer: the errors are as large as
+/// they are.
+[[nodiscard]] double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double factor);
+
 /// What a model is being tried for at the moment.
 enum class TryingStage { fitting, searching, comparing };
 

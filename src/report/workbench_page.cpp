@@ -76,6 +76,8 @@ constexpr const char* kBody = R"html(<header id="head">
 <ol id="steps"></ol>
 <h3>Noise</h3>
 <div id="noise"></div>
+<label id="handle-line">If it were <input type="range" id="handle" min="0" max="3" step="0.05" value="0"> <output id="handle-factor">1</output> times as large:</label>
+<p id="handle-words" aria-live="polite"></p>
 </section>
 <section id="time" aria-label="In time"></section>
 </main>

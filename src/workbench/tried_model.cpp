@@ -6,6 +6,7 @@
 #include "criticism/effect_evidence.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
+#include "statistics/distributions.hpp"
 #include "trussmap/workbench.hpp"
 #include "validation/held_out_legs.hpp"
 
@@ -159,6 +160,17 @@ EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect
   const EffectEstimate estimate{asked.front(), score.sd, {}};
   result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests);
   return result;
+}
+
+double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double factor) {
+  const Finding& one = diagnosis.findings.at(finding);
+  if (one.dof == 0) return 1.0;
+  const int dof = std::max(1, diagnosis.dof - one.dof);
+  const double left = std::max(0.0, diagnosis.chi2 - one.score) / dof;
+  const double noise = std::max({1.0, factor * factor, left});
+  const double p = chi2_p_value(one.score / noise, one.dof);
+  // Never surer than the diagnosis, which knows of more than this.
+  return std::clamp(p * static_cast<double>(diagnosis.tried), one.p_adjusted, 1.0);
 }
 
 EffectEvidence TriedModel::shown(std::size_t effect) const {

@@ -70,6 +70,12 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
       "(() => { const duel = document.getElementById('duel'); duel.selectedIndex = 1; "
       "duel.dispatchEvent(new Event('change')); })()");
   chrome.wait("document.getElementById('duel-words').textContent.includes('To tell them apart')");
+  // The noise by its handle.
+  chrome.eval(
+      "(() => { const handle = document.getElementById('handle'); handle.value = '3'; "
+      "handle.dispatchEvent(new Event('input')); })()");
+  chrome.wait("document.getElementById('handle-words').textContent.includes('of ')");
+  EXPECT_NE(chrome.text("#handle-factor").find("8"), std::string::npos);
   // Added, the error falls, and the others lose what it took from them.
   chrome.click(card("hard iron") + " .act");
   chrome.wait(at_step(1, 2));

@@ -200,6 +200,26 @@ TEST(Workbench, ValuesOfACandidateCanBeMovedAndSnapToTheBest) {
   EXPECT_THROW(static_cast<void>(now.moved(k, values)), std::invalid_argument);
 }
 
+TEST(Workbench, MoreNoiseSwallowsAnEffectAndLessMakesNoneSurer) {
+  const Diagnosis& diagnosis = begun().now().diagnosis();
+  const std::size_t iron = finding_named(begun().now(), "hard iron");
+  const double believed = p_with_noise(diagnosis, iron, 1.0);
+  EXPECT_LT(believed, kSignificance);
+  EXPECT_EQ(p_with_noise(diagnosis, iron, 0.5), believed);
+  double before = believed;
+  for (const double factor : {2.0, 4.0, 8.0, 16.0, 32.0}) {
+    const double p = p_with_noise(diagnosis, iron, factor);
+    EXPECT_GE(p, before);
+    before = p;
+  }
+  // By hand: two coefficients, so that the chance is exp(-x/2), times the tests.
+  const double score = diagnosis.findings[iron].score;
+  const double x = score / (20.0 * 20.0);
+  EXPECT_NEAR(p_with_noise(diagnosis, iron, 20.0),
+              std::min(1.0, std::exp(-0.5 * x) * static_cast<double>(diagnosis.tried)), 1e-9);
+  EXPECT_EQ(p_with_noise(diagnosis, iron, 100.0), 1.0);
+}
+
 TEST(Workbench, RivalsAreForetoldBeside) {
   const TriedModel& now = begun().now();
   const EffectPreview duel =

@@ -8,6 +8,7 @@
 import {ask, follow, tell} from './bench_api.js';
 import {showCandidates, showOn} from './bench_cards.js';
 import * as look from './bench_look.js';
+import * as noise from './bench_noise.js';
 import {beginOwn} from './bench_own.js';
 import {showState} from './bench_view.js';
 import {followWidth} from './figure.js';
@@ -74,7 +75,7 @@ async function renew(to) {
     beginOwn(state, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
-  await look.renew(state, version);
+  await Promise.all([look.renew(state, version), noise.renew(state, version)]);
   document.documentElement.dataset.at = String(state.at);
   document.documentElement.dataset.steps = String(state.steps.length);
 }
@@ -105,6 +106,7 @@ by('add').addEventListener('click', () => {
   step({do: 'add', ...(effect ? {effect} : {finding, ...(values ? {values} : {})})});
 });
 look.begin();
+noise.begin();
 followWidth();
 follow(onStatus, gone => {
   if (gone) fail('The program does not answer. Started again with the same command, it goes on where it ended, at a new address.');

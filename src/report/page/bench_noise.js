@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The noise by a handle: which alarms would stay were it larger than it is believed to be.
+import {lastOnly} from './bench_api.js';
+
+const by = id => document.getElementById(id);
+const noise = lastOnly('noise');
+let state = null;
+let version = 0;
+
+function words(factor, reply) {
+  const alarms = state.cards.filter(one => one.significant);
+  const lost = alarms.filter(one => reply.p[one.finding] >= reply.level);
+  for (const item of document.querySelectorAll('#parts .card')) {
+    item.classList.toggle('swallowed', reply.p[item.dataset.finding] >= reply.level && factor > 1);
+  }
+  const missing = alarms.filter(one => one.status === 'missing');
+  const gone = missing.filter(one => lost.includes(one)).map(one => one.name);
+  if (!alarms.length) return 'There is no alarm that it could silence.';
+  return `${alarms.length - lost.length} of ${alarms.length} effects would still be more than chance` +
+      (!missing.length ? '.' : gone.length ? `; so much noise would swallow ${gone.join(' and ')}.`
+                                           : `; ${missing.map(one => one.name).join(' and ')} would still be seen.`);
+}
+
+async function moved() {
+  const factor = 2 ** Number(by('handle').value);
+  by('handle-factor').textContent = factor.toPrecision(2);
+  const reply = await noise({version, factor}).catch(() => null);  // another state is on its way
+  if (reply) by('handle-words').textContent = words(factor, reply);
+}
+
+export function begin() {
+  by('handle').addEventListener('input', moved);
+}
+
+export function renew(next, its) {
+  state = next;
+  version = its;
+  by('handle').value = '0';
+  return moved();
+}
