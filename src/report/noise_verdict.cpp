@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "report/noise_verdict.hpp"
+
+#include "report/page_words.hpp"
+#include "report/robot_off.hpp"
+#include "trussmap/table.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+
+bool is_wrong(const NoiseSource& source) {
+  if (!(source.stated > 0.0)) return source.sd > 0.0;
+  return source.sd > kNoiseAsStated * source.stated || kNoiseAsStated * source.sd < source.stated;
+}
+
+bool is_wrong(const FittedNoise& noise) {
+  return noise.changed() && std::any_of(noise.sources.begin(), noise.sources.end(),
+                                        [](const NoiseSource& source) { return is_wrong(source); });
+}
+
+bool noise_is_wrong(const Diagnosis& diagnosis) {
+  return diagnosis.under != nullptr && is_wrong(diagnosis.under->noise);
+}
+
+std::string found_and_stated(const FittedNoise& noise) {
+  std::vector<std::string> texts;
+  for (const NoiseSource& one : noise.sources) {
+    if (!is_wrong(one)) continue;
+    const QuantityText found = quantity_text(one.sd, one.sd_error);
+    const std::string size = found.error.empty()
+                                 ? two_digits(one.sd)
+                                 : fmt::format("{} \u00b1 {}", found.value, found.error);
+    texts.push_back(one.stated > 0.0
+                        ? fmt::format("{} {} {}, stated {} ({} times)", one.name, size, one.unit,
+                                      two_digits(one.stated), two_digits(one.sd / one.stated))
+                        : fmt::format("{} {} {}, not stated at all", one.name, size, one.unit));
+  }
+  return listed(texts);
+}
+
+std::string noise_gain(const DiagnosisEvidence& evidence) {
+  if (!evidence.as_stated || evidence.as_stated->legs.empty()) return "";
+  const HeldOut& stated = *evidence.as_stated;
+  const HeldOut& found = evidence.given.comparison.held_out;
+  const double most = std::max(stated.arrival_rms, found.arrival_rms);
+  return fmt::format(
+      "What the noise found gains: legs end {} off, and {} is expected of them; by the noise "
+      "stated they ended {} off, and {} was expected.",
+      distance_text(found.arrival_rms, most), distance_text(found.expected_rms, most),
+      distance_text(stated.arrival_rms, most), distance_text(stated.expected_rms, most));
+}
+
+std::string noisier_than_stated(const Comparison& comparison) {
+  constexpr double kClear = 3.0;  // standard errors
+  std::vector<std::string> noisy;
+  for (const SourceCalibration& one : comparison.sources) {
+    if (one.factor - 1.0 > kClear * one.sd && one.factor > kNoiseAsStated) {
+      noisy.push_back(fmt::format("{} {} \u00b1 {} times", one.source, two_digits(one.factor),
+                                  two_digits(one.sd)));
+    }
+  }
+  return listed(noisy);
+}
+
+}  // namespace trussmap
