@@ -61,7 +61,7 @@ const Trend* telling_trend(const Comparison& result) {
 
 /// "the compass error goes with heading (3.1°)".
 std::string trend_words(const Trend& trend) {
-  return fmt::format("the {} error {} ({}, root mean square)", trend.kind,
+  return fmt::format("the {} error {}, by {} (rms)", trend.kind,
                      trend.against == "all" ? "is everywhere alike"
                                             : "goes with " + variable_in_words(trend.against),
                      shown(trend.size, trend.unit));
@@ -121,7 +121,7 @@ std::vector<std::string> otherwise_rows(const Comparison& result) {
   if (!trends.empty()) rows.push_back(capitalised(listed(trends)) + ".");
   const std::string noisy = noisier_than_stated(result);
   if (!result.consistent() && !noisy.empty()) {
-    rows.push_back("Noise that is stated too small: errors beside it are those of " + noisy + ".");
+    rows.push_back(fmt::format("Noise that is stated too small: {} what is stated.", noisy));
   }
   if (!result.outliers.empty()) {
     rows.push_back("A wrong measurement: all others contradict " + result.outliers.front().what +

@@ -143,8 +143,7 @@ ResultRows unexplained_rows(const Diagnosis& diagnosis, const DiagnosisEvidence&
                   chance_text(given.p_value))};
   const std::string noisy = noisier_than_stated(given);
   if (!noisy.empty()) {
-    rows.otherwise = {"Noise that is stated too small: errors beside it are those of " + noisy +
-                      "."};
+    rows.otherwise = {fmt::format("Noise that is stated too small: {} what is stated.", noisy)};
     rows.next = {
         fmt::format("Check the noise in the model. Errors beside what it states: {}. "
                     "Correct it, and diagnose again.",
@@ -160,11 +159,22 @@ ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence
                     : diagnosis.verdict == Diagnosis::Verdict::nothing_missing
                         ? faultless_rows(diagnosis, evidence)
                         : unexplained_rows(diagnosis, evidence);
-  rows.off = evidence.with ? off_sentences(evidence.given, *evidence.with, with_name(evidence))
+  rows.off = evidence.with ? off_sentences(evidence.given, *evidence.with, with_name(evidence),
+                                           noise_floor(diagnosis, evidence))
                            : off_sentences(evidence.given);
-  if (noise_is_wrong(diagnosis)) rows.off.push_back(noise_gain(evidence));
+  const bool noise = noise_is_wrong(diagnosis);
+  const bool missing = diagnosis.verdict == Diagnosis::Verdict::missing;
+  if (noise && !missing) rows.off.push_back(noise_gain(evidence));
+  if (noise && missing) {
+    rows.otherwise.push_back(fmt::format(
+        "What is missing looks like noise until it is in the model. Without it the noise is {}: "
+        "look again with it.",
+        found_and_stated(diagnosis.under->noise)));
+  }
+  // Noise that is the headline, or was spoken of just now, is the first of them.
+  const bool said = noise && diagnosis.verdict != Diagnosis::Verdict::unexplained_misfit;
   const std::vector<std::string> others = others_notes(diagnosis);
-  rows.otherwise.insert(rows.otherwise.end(), others.begin(), others.end());
+  rows.otherwise.insert(rows.otherwise.end(), others.begin() + (said ? 1 : 0), others.end());
   return rows;
 }
 
@@ -182,7 +192,7 @@ LeftBy left_by(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
 }
 
 /// What the best changes of different names would leave of the held-out error, rivals first.
-Chart changes_chart(const Diagnosis& diagnosis) {
+Chart changes_chart(const Diagnosis& diagnosis, double floor) {
   std::vector<LadderStep> steps{
       {kGiven, diagnosis.held_out.arrival_rms, diagnosis.chi2, diagnosis.dof}};
   for (const Finding& one : diagnosis.findings) {
@@ -190,7 +200,7 @@ Chart changes_chart(const Diagnosis& diagnosis) {
     steps.push_back({"+ " + name_in_words(one.effect), one.held_out.arrival_rms,
                      diagnosis.chi2 - one.score, diagnosis.dof - one.dof});
   }
-  Chart chart = ladder_chart("changes", steps, diagnosis.held_out.expected_rms);
+  Chart chart = ladder_chart("changes", steps, floor);
   chart.title = "What each change would leave";
   chart.caption =
       "How far off held-out legs would end (root mean square) with each of the best changes alone, "
@@ -204,7 +214,8 @@ PageSection cause_section(const SizedDiagnosis& sized, const DiagnosisEvidence& 
   PageSection section =
       effect_section("The suspected cause", evidence.effects, left_by(diagnosis, evidence));
   if (!diagnosis.held_out.legs.empty()) {
-    section.blocks.emplace_back(ChartRow{changes_chart(diagnosis)});
+    section.blocks.emplace_back(
+        ChartRow{changes_chart(diagnosis, noise_floor(diagnosis, evidence))});
   }
   PageTable rivals = rivals_table(sized);
   if (!rivals.rows.empty()) section.details.emplace_back(std::move(rivals));
@@ -236,7 +247,7 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   if (noise_first) page.sections.push_back(noise);
   page.sections.push_back(maps_section("Where legs end off", models, evidence.effects));
   if (evidence.with) {
-    page.sections.push_back(gain_section(given, models.back()));
+    page.sections.push_back(gain_section(given, models.back(), noise_floor(diagnosis, evidence)));
   } else if (!diagnosis.held_out.legs.empty()) {
     std::get<ChartRow>(page.sections.back().blocks.front())
         .push_back(held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));

@@ -126,7 +126,8 @@ std::vector<const Finding*> near_first(const Discovery& discovery, const Effect&
 ResultRows found_rows(const Discovery& discovery, const DiscoveryEvidence& evidence) {
   ResultRows rows;
   rows.sure = {gone_text(discovery)};
-  rows.off = off_sentences(evidence.given, evidence.found, "with the model found");
+  rows.off = off_sentences(evidence.given, evidence.found, "with the model found",
+                           evidence.found.comparison.held_out.expected_rms);
   for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
     const EffectEvidence& one = evidence.effects[k];
     const Effect& effect = one.estimate.effect;
@@ -182,7 +183,9 @@ ResultRows rows_on(const Discovery& discovery, const DiscoveryEvidence& evidence
     rows.missing.push_back(fmt::format("Looked for more: {}.", stop_in_words(discovery)));
   }
   const std::vector<std::string> others = others_notes(discovery.last);
-  rows.otherwise.insert(rows.otherwise.end(), others.begin(), others.end());
+  // Noise that is the headline is no further suspect.
+  const bool said = evidence.effects.empty() && noise_is_wrong(discovery.last);
+  rows.otherwise.insert(rows.otherwise.end(), others.begin() + (said ? 1 : 0), others.end());
   return rows;
 }
 
@@ -203,7 +206,8 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   const NamedModel found{kModelFound, evidence.found};
   std::vector<NamedModel> models{given};
   if (found_any) {
-    PageSection gain = gain_section(given, found, ladder_of(discovery));
+    PageSection gain = gain_section(given, found, evidence.found.comparison.held_out.expected_rms,
+                                    ladder_of(discovery));
     gain.details.emplace_back(step_table(discovery));
     page.sections.push_back(std::move(gain));
     page.sections.push_back(effect_section("What was found", evidence.effects));

@@ -52,7 +52,7 @@ ResultRows rows_on(const FitEvidence& evidence) {
   const Comparison& after = evidence.with.comparison;
   ResultRows rows;
   rows.missing = {still_unexplained(after)};
-  rows.off = off_sentences(evidence.without, evidence.with, kAfter);
+  rows.off = off_sentences(evidence.without, evidence.with, kAfter, after.held_out.expected_rms);
   for (const EffectEvidence& one : evidence.effects) {
     rows.large.push_back(how_large(one));
     rows.sure.push_back(sure_of(one));
@@ -92,7 +92,7 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   const NamedModel fitted{kAfter, evidence.with};
   if (!effects.empty()) page.sections.push_back(effect_section("The effects", effects));
   page.sections.push_back(maps_section("The map, before and after", {given, fitted}, effects));
-  page.sections.push_back(gain_section(given, fitted));
+  page.sections.push_back(gain_section(given, fitted, after.held_out.expected_rms));
   page.sections.push_back(noise_section({given, fitted}));
   page.sections.push_back(legs_section("Legs, with the effects", after));
   close_tables(page);

@@ -161,7 +161,7 @@ PageSection effect_section(const std::string& title, const std::vector<EffectEvi
   return section;
 }
 
-PageSection gain_section(const NamedModel& before, const NamedModel& after,
+PageSection gain_section(const NamedModel& before, const NamedModel& after, double floor,
                          const std::vector<LadderStep>& ladder) {
   PageSection section{"What it gains", {}};
   const Comparison& one = before.model.comparison;
@@ -171,7 +171,7 @@ PageSection gain_section(const NamedModel& before, const NamedModel& after,
         {before.name, one.held_out.arrival_rms, one.chi2, one.dof},
         {after.name, other.held_out.arrival_rms, other.chi2, other.dof}};
     ChartRow charts{
-        ladder_chart("ladder", ladder.empty() ? two : ladder, other.held_out.expected_rms),
+        ladder_chart("ladder", ladder.empty() ? two : ladder, floor),
         held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})};
     charts[0].height = std::max(charts[0].height, charts[1].height);
     section.blocks.emplace_back(std::move(charts));

@@ -29,9 +29,10 @@ using LeftBy = std::map<std::string, double>;
                                          const std::vector<EffectEvidence>& effects,
                                          const LeftBy& left = {});
 
-/// A staircase down to what noise alone leaves. `ladder` may be empty: then it is the two models.
+/// A staircase down to what noise alone leaves (`floor`, m). `ladder` may be empty: then it is the
+/// two models.
 [[nodiscard]] PageSection gain_section(const NamedModel& before, const NamedModel& after,
-                                       const std::vector<LadderStep>& ladder = {});
+                                       double floor, const std::vector<LadderStep>& ladder = {});
 
 /// The map as each of the models has it, the same millimetres in the same colour, with rings round
 /// the places of these effects.

@@ -5,6 +5,7 @@
 #include "report/page_words.hpp"
 #include "report/robot_off.hpp"
 #include "trussmap/table.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
 
@@ -26,18 +27,35 @@ bool noise_is_wrong(const Diagnosis& diagnosis) {
   return diagnosis.under != nullptr && is_wrong(diagnosis.under->noise);
 }
 
+namespace {
+
+/// "5.9 mm after a metre", "2.3°".
+struct NoiseUnit {
+  double factor = 1.0;
+  std::string name;
+};
+
+NoiseUnit unit_of(const NoiseSource& source) {
+  if (source.unit == "m^1/2") return {1000.0, " mm after a metre"};
+  const ShownUnit unit = shown_unit(source.unit);
+  return {unit.factor, unit.name.starts_with("\u00b0") ? unit.name : " " + unit.name};
+}
+
+}  // namespace
+
 std::string found_and_stated(const FittedNoise& noise) {
   std::vector<std::string> texts;
   for (const NoiseSource& one : noise.sources) {
     if (!is_wrong(one)) continue;
-    const QuantityText found = quantity_text(one.sd, one.sd_error);
+    const NoiseUnit unit = unit_of(one);
+    const QuantityText found = quantity_text(unit.factor * one.sd, unit.factor * one.sd_error);
     const std::string size = found.error.empty()
-                                 ? two_digits(one.sd)
+                                 ? two_digits(unit.factor * one.sd)
                                  : fmt::format("{} \u00b1 {}", found.value, found.error);
     texts.push_back(one.stated > 0.0
-                        ? fmt::format("{} {} {}, stated {} ({} times)", one.name, size, one.unit,
-                                      two_digits(one.stated), two_digits(one.sd / one.stated))
-                        : fmt::format("{} {} {}, not stated at all", one.name, size, one.unit));
+                        ? fmt::format("{} {}{}, not {} as stated", one.name, size, unit.name,
+                                      two_digits(unit.factor * one.stated))
+                        : fmt::format("{} {}{}, not stated at all", one.name, size, unit.name));
   }
   return listed(texts);
 }

@@ -21,13 +21,13 @@ inline constexpr double kNoiseAsStated = 1.2;
 /// Of the noise that a diagnosis goes by.
 [[nodiscard]] bool noise_is_wrong(const Diagnosis& diagnosis);
 
-/// "wheels 0.0059 m^1/2, stated 0.0030 (2.0 times)", of all that are wrong.
+/// "wheels 5.9 mm after a metre, not 3 as stated", of all that are wrong.
 [[nodiscard]] std::string found_and_stated(const FittedNoise& noise);
 
 /// What legs were expected to end off by the noise stated, and by that found; empty where unknown.
 [[nodiscard]] std::string noise_gain(const DiagnosisEvidence& evidence);
 
-/// "More noise than the model states: wheels 3.0 ± 0.2 times, ...": sources that are clearly
+/// "wheels 3.0 ± 0.2 times and compass 2.0 ± 0.1 times": sources that are clearly
 /// noisier than stated; empty where none is.
 [[nodiscard]] std::string noisier_than_stated(const Comparison& comparison);
 

@@ -14,24 +14,24 @@ namespace {
 
 constexpr double kMillimetres = 1000.0;
 
-std::string floor_text(const HeldOut& held_out, double beside) {
-  if (!(held_out.expected_rms > 0.0)) return "";
-  return as_good_as_noise(held_out) ? fmt::format(", as good as its noise allows ({})",
-                                                  distance_text(held_out.expected_rms, beside))
-                                    : fmt::format("; noise alone would leave {}",
-                                                  distance_text(held_out.expected_rms, beside));
+std::string floor_text(const HeldOut& held_out, double floor, double beside) {
+  if (!(floor > 0.0)) return "";
+  return as_good_as_noise(held_out, floor)
+             ? fmt::format(", as good as its noise allows ({})", distance_text(floor, beside))
+             : fmt::format("; noise alone would leave {}", distance_text(floor, beside));
 }
 
-std::string leg_sentence(const HeldOut& before, const HeldOut* after, const std::string& with) {
+std::string leg_sentence(const HeldOut& before, const HeldOut* after, const std::string& with,
+                         double floor) {
   if (before.legs.empty()) return "After a leg: unknown, no leg could be held out.";
   const double off = before.arrival_rms;
   const std::string head = fmt::format(
       "After a leg (root mean square of {} that no fit has seen): ", before.legs.size());
   if (after == nullptr || after->legs.empty()) {
-    return head + distance_text(off) + floor_text(before, off) + ".";
+    return head + distance_text(off) + floor_text(before, floor, off) + ".";
   }
   return fmt::format("{}{} as given, {} {}{}.", head, distance_text(off, after->arrival_rms),
-                     distance_text(after->arrival_rms, off), with, floor_text(*after, off));
+                     distance_text(after->arrival_rms, off), with, floor_text(*after, floor, off));
 }
 
 /// The longest horizon that both have.
@@ -51,10 +51,10 @@ std::string reckoned_sentence(const ModelEvidence& before, const ModelEvidence* 
 }
 
 std::vector<std::string> sentences(const ModelEvidence& before, const ModelEvidence* after,
-                                   const std::string& with) {
+                                   const std::string& with, double floor) {
   std::vector<std::string> result{
       leg_sentence(before.comparison.held_out,
-                   after == nullptr ? nullptr : &after->comparison.held_out, with),
+                   after == nullptr ? nullptr : &after->comparison.held_out, with, floor),
       reckoned_sentence(before, after, with)};
   if (after == nullptr) return result;
   const auto gain = local_gain(before.comparison.held_out, after->comparison.held_out);
@@ -64,11 +64,23 @@ std::vector<std::string> sentences(const ModelEvidence& before, const ModelEvide
 
 }  // namespace
 
-bool as_good_as_noise(const HeldOut& held_out) {
-  if (held_out.legs.empty() || !(held_out.expected_rms > 0.0)) return false;
+bool as_good_as_noise(const HeldOut& held_out, double floor) {
+  constexpr double kErrors = 3.0;
+  if (held_out.legs.empty() || !(floor > 0.0)) return false;
   // Two coordinates of n legs: the root mean square is uncertain by one in 2 sqrt(n).
   const double error = 0.5 / std::sqrt(static_cast<double>(held_out.legs.size()));
-  return held_out.arrival_rms <= held_out.expected_rms * (1.0 + 2.0 * error);
+  return std::abs(held_out.arrival_rms - floor) <= kErrors * error * floor;
+}
+
+bool as_good_as_noise(const HeldOut& held_out) {
+  return as_good_as_noise(held_out, held_out.expected_rms);
+}
+
+double noise_floor(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  const double found = evidence.given.comparison.held_out.expected_rms;
+  if (diagnosis.verdict != Diagnosis::Verdict::missing || !evidence.as_stated) return found;
+  const double stated = evidence.as_stated->expected_rms;
+  return stated > 0.0 ? std::min(found, stated) : found;
 }
 
 std::optional<LocalGain> local_gain(const HeldOut& before, const HeldOut& after) {
@@ -101,12 +113,12 @@ std::string in_words(const LocalGain& gain) {
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before) {
-  return sentences(before, nullptr, "");
+  return sentences(before, nullptr, "", before.comparison.held_out.expected_rms);
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before, const ModelEvidence& after,
-                                       const std::string& with) {
-  return sentences(before, &after, with);
+                                       const std::string& with, double floor) {
+  return sentences(before, &after, with, floor);
 }
 
 }  // namespace trussmap

@@ -14,9 +14,16 @@
 
 namespace trussmap {
 
-/// Whether held-out legs end no farther off than the model's noise lets one expect, by more than
-/// two standard errors of a root mean square; false where that is unknown.
+/// Whether held-out legs end as far off as noise lets one expect (`floor`, m; 0: unknown), to
+/// within three standard errors of a root mean square. Legs that end far nearer say that the noise
+/// is too large, not that the model is good.
+[[nodiscard]] bool as_good_as_noise(const HeldOut& held_out, double floor);
+/// The same of the noise that they were predicted by.
 [[nodiscard]] bool as_good_as_noise(const HeldOut& held_out);
+
+/// What noise alone would leave, m: where something is missing, noise that was estimated without it
+/// has taken some of it up, and what the model states is nearer.
+[[nodiscard]] double noise_floor(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence);
 
 /// A gain that most legs have no part in.
 struct LocalGain {
@@ -32,8 +39,9 @@ struct LocalGain {
 
 /// A sentence on a leg, one on dead reckoning, one on where the gain is. `with`: "with hard iron".
 [[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before);
+/// `floor`: what noise alone would leave, m.
 [[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before,
                                                      const ModelEvidence& after,
-                                                     const std::string& with);
+                                                     const std::string& with, double floor);
 
 }  // namespace trussmap
