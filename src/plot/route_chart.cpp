@@ -50,8 +50,9 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
                   const std::vector<RouteError>& routes, double worst) {
   Chart chart =
       map_chart(id, title, map,
-                "Routes are coloured by how far off their legs end (root mean square), as "
-                "the fit has it: blue is nothing, red the most.");
+                "Routes are coloured by how far off their legs end (root mean square), reckoned by "
+                "the wheels alone from where the fit has them start: blue is nothing, red the "
+                "most. With its other sensors the robot ends nearer.");
   const Places places = places_of(map);
   ChartLayer bars{LayerKind::segments,
                   "",

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/place.hpp"
 #include "plot/fit_charts.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
@@ -166,10 +167,9 @@ ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence
   const bool missing = diagnosis.verdict == Diagnosis::Verdict::missing;
   if (noise && !missing) rows.off.push_back(noise_gain(evidence));
   if (noise && missing) {
-    rows.otherwise.push_back(fmt::format(
-        "What is missing looks like noise until it is in the model. Without it the noise is {}: "
-        "look again with it.",
-        found_and_stated(diagnosis.under->noise)));
+    rows.otherwise.emplace_back(
+        "The noise seems other than stated, too, but what is missing looks like noise until it is "
+        "in the model: look again then.");
   }
   // Noise that is the headline, or was spoken of just now, is the first of them.
   const bool said = noise && diagnosis.verdict != Diagnosis::Verdict::unexplained_misfit;
@@ -239,18 +239,26 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   const NamedModel given{kGiven, evidence.given};
   std::vector<NamedModel> models{given};
   if (evidence.with) models.push_back({with_name(evidence), *evidence.with});
+  // A place is seen on the map.
+  const bool place = std::any_of(
+      evidence.effects.begin(), evidence.effects.end(),
+      [](const EffectEvidence& one) { return place_of(one.estimate.effect).has_value(); });
+  PageSection maps = maps_section("Where legs end off", models, evidence.effects);
+  if (place) page.sections.push_back(maps);
   if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
-  PageSection noise = noise_section(models);
+  const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
+  PageSection noise =
+      noise_first ? noise_section(given, diagnosis.under->noise) : noise_section(models);
   PageTable sources = noise_table(diagnosis);
   if (!sources.rows.empty()) noise.details.emplace_back(std::move(sources));
-  const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
   if (noise_first) page.sections.push_back(noise);
-  page.sections.push_back(maps_section("Where legs end off", models, evidence.effects));
+  if (!evidence.with && !diagnosis.held_out.legs.empty()) {
+    std::get<ChartRow>(maps.blocks.front())
+        .push_back(held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));
+  }
+  if (!place) page.sections.push_back(std::move(maps));
   if (evidence.with) {
     page.sections.push_back(gain_section(given, models.back(), noise_floor(diagnosis, evidence)));
-  } else if (!diagnosis.held_out.legs.empty()) {
-    std::get<ChartRow>(page.sections.back().blocks.front())
-        .push_back(held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));
   }
   if (!noise_first) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What the errors go with, in the model as given",

@@ -217,7 +217,9 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
     models.push_back(
         {evidence.between.empty() ? kModelFound : last_name(discovery), evidence.found});
   }
-  PageSection noise = noise_section(found_any ? std::vector{given, found} : std::vector{given});
+  PageSection noise = noise_alone ? noise_section(given, discovery.last.under->noise)
+                      : found_any ? noise_section({given, found})
+                                  : noise_section({given});
   PageTable sources = noise_table(discovery.last);
   if (!sources.rows.empty()) noise.details.emplace_back(std::move(sources));
   if (noise_alone) page.sections.push_back(noise);

@@ -223,6 +223,21 @@ PageSection noise_section(const std::vector<NamedModel>& models) {
   return section;
 }
 
+PageSection noise_section(const NamedModel& model, const FittedNoise& found) {
+  std::vector<SourceCalibration> sources;
+  for (const NoiseSource& one : found.sources) {
+    if (!(one.stated > 0.0)) continue;
+    sources.push_back({one.name, one.sd / one.stated, one.sd_error / one.stated, 0.0});
+  }
+  PageSection section = noise_section({model});
+  Chart chart = source_chart("noise", {{"", sources}});
+  chart.title = "Noise as found, over what the model states";
+  chart.caption = "1 is as stated. By the noise found the errors scatter as they should.";
+  chart.x.title = "found over stated";
+  if (!sources.empty()) section.blocks = {ChartRow{std::move(chart)}};
+  return section;
+}
+
 void close_tables(PageContent& page) {
   for (PageSection& section : page.sections) {
     const auto shown = [](const PageBlock& block) {

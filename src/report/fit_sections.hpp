@@ -42,6 +42,8 @@ using LeftBy = std::map<std::string, double>;
 
 /// Source by source, beside the errors' scatter.
 [[nodiscard]] PageSection noise_section(const std::vector<NamedModel>& models);
+/// The same where the noise is what is wrong: as found, over what the model states.
+[[nodiscard]] PageSection noise_section(const NamedModel& model, const FittedNoise& found);
 
 /// What few ask for: tables, and sections that are nothing else, are closed.
 void close_tables(PageContent& page);

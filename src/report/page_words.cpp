@@ -111,10 +111,13 @@ std::string named_with_size(const EffectEvidence& effect) {
 }
 
 std::string named_with_sizes(const std::vector<EffectEvidence>& effects) {
+  constexpr std::size_t kShort = 70;  // three lines of a narrow screen, with what it gains
   if (effects.size() == 1) {
     const EffectEvidence& only = effects.front();
-    return name_in_words(only.estimate.effect) + " \u2013 " +
-           typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
+    const std::string text = fmt::format(
+        "{} \u2013 {}", name_in_words(only.estimate.effect),
+        typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most)));
+    return text.size() <= kShort ? text : named_with_size(only);
   }
   std::vector<std::string> names;
   for (const EffectEvidence& one : effects) {

@@ -42,8 +42,8 @@ struct SizeText {
 };
 [[nodiscard]] SizeText size_text_of(const EffectEvidence& effect);
 
-/// One effect: "hard iron – the compass reads up to 2.9° too much or too little"; several: "hard
-/// iron (±2.9°) and wheelbase (2 %)".
+/// One effect, where that is short: "hard iron – the compass reads up to 2.9° too much or too
+/// little"; several: "hard iron (±2.9°) and wheelbase (2 %)".
 [[nodiscard]] std::string named_with_sizes(const std::vector<EffectEvidence>& effects);
 
 /// "hard iron (±2.9°)".
