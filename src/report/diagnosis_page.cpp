@@ -160,9 +160,11 @@ ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence
                     : diagnosis.verdict == Diagnosis::Verdict::nothing_missing
                         ? faultless_rows(diagnosis, evidence)
                         : unexplained_rows(diagnosis, evidence);
-  rows.off = evidence.with ? off_sentences(evidence.given, *evidence.with, with_name(evidence),
-                                           noise_floor(diagnosis, evidence))
-                           : off_sentences(evidence.given);
+  rows.off = evidence.with
+                 ? off_sentences(evidence.given, *evidence.with, with_name(evidence),
+                                 noise_floor(diagnosis, evidence))
+                 : off_sentences(evidence.given,
+                                 noise_is_wrong(diagnosis) ? "the noise found" : "its noise");
   const bool noise = noise_is_wrong(diagnosis);
   const bool missing = diagnosis.verdict == Diagnosis::Verdict::missing;
   if (noise && !missing) rows.off.push_back(noise_gain(evidence));

@@ -82,6 +82,10 @@ PageTable step_table(const Discovery& discovery) {
   return table;
 }
 
+std::string whose_noise(const Discovery& discovery) {
+  return noise_is_wrong(discovery.last) ? "the noise found" : "its noise";
+}
+
 /// "3.1 cm off, as good as this robot's noise allows", and by which noise.
 std::string end_off(const HeldOut& legs, bool noise_found) {
   return fmt::format("Legs end {} off{}.", distance_text(legs.arrival_rms),
@@ -127,7 +131,7 @@ ResultRows found_rows(const Discovery& discovery, const DiscoveryEvidence& evide
   ResultRows rows;
   rows.sure = {gone_text(discovery)};
   rows.off = off_sentences(evidence.given, evidence.found, "with the model found",
-                           evidence.found.comparison.held_out.expected_rms);
+                           evidence.found.comparison.held_out.expected_rms, whose_noise(discovery));
   for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
     const EffectEvidence& one = evidence.effects[k];
     const Effect& effect = one.estimate.effect;
@@ -163,12 +167,12 @@ ResultRows rows_without(const Discovery& discovery, const DiscoveryEvidence& evi
   rows.large.push_back(seen_from_note({last, evidence.sizes}));
   rows.sure = {fmt::format("Errors as large arise from noise alone, with probability {}.",
                            chance_text(evidence.found.comparison.p_value))};
-  rows.off = off_sentences(evidence.found);
+  rows.off = off_sentences(evidence.found, whose_noise(discovery));
   const std::vector<std::string> unseen = unseen_names(last);
-  if (!unseen.empty()) {
-    rows.otherwise = {"Hidden from these recordings, and so perhaps there: " + listed(unseen) +
-                      "."};
-  }
+  rows.otherwise = {
+      unseen.empty()
+          ? "Nothing that was looked for is hidden from these recordings."
+          : fmt::format("Hidden from these recordings, and so perhaps there: {}.", listed(unseen))};
   if (noise) {
     rows.next = {"Use the noise found (trussmap discover --out FILE writes it into the model)."};
   }

@@ -15,7 +15,7 @@ namespace trussmap {
 namespace {
 
 constexpr const char* kBefore = "without effects";
-constexpr const char* kAfter = "with them";
+constexpr const char* kAfter = "with effects";
 
 std::string page_verdict(const Comparison& before, const Comparison& after,
                          const std::vector<EffectEvidence>& effects) {
@@ -90,8 +90,8 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   page.notes = after.warnings;
   const NamedModel given{kBefore, evidence.without};
   const NamedModel fitted{kAfter, evidence.with};
-  if (!effects.empty()) page.sections.push_back(effect_section("The effects", effects));
   page.sections.push_back(maps_section("The map, before and after", {given, fitted}, effects));
+  if (!effects.empty()) page.sections.push_back(effect_section("The effects", effects));
   page.sections.push_back(gain_section(given, fitted, after.held_out.expected_rms));
   page.sections.push_back(noise_section({given, fitted}));
   page.sections.push_back(legs_section("Legs, with the effects", after));

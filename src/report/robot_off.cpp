@@ -14,15 +14,22 @@ namespace {
 
 constexpr double kMillimetres = 1000.0;
 
-std::string floor_text(const HeldOut& held_out, double floor, double beside) {
-  if (!(floor > 0.0)) return "";
-  return as_good_as_noise(held_out, floor)
-             ? fmt::format(", as good as its noise allows ({})", distance_text(floor, beside))
-             : fmt::format("; noise alone would leave {}", distance_text(floor, beside));
+/// What noise alone would leave, and whose noise that is.
+struct Floor {
+  double rms = 0.0;  ///< m
+  std::string noise;
+};
+
+std::string floor_text(const HeldOut& held_out, const Floor& floor, double beside) {
+  if (!(floor.rms > 0.0)) return "";
+  const std::string size = distance_text(floor.rms, beside);
+  return as_good_as_noise(held_out, floor.rms)
+             ? fmt::format(", as good as {} allows ({})", floor.noise, size)
+             : fmt::format("; noise alone would leave {}", size);
 }
 
 std::string leg_sentence(const HeldOut& before, const HeldOut* after, const std::string& with,
-                         double floor) {
+                         const Floor& floor) {
   if (before.legs.empty()) return "After a leg: unknown, no leg could be held out.";
   const double off = before.arrival_rms;
   const std::string head = fmt::format(
@@ -51,7 +58,7 @@ std::string reckoned_sentence(const ModelEvidence& before, const ModelEvidence* 
 }
 
 std::vector<std::string> sentences(const ModelEvidence& before, const ModelEvidence* after,
-                                   const std::string& with, double floor) {
+                                   const std::string& with, const Floor& floor) {
   std::vector<std::string> result{
       leg_sentence(before.comparison.held_out,
                    after == nullptr ? nullptr : &after->comparison.held_out, with, floor),
@@ -112,13 +119,14 @@ std::string in_words(const LocalGain& gain) {
                      gain.legs, kMillimetres * gain.worst_before, kMillimetres * gain.worst_after);
 }
 
-std::vector<std::string> off_sentences(const ModelEvidence& before) {
-  return sentences(before, nullptr, "", before.comparison.held_out.expected_rms);
+std::vector<std::string> off_sentences(const ModelEvidence& before, const std::string& noise) {
+  return sentences(before, nullptr, "", {before.comparison.held_out.expected_rms, noise});
 }
 
 std::vector<std::string> off_sentences(const ModelEvidence& before, const ModelEvidence& after,
-                                       const std::string& with, double floor) {
-  return sentences(before, &after, with, floor);
+                                       const std::string& with, double floor,
+                                       const std::string& noise) {
+  return sentences(before, &after, with, {floor, noise});
 }
 
 }  // namespace trussmap

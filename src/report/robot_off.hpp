@@ -38,10 +38,12 @@ struct LocalGain {
 [[nodiscard]] std::string in_words(const LocalGain& gain);
 
 /// A sentence on a leg, one on dead reckoning, one on where the gain is. `with`: "with hard iron".
-[[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before);
-/// `floor`: what noise alone would leave, m.
+[[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before,
+                                                     const std::string& noise = "its noise");
+/// `floor`: what noise alone would leave, m; `noise`: whose, "its noise", "the noise found".
 [[nodiscard]] std::vector<std::string> off_sentences(const ModelEvidence& before,
                                                      const ModelEvidence& after,
-                                                     const std::string& with, double floor);
+                                                     const std::string& with, double floor,
+                                                     const std::string& noise = "its noise");
 
 }  // namespace trussmap
