@@ -86,6 +86,15 @@ std::string listed(const std::vector<std::string>& names, const std::string& las
 
 SizeText size_text_of(const EffectEvidence& effect) {
   const Effect& one = effect.estimate.effect;
+  if (one.channel == Channel::compass && one.shape.size() == 1 && one.shape[0] == "turn_rate" &&
+      one.coefficients.size() == 1) {  // a lag
+    constexpr double kMilliseconds = 1000.0;
+    const double sd = effect.estimate.sd.empty() ? 0.0 : effect.estimate.sd[0];
+    const double lag = kMilliseconds * std::abs(one.coefficients[0]);
+    const QuantityText text = quantity_text(lag, kMilliseconds * sd);
+    return {(text.error.empty() ? two_digits(lag) : text.value) + " ms",
+            text.error.empty() ? "" : text.error + " ms"};
+  }
   const ShownUnit unit = shown_unit(channel_unit(one));
   const double least = effect.range.least;
   const double most = effect.range.most;
@@ -126,15 +135,18 @@ std::string named_with_sizes(const std::vector<EffectEvidence>& effects) {
   return listed(names);
 }
 
-namespace {
-
-/// Where no coefficient is clearly other than 0.
-const char* doubt_of(const EffectEstimate& fitted) {
+bool is_hardly_seen(const EffectEstimate& fitted) {
   constexpr double kClear = 2.0;  // standard errors
   for (std::size_t k = 0; k < fitted.sd.size(); ++k) {
-    if (std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k]) return "";
+    if (std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k]) return false;
   }
-  return "; beside the others it is hardly seen";
+  return !fitted.sd.empty();
+}
+
+namespace {
+
+const char* doubt_of(const EffectEstimate& fitted) {
+  return is_hardly_seen(fitted) ? "; beside the others it is hardly seen" : "";
 }
 
 }  // namespace

@@ -49,6 +49,9 @@ struct SizeText {
 /// "hard iron (±2.9°)".
 [[nodiscard]] std::string named_with_size(const EffectEvidence& effect);
 
+/// Whether no coefficient is clearly other than 0.
+[[nodiscard]] bool is_hardly_seen(const EffectEstimate& fitted);
+
 /// "Both wheels are 2.0 ± 0.1 % larger per kg of payload.": the fitted coefficients, with their
 /// standard errors; at most, in these recordings, where they are many.
 [[nodiscard]] std::string how_large(const EffectEvidence& effect);

@@ -91,7 +91,12 @@ std::string named_with_rivals(const std::vector<EffectEvidence>& effects,
       std::any_of(alike.begin(), alike.end(), [](const auto& one) { return !one.empty(); });
   if (!rivals) return named_with_sizes(effects);
   std::string text;
+  std::size_t hardly = 0;
   for (std::size_t k = 0; k < effects.size(); ++k) {
+    if (k > 0 && is_hardly_seen(effects[k].estimate)) {
+      ++hardly;
+      continue;
+    }
     if (k > 0) text += "; and ";
     text += named_with_size(effects[k]);
     std::vector<std::string> names{name_in_words(effects[k].estimate.effect)};
@@ -105,6 +110,7 @@ std::string named_with_rivals(const std::vector<EffectEvidence>& effects,
       text += fmt::format(", or {} more", names.size() - kMostNamed);
     }
   }
+  if (hardly > 0) text += fmt::format("; and {} hardly seen beside it", hardly);
   return text;
 }
 

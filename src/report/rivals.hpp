@@ -24,7 +24,8 @@ namespace trussmap {
                                                        const std::vector<const Finding*>& near);
 
 /// "hard iron (±2.9°), or body tilt, or cross-slope creep; and wheelbase (3 %)": every effect with
-/// those that these recordings cannot tell from it. `alike` has one list per effect.
+/// those that these recordings cannot tell from it. Those that are hardly seen beside the first are
+/// counted. `alike` has one list per effect.
 [[nodiscard]] std::string named_with_rivals(const std::vector<EffectEvidence>& effects,
                                             const std::vector<std::vector<LookAlike>>& alike);
 

@@ -162,6 +162,19 @@ TEST(ResultRows, RivalsThatCannotBeToldApartAreAllInTheHeadline) {
   }
 }
 
+TEST(ResultRows, EffectsThatAreHardlySeenAreCountedInTheHeadline) {
+  const std::vector<EffectEvidence> lag_and{
+      evidence_of(finding("compass lag", Channel::compass, "turn_rate", 0.02)),
+      evidence_of(finding("wheel scale", Channel::wheels, "1", 0.02))};
+  std::vector<EffectEvidence> faint = lag_and;
+  faint[1].estimate.sd = {0.02};
+  const std::vector<std::vector<LookAlike>> alike{
+      {}, {{{"travel scale", Channel::travel, {"1"}, {}}, 0.99}}};
+  EXPECT_EQ(named_with_rivals(lag_and, alike),
+            "compass lag (30 ms); and wheel scale (3 %), or travel scale");
+  EXPECT_EQ(named_with_rivals(faint, alike), "compass lag (30 ms); and 1 hardly seen beside it");
+}
+
 TEST(ResultRows, NothingElseIsNotSaidAboveRivalsWithinAMillimetre) {
   Case one = wheelbase_missing();
   one.diagnosis.findings.push_back(finding("turn scrub", Channel::turn, "abs(turn_rate)", 0.0208));
