@@ -48,9 +48,16 @@ struct EffectRange {
   double most = 0.0;
 };
 
+/// Dead reckoning over so long, from one smoothed pose to the next.
+struct ReckonedError {
+  double horizon = 0.0;  ///< s
+  double rms = 0.0;      ///< m, of the position
+};
+
 struct ModelEvidence {
   Comparison comparison;
   FittedMap map;
+  std::vector<ReckonedError> reckoned = {};  ///< horizons with windows enough, ascending
 };
 
 /// A variable with the channel whose error goes with it most.
@@ -91,6 +98,8 @@ struct DiagnosisEvidence {
   std::vector<EffectEvidence> effects;  ///< what is missing, as found_by()
   std::vector<TrendEvidence> trends;    ///< of the model as given
   std::vector<FindingSize> sizes;       ///< one per finding
+  std::optional<HeldOut> as_stated = {};  ///< the model's legs by the noise that it states, where
+                                          ///< `given` goes by another
 };
 
 struct DiscoveryEvidence {

@@ -8,6 +8,7 @@
 #include "fit/fit_state.hpp"
 #include "recording/slow_covariates.hpp"
 #include "trussmap/error.hpp"
+#include "validation/dead_reckoned_horizons.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,10 +25,23 @@ CompareOptions compare_options(const DiagnoseOptions& options) {
   return {options.fit, options.legs, options.level};
 }
 
+/// Those of 10 s and more that the recordings have enough windows of.
+std::vector<ReckonedError> reckoned_errors(const FitState& fit) {
+  constexpr int kFewestWindows = 10;
+  const std::vector<double> horizons{10.0, 30.0, 100.0, 300.0, 1000.0};
+  const std::vector<HorizonError> errors = horizon_errors(fit, horizons);
+  std::vector<ReckonedError> reckoned;
+  for (std::size_t k = 0; k < horizons.size(); ++k) {
+    if (errors[k].windows >= kFewestWindows) reckoned.push_back({horizons[k], errors[k].rms});
+  }
+  return reckoned;
+}
+
 ModelEvidence model_evidence(const std::vector<Recording>& recordings, const ModelFit& fit,
                              const ScoreTest& tests, const CompareOptions& options,
                              const std::optional<std::string>& known_missing = {}) {
-  return {compare(recordings, fit, options, tests, {known_missing, {}}), fitted_map(fit)};
+  return {compare(recordings, fit, options, tests, {known_missing, {}}), fitted_map(fit),
+          reckoned_errors(*fit.state)};
 }
 
 std::vector<TrendEvidence> trend_evidence(const Comparison& comparison, const FitState& fit,
@@ -144,7 +158,7 @@ std::vector<ModelEvidence> models_between(const std::vector<Recording>& recordin
 }  // namespace
 
 ComparisonEvidence evidence_of(const ModelFit& fit, const Comparison& comparison) {
-  return {{comparison, fitted_map(fit)},
+  return {{comparison, fitted_map(fit), reckoned_errors(*fit.state)},
           trend_evidence(comparison, *fit.state, ScoreTest(*fit.state))};
 }
 
@@ -169,6 +183,9 @@ DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const Mo
   evidence.given = model_evidence(recordings, fit, tests, compared, diagnosis.missing);
   evidence.trends = trend_evidence(evidence.given.comparison, *fit.state, tests);
   evidence.sizes = sizes_of(diagnosis, tests.context());
+  if (diagnosis.under && diagnosis.under->noise.changed()) {
+    evidence.as_stated = predict_held_out(recordings, given, options.legs);
+  }
   const std::vector<const Finding*> missing = found_by(diagnosis);
   const std::optional<ModelFit> with = fit_with(missing, recordings, fit);
   evidence.effects = effect_evidence(*fit.state, seen_in(missing, fit.effects.size(), with));

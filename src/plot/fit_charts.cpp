@@ -113,28 +113,6 @@ Chart response_chart(const std::string& id, const std::string& title, const std:
   return chart;
 }
 
-Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps) {
-  Chart chart;
-  chart.id = id;
-  chart.title = "The error, step by step";
-  chart.caption =
-      "How far off held-out legs end (root mean square), each model on legs that its fit has not "
-      "seen. Shorter is better.";
-  chart.x = {.title = "held-out legs end off by [mm]", .zero = true};
-  ChartColumn name{"model"};
-  ChartColumn error{"held-out error [mm]"};
-  ChartColumn misfit{"chi\u00b2 per degree of freedom"};
-  for (const LadderStep& step : steps) {
-    name.texts.push_back(step.name);
-    error.numbers.push_back(1000.0 * step.arrival_rms);
-    misfit.numbers.push_back(step.chi2 / std::max(1, step.dof));
-  }
-  chart.y.categories = name.texts;
-  chart.height = bars_height(steps.size());
-  chart.layers.push_back({LayerKind::bars, "", {name, error, misfit}, "1"});
-  return chart;
-}
-
 Chart source_chart(const std::string& id, const std::vector<NamedSources>& models) {
   Chart chart;
   chart.id = id;

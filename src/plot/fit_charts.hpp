@@ -6,7 +6,7 @@
 //   truss_chart     the map: bars by their force, landmarks with 95 % ellipses, the path
 //   route_chart     the map: routes by how far off their legs end
 //   response_chart  the signature: a channel's error along a variable, with curves
-//   ladder_chart    what each step takes off the held-out legs' error
+//   ladder_chart    what each step takes off the held-out legs' error, down to noise alone
 //   source_chart    is each source of noise as large as stated?
 //   quantile_chart  do its errors scatter as they should?
 //   held_out_chart  how many held-out legs end within which distance
@@ -18,6 +18,7 @@
 #include "trussmap/compare.hpp"
 #include "trussmap/evidence.hpp"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,10 +45,12 @@ struct RouteError {
 /// Of all routes between landmarks of the map, the worst first.
 [[nodiscard]] std::vector<RouteError> route_errors(const std::vector<LegMisfit>& legs,
                                                    const FittedMap& map);
-/// `worst`: the error that has the strongest colour, m.
+/// `worst`: the error that has the strongest colour, m. Of a map without landmarks it is the path.
 [[nodiscard]] Chart route_chart(const std::string& id, const std::string& title,
                                 const FittedMap& map, const std::vector<RouteError>& routes,
                                 double worst);
+/// Rings round the places that effects act at, where any does.
+void add_places(Chart& chart, const std::vector<Effect>& effects);
 
 /// A curve beside the response's own: a rival's, say.
 struct NamedCurve {
@@ -65,8 +68,11 @@ struct LadderStep {
   double arrival_rms = 0.0;  ///< m, of held-out legs
   double chi2 = 0.0;
   int dof = 0;
+  std::optional<double> predicted_rms = std::nullopt;  ///< m, before the fit
 };
-[[nodiscard]] Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps);
+/// A staircase; `floor`: what noise alone would leave (HeldOut::expected_rms), m; 0: unknown.
+[[nodiscard]] Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps,
+                                 double floor = 0.0);
 
 using NamedSources = std::pair<std::string, std::vector<SourceCalibration>>;
 [[nodiscard]] Chart source_chart(const std::string& id, const std::vector<NamedSources>& models);

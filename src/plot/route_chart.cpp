@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/place.hpp"
 #include "plot/fit_charts.hpp"
 #include "plot/map_layers.hpp"
 
@@ -49,8 +50,9 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
                   const std::vector<RouteError>& routes, double worst) {
   Chart chart =
       map_chart(id, title, map,
-                "Routes are coloured by how far off their legs end (root mean square), as "
-                "the fit has it: blue is nothing, red the most.");
+                "Routes are coloured by how far off their legs end (root mean square), reckoned by "
+                "the wheels alone from where the fit has them start: blue is nothing, red the "
+                "most. With its other sensors the robot ends nearer.");
   const Places places = places_of(map);
   ChartLayer bars{LayerKind::segments,
                   "",
@@ -91,6 +93,26 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
   if (!bars.shade.empty()) chart.layers.push_back(std::move(bars));
   add_landmarks(chart, map);
   return chart;
+}
+
+void add_places(Chart& chart, const std::vector<Effect>& effects) {
+  ChartLayer rings{LayerKind::ellipses,
+                   "acts here",
+                   {{"x [m]"}, {"y [m]"}, {"radius [m]"}, {""}, {""}, {"effect"}},
+                   "bad"};
+  for (const Effect& effect : effects) {
+    const std::optional<Vector2> place = place_of(effect);
+    if (!place) continue;
+    const std::optional<double> radius = effect.shape.front().parameter("r");
+    if (!radius || !(std::abs(*radius) > 0.0)) continue;
+    const double numbers[] = {place->x(), place->y(), std::abs(*radius), std::abs(*radius), 0.0};
+    for (std::size_t c = 0; c < 5; ++c) rings.columns[c].numbers.push_back(numbers[c]);
+    rings.columns[5].texts.push_back(effect.name);
+  }
+  if (rings.columns[5].texts.empty()) return;
+  rings.size = 3.0;
+  chart.caption += " Ring: where the effect acts.";
+  chart.layers.push_back(std::move(rings));
 }
 
 }  // namespace trussmap

@@ -3,7 +3,10 @@
 
 #include "plot/fit_charts.hpp"
 #include "report/fit_sections.hpp"
+#include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
+#include "report/result_rows.hpp"
+#include "report/robot_off.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
@@ -15,13 +18,16 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kWorst = 12;
+constexpr std::size_t kTrendsNamed = 3;
 constexpr std::size_t kRoutes = 30;
 
 PageTable route_table(const Comparison& result) {
   PageTable table;
-  table.caption = fmt::format("Routes by strain (the first {} of {})",
-                              std::min(kRoutes, result.routes.size()), result.routes.size());
+  table.caption = fmt::format(
+      "Routes by strain (the first {} of {}); bar force: how hard "
+      "measurements pull the landmarks together; stretch: measured too "
+      "long (+); turned: too far to the left (+)",
+      std::min(kRoutes, result.routes.size()), result.routes.size());
   table.headings = {"from",        "to",           "driven", "chi\u00b2", "bar force [1/m]",
                     "stretch [%]", "turned [mrad]"};
   table.texts = 2;
@@ -53,88 +59,121 @@ const Trend* telling_trend(const Comparison& result) {
   return clear ? &result.trends.front() : nullptr;
 }
 
+/// "the compass error goes with heading (3.1°)".
+std::string trend_words(const Trend& trend) {
+  return fmt::format("the {} error {}, by {} (rms)", trend.kind,
+                     trend.against == "all" ? "is everywhere alike"
+                                            : "goes with " + variable_in_words(trend.against),
+                     shown(trend.size, trend.unit));
+}
+
 std::string page_verdict(const Comparison& result) {
   const bool legs = !result.held_out.legs.empty();
-  const std::string held =
-      legs ? fmt::format("{:.0f} mm", 1000.0 * result.held_out.arrival_rms) : "";
+  const std::string held = legs ? distance_text(result.held_out.arrival_rms) : "";
   if (result.consistent() && !result.tested()) {
     return "Nothing contradicts the model, " + objection_in_words(result) + ".";
   }
   if (result.consistent()) {
     return "The model explains these measurements" +
-           (legs ? ": legs that it has not seen end " + held + " off, as its noise lets one expect."
-                 : std::string(" to within its noise."));
+           (!legs ? std::string(" to within its noise.")
+            : as_good_as_noise(result.held_out)
+                ? ": legs end " + held + " off, as its noise allows."
+                : ": legs end " + held + " off.");
   }
-  std::string text = "The model does not explain these measurements: " + objection_in_words(result);
-  if (legs) text += ", and legs that it has not seen end " + held + " off";
-  text += ".";
+  if (result.objection == Objection::effect) {
+    return fmt::format("Missing: {}.{}", result.missing, legs ? " Legs end " + held + " off." : "");
+  }
   if (const Trend* first = telling_trend(result)) {
-    text += fmt::format(
-        " Most telling: the {} error{} ({}).", first->kind,
-        first->against == "all" ? ", everywhere alike" : " goes with " + trend_variable(*first),
-        shown(first->size, first->unit));
+    return fmt::format("The model does not explain these measurements: {}.{}", trend_words(*first),
+                       legs ? " Legs end " + held + " off." : "");
   }
-  return text;
+  return fmt::format("The model does not explain these measurements{}: {}.",
+                     legs ? ", legs end " + held + " off" : "", objection_in_words(result));
 }
 
-std::vector<PageFact> facts_on(const Comparison& result, Tone tone) {
-  std::vector<PageFact> facts;
-  if (!result.held_out.legs.empty()) {
-    facts.push_back({fmt::format("{:.1f} mm", 1000.0 * result.held_out.arrival_rms),
-                     "held-out legs end so far off (rms)", tone});
+std::vector<std::string> missing_rows(const Comparison& result) {
+  if (result.consistent()) {
+    return {result.tested() ? "Nothing that these measurements show."
+                            : "Unknown: too little was measured to contradict any model."};
   }
-  facts.push_back({fmt::format("{:.2f}", result.misfit()),
-                   "chi\u00b2 per degree of freedom (1 is right)", tone});
-  facts.push_back({chance_text(result.p_value),
-                   "p-value of chi\u00b2: the chance of errors as large, if the model is right"});
-  facts.push_back({std::to_string(result.legs), "legs"});
-  facts.push_back({std::to_string(result.landmarks), "landmarks"});
-  return facts;
+  if (result.objection == Objection::effect) return {capitalised(result.missing) + "."};
+  return {"Something, and unknown what: compare looks for no effects, diagnose does."};
 }
 
-std::vector<PageAnswer> answers_on(const Comparison& result) {
-  std::vector<PageAnswer> answers;
+std::vector<std::string> large_rows(const Comparison& result) {
+  std::vector<std::string> rows;
+  if (!result.consistent()) rows.push_back(capitalised(objection_in_words(result)) + ".");
+  if (const Trend* first = telling_trend(result)) {
+    rows.push_back(
+        fmt::format("{}; its standard error is unknown here.", capitalised(trend_words(*first))));
+  }
+  if (rows.empty()) rows.emplace_back("Nothing stands out of the noise.");
+  return rows;
+}
+
+std::vector<std::string> otherwise_rows(const Comparison& result) {
+  std::vector<std::string> trends;
+  for (const Trend& one : result.trends) {
+    if (!(one.p_adjusted < kSignificance) || trends.size() == kTrendsNamed) break;
+    if (&one != &result.trends.front()) trends.push_back(trend_words(one));
+  }
+  std::vector<std::string> rows;
+  if (!trends.empty()) rows.push_back(capitalised(listed(trends)) + ".");
+  const std::string noisy = noisier_than_stated(result);
+  if (!result.consistent() && !noisy.empty()) {
+    rows.push_back(fmt::format("Noise that is stated too small: {} what is stated.", noisy));
+  }
+  if (!result.outliers.empty()) {
+    rows.push_back("A wrong measurement: all others contradict " + result.outliers.front().what +
+                   ".");
+  }
+  if (rows.empty()) {
+    rows.emplace_back(result.consistent()
+                          ? "An effect too small to be seen: diagnose says how large it may be."
+                          : "Unknown: compare tries no effects, diagnose does.");
+  }
+  return rows;
+}
+
+std::vector<std::string> next_rows(const Comparison& result) {
   if (!result.consistent()) {
-    answers.push_back(
-        {kNext,
-         "Give trussmap diagnose the same recordings and model. It names the effect behind the "
-         "strongest trend, how large it is, what else it could be, and what to drive to tell."});
+    return {
+        "Give trussmap diagnose the same recordings and model. It names the effect behind the "
+        "strongest trend, how large it is, what else it could be, and what to drive to tell."};
   }
-  for (const std::string& line : in_words(result.lacks)) {
-    answers.push_back({"What do these data lack?", capitalised(typeset(line)) + "."});
-  }
-  for (const std::string& line : result.warnings) {
-    answers.push_back({"Warnings", capitalised(typeset(line)) + "."});
-  }
-  return answers;
+  if (!result.lacks.empty()) return {advised_drive(advice_on(result.lacks.front()))};
+  return {"Use the model."};
+}
+
+ResultRows rows_on(const ModelEvidence& model) {
+  const Comparison& result = model.comparison;
+  return {missing_rows(result),
+          large_rows(result),
+          {fmt::format("Errors as large arise from noise alone, were the model right, with "
+                       "probability {} ({} degrees of freedom, {} legs, {} landmarks).",
+                       chance_text(result.p_value), result.dof, result.legs, result.landmarks)},
+          off_sentences(model),
+          otherwise_rows(result),
+          next_rows(result)};
 }
 
 PageSection map_section(const ModelEvidence& model) {
-  const Comparison& result = model.comparison;
-  return {"The map as a truss",
-          {ChartRow{truss_chart("map", "Map with the forces in its bars", model.map, result.routes,
-                                loudest_force(result)),
-                    worst_chart("worst-legs", result.worst, kWorst)}}};
-}
-
-PageSection noise_section(const ModelEvidence& model) {
-  const Comparison& result = model.comparison;
-  PageSection section{"Is the noise right?", {}};
-  ChartRow noise{source_chart("noise", {{"", result.sources}})};
-  if (!result.held_out.legs.empty()) {
-    noise.push_back(held_out_chart("held-out", {{"", result.held_out}}));
+  PageSection section = maps_section("Where legs end off", {{"routes by how far off", model}});
+  if (!model.comparison.held_out.legs.empty()) {
+    std::get<ChartRow>(section.blocks.front())
+        .push_back(held_out_chart("held-out", {{"", model.comparison.held_out}}));
   }
-  section.blocks.emplace_back(std::move(noise));
-  add_quantiles(section, {{"", model}});
   return section;
 }
 
-PageSection routes_section(const Comparison& result) {
-  PageSection section{"Legs and routes",
-                      {ChartRow{legs_chart("stretch", result.worst, LegError::stretch),
-                                legs_chart("orientation", result.worst, LegError::orientation)}}};
-  if (!result.routes.empty()) section.blocks.emplace_back(route_table(result));
-  if (!result.outliers.empty()) section.blocks.emplace_back(outlier_table(result));
+PageSection routes_section(const ModelEvidence& model) {
+  const Comparison& result = model.comparison;
+  PageSection section = legs_section("Legs and routes", result);
+  section.details.emplace_back(
+      ChartRow{truss_chart("truss", "Map with the forces in its bars", model.map, result.routes,
+                           loudest_force(result))});
+  if (!result.routes.empty()) section.details.emplace_back(route_table(result));
+  if (!result.outliers.empty()) section.details.emplace_back(outlier_table(result));
   return section;
 }
 
@@ -147,12 +186,14 @@ Page comparison_page(const ComparisonEvidence& evidence, const std::string& subj
   page.subject = subject;
   page.tone = !result.consistent() ? Tone::bad : result.tested() ? Tone::good : Tone::neutral;
   page.verdict = page_verdict(result);
-  page.facts = facts_on(result, page.tone);
-  page.answers = answers_on(result);
+  page.answers = answers_of(rows_on(evidence.model));
+  for (const std::string& line : result.warnings) {
+    page.notes.push_back(capitalised(typeset(line)) + ".");
+  }
   page.sections = {map_section(evidence.model),
                    trend_section("What the errors go with", result, evidence.trends),
-                   noise_section(evidence.model), routes_section(result)};
-  move_tables_last(page);
+                   noise_section({{"as given", evidence.model}}), routes_section(evidence.model)};
+  close_tables(page);
   return page;
 }
 

@@ -1,14 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/place.hpp"
 #include "plot/fit_charts.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
+#include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
-#include "trussmap/table.hpp"
+#include "report/result_rows.hpp"
+#include "report/rivals.hpp"
+#include "report/robot_off.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,38 +28,50 @@ std::string with_name(const DiagnosisEvidence& evidence) {
              : "with what is missing";
 }
 
+std::vector<std::vector<LookAlike>> rivals_of(const Diagnosis& diagnosis) {
+  std::vector<std::vector<LookAlike>> rivals;
+  for (const Finding* one : found_by(diagnosis)) rivals.push_back(one->look_alikes);
+  return rivals;
+}
+
 std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   const auto& effects = evidence.effects;
   const bool matters = diagnosis.findings.front().status == Status::missing;
-  std::string text = matters ? "Missing: " : "Missing, but too small to matter: ";
-  text += named_with_sizes(effects);
+  const std::string text =
+      fmt::format("{}: {}.", matters ? "Missing" : "Missing, but too small to matter",
+                  named_with_rivals(effects, rivals_of(diagnosis)));
   const std::string it = effects.size() == 1 ? "it" : "them";
   if (evidence.with) {
-    return text + ". " + gain_sentence(evidence.given.comparison, evidence.with->comparison, it);
+    const std::string gain =
+        gain_sentence(evidence.given.comparison, evidence.with->comparison, it);
+    return gain.empty() ? text : text + " " + gain;
   }
-  if (diagnosis.held_out.legs.empty()) return text + ".";
+  if (diagnosis.held_out.legs.empty()) return text;
   const double off = diagnosis.held_out.arrival_rms;
   const double with = diagnosis.findings.front().held_out.arrival_rms;
-  return text + fmt::format(". Without {} legs end {} off; with {} {}, as predicted.", it,
-                            distance_text(off, with), effects.size() == 1 ? "it" : "the first",
-                            distance_text(with, off));
+  return text + fmt::format(" Legs end {} off, {} with {}, as predicted.", distance_text(off, with),
+                            distance_text(with, off), effects.size() == 1 ? "it" : "the first");
+}
+
+std::string legs_end(const Diagnosis& diagnosis) {
+  const HeldOut& legs = diagnosis.held_out;
+  if (legs.legs.empty()) return "";
+  return fmt::format(" Legs end {} off{}.", distance_text(legs.arrival_rms),
+                     as_good_as_noise(legs) ? ", as good as this robot's noise allows" : "");
 }
 
 std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
-  const std::string off =
-      diagnosis.held_out.legs.empty() ? "" : distance_text(diagnosis.held_out.arrival_rms);
   switch (diagnosis.verdict) {
     case Diagnosis::Verdict::missing:
       return missing_verdict(diagnosis, evidence);
     case Diagnosis::Verdict::nothing_missing:
-      return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
-                         diagnosis.tried) +
-             (off.empty() ? ""
-                          : " Legs end " + off + " off, as good as this robot's noise allows.") +
-             (diagnosis.under && diagnosis.under->noise.changed()
-                  ? " But the noise is not as the model states it: " +
-                        typeset(in_words(diagnosis.under->noise)) + "."
-                  : "");
+      if (noise_is_wrong(diagnosis)) {
+        return fmt::format("The noise is not as the model states it: {}. No effect is missing.",
+                           found_and_stated(diagnosis.under->noise));
+      }
+      return fmt::format(
+          "Nothing is missing: none of {} changes tried explains more than chance.{}",
+          diagnosis.tried, legs_end(diagnosis));
     case Diagnosis::Verdict::unexplained_misfit:
       break;
   }
@@ -65,90 +81,120 @@ std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& ev
   return others.empty() ? text : text + " " + others.front();
 }
 
-std::vector<PageFact> facts_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
-  std::vector<PageFact> facts;
+ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  ResultRows rows;
+  const std::vector<const Finding*> found = found_by(diagnosis);
   for (const EffectEvidence& one : evidence.effects) {
-    const SizeText size = size_text_of(one);
-    facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
-                                    (size.error.empty() ? "" : "; standard error " + size.error)});
+    rows.missing.push_back(what_it_is(one.estimate.effect));
+    rows.large.push_back(how_large(one));
   }
-  if (!evidence.effects.empty()) {
-    facts.push_back({chance_text(diagnosis.p_value),
-                     fmt::format("p-value, adjusted for {} tests", diagnosis.tried)});
-  }
-  if (!diagnosis.held_out.legs.empty()) {
-    const Tone tone = evidence.effects.empty() ? Tone::neutral : Tone::bad;
-    const double off = diagnosis.held_out.arrival_rms;
-    const double less = evidence.with ? evidence.with->comparison.held_out.arrival_rms : off;
-    facts.push_back({distance_text(off, less), kLegsEnd, tone});
-    if (evidence.with) {
-      const Comparison& with = evidence.with->comparison;
-      facts.push_back({distance_text(less, off), "the same with what is missing",
-                       with.consistent() ? Tone::good : Tone::neutral});
+  rows.sure = {sure_text(diagnosis.p_value, diagnosis.tried)};
+  for (const Finding* one : found) {
+    const bool first = one == found.front();
+    for (std::string& sentence :
+         rival_sentences(one->effect, one->look_alikes,
+                         first ? near_rivals(diagnosis, *one) : std::vector<const Finding*>{})) {
+      rows.otherwise.push_back(std::move(sentence));
     }
   }
-  if (evidence.effects.empty()) {
-    facts.push_back({fmt::format("{:.2f}", diagnosis.chi2 / std::max(1, diagnosis.dof)),
-                     "chi\u00b2 per degree of freedom (1 is right)"});
-    facts.push_back({std::to_string(diagnosis.tried), "changes to the model tried"});
+  if (diagnosis.next_drive) {
+    rows.next.push_back("To tell them apart, " + in_words(diagnosis.next_drive) + ".");
   }
-  return facts;
+  for (const EffectEvidence& one : evidence.effects) {
+    rows.next.push_back(what_helps(one.estimate.effect));
+  }
+  rows.next.emplace_back(
+      "Put it into the model (trussmap add) and estimate it (trussmap fit), or have trussmap "
+      "discover do both, and look for more.");
+  return rows;
 }
 
-/// Sources that are clearly noisier than stated, and what to do about it.
-std::string noise_advice(const Comparison& comparison) {
-  constexpr double kClear = 3.0;  // standard errors
-  std::vector<std::string> noisy;
-  for (const SourceCalibration& one : comparison.sources) {
-    if (one.factor - 1.0 > kClear * one.sd) {
-      noisy.push_back(fmt::format("{} {} times", one.source, two_digits(one.factor)));
-    }
+ResultRows faultless_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  ResultRows rows;
+  const bool noise = noise_is_wrong(diagnosis);
+  rows.missing = {fmt::format("{}: none of {} changes tried explains more than chance.",
+                              noise ? "No effect" : "Nothing", diagnosis.tried)};
+  if (noise) {
+    rows.large = {fmt::format("Noise: {}.", found_and_stated(diagnosis.under->noise))};
   }
-  if (noisy.empty()) return "";
-  return fmt::format(
-      "Check the noise in the model. Errors beside what it states: {}. Correct it, and diagnose "
-      "again.",
-      listed(noisy));
+  rows.large.push_back(seen_from_note({diagnosis, evidence.sizes}));
+  rows.sure = {"What is ruled out would have been named nine times in ten, had it been there.",
+               fmt::format("Errors as large arise from noise alone, with probability {}.",
+                           chance_text(evidence.given.comparison.p_value))};
+  const std::vector<std::string> unseen = unseen_names(diagnosis);
+  rows.otherwise = {unseen.empty() ? "Nothing that was looked for is hidden from these recordings."
+                                   : "Hidden from these recordings, and so perhaps there: " +
+                                         listed(unseen) + "."};
+  if (noise) {
+    rows.next = {"Write the noise found into the model (trussmap fit --noise --out FILE)."};
+  }
+  rows.next.push_back(drive_that_shows_more(diagnosis));
+  if (!noise && rows.next.back().empty()) rows.next.emplace_back("Use the model as it is.");
+  return rows;
 }
 
-std::vector<PageAnswer> answers_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
-  std::vector<PageAnswer> answers;
-  if (diagnosis.verdict == Diagnosis::Verdict::missing) {
-    for (const EffectEvidence& one : evidence.effects) {
-      answers.push_back({kHowLarge, sized_in_words(one)});
-    }
-    answers.push_back({kHowSure, sure_text(diagnosis.p_value, diagnosis.tried)});
-    const Finding& first = diagnosis.findings.front();
-    answers.push_back({kWhatElse, rivals_note(first.effect, first.look_alikes)});
-    if (diagnosis.next_drive) {
-      answers.push_back({kNext, "To tell them apart, " + in_words(diagnosis.next_drive) + "."});
-    }
-    answers.push_back(
-        {kNext,
-         "Put it into the model (trussmap add) and estimate it (trussmap fit), or have trussmap "
-         "discover do both, and look for more."});
-    for (const EffectEvidence& one : evidence.effects) {
-      answers.push_back({kCause, cause_note(one.estimate.effect)});
-    }
-  } else {
-    if (diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit) {
-      answers.push_back({kNext, noise_advice(evidence.given.comparison)});
-    }
-    if (!diagnosis.lacks.empty()) {
-      answers.push_back({kNext, advised_drive(advice_on(diagnosis.lacks.front()))});
-    }
-    answers.push_back({kSeen, seen_from_note({diagnosis, evidence.sizes})});
+ResultRows unexplained_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  const Comparison& given = evidence.given.comparison;
+  ResultRows rows;
+  rows.missing = {fmt::format("Unknown: none of {} changes tried explains it.", diagnosis.tried)};
+  rows.large = {capitalised(objection_in_words(given)) + "."};
+  rows.sure = {
+      fmt::format("Errors as large arise from noise alone, were the model right, with "
+                  "probability {}.",
+                  chance_text(given.p_value))};
+  const std::string noisy = noisier_than_stated(given);
+  if (!noisy.empty()) {
+    rows.otherwise = {fmt::format("Noise that is stated too small: {} what is stated.", noisy)};
+    rows.next = {
+        fmt::format("Check the noise in the model. Errors beside what it states: {}. "
+                    "Correct it, and diagnose again.",
+                    noisy)};
   }
+  rows.next.push_back(drive_that_shows_more(diagnosis));
+  return rows;
+}
+
+ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  ResultRows rows = diagnosis.verdict == Diagnosis::Verdict::missing
+                        ? missing_rows(diagnosis, evidence)
+                    : diagnosis.verdict == Diagnosis::Verdict::nothing_missing
+                        ? faultless_rows(diagnosis, evidence)
+                        : unexplained_rows(diagnosis, evidence);
+  rows.off = evidence.with
+                 ? off_sentences(evidence.given, *evidence.with, with_name(evidence),
+                                 noise_floor(diagnosis, evidence))
+                 : off_sentences(evidence.given,
+                                 noise_is_wrong(diagnosis) ? "the noise found" : "its noise");
+  const bool noise = noise_is_wrong(diagnosis);
+  const bool missing = diagnosis.verdict == Diagnosis::Verdict::missing;
+  if (noise && !missing) rows.off.push_back(noise_gain(evidence));
+  if (noise && missing) {
+    rows.otherwise.emplace_back(
+        "The noise seems other than stated, too, but what is missing looks like noise until it is "
+        "in the model: look again then.");
+  }
+  // Noise that is the headline, or was spoken of just now, is the first of them.
+  const bool said = noise && diagnosis.verdict != Diagnosis::Verdict::unexplained_misfit;
   const std::vector<std::string> others = others_notes(diagnosis);
-  const bool said = diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit;
-  for (std::size_t k = said ? 1 : 0; k < others.size(); ++k)
-    answers.push_back({kBeside, others[k]});
-  std::erase_if(answers, [](const PageAnswer& one) { return one.answer.empty(); });
-  return answers;
+  rows.otherwise.insert(rows.otherwise.end(), others.begin() + (said ? 1 : 0), others.end());
+  return rows;
 }
 
-/// What the best changes of different names would leave of the held-out error.
-Chart changes_chart(const Diagnosis& diagnosis) {
+LeftBy left_by(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
+  LeftBy left;
+  if (diagnosis.held_out.legs.empty()) return left;
+  for (const Finding& one : diagnosis.findings) {
+    left.emplace(one.effect.name, one.held_out.arrival_rms);
+  }
+  if (evidence.with && evidence.effects.size() == 1) {
+    left[evidence.effects.front().estimate.effect.name] =
+        evidence.with->comparison.held_out.arrival_rms;
+  }
+  return left;
+}
+
+/// What the best changes of different names would leave of the held-out error, rivals first.
+Chart changes_chart(const Diagnosis& diagnosis, double floor) {
   std::vector<LadderStep> steps{
       {kGiven, diagnosis.held_out.arrival_rms, diagnosis.chi2, diagnosis.dof}};
   for (const Finding& one : diagnosis.findings) {
@@ -156,12 +202,26 @@ Chart changes_chart(const Diagnosis& diagnosis) {
     steps.push_back({"+ " + name_in_words(one.effect), one.held_out.arrival_rms,
                      diagnosis.chi2 - one.score, diagnosis.dof - one.dof});
   }
-  Chart chart = ladder_chart("changes", steps);
+  Chart chart = ladder_chart("changes", steps, floor);
   chart.title = "What each change would leave";
   chart.caption =
       "How far off held-out legs would end (root mean square) with each of the best changes alone, "
-      "as the diagnosis predicts it before any fit. Shorter is better.";
+      "as the diagnosis predicts it before any fit. Shorter is better; dashed: what noise alone "
+      "would leave.";
   return chart;
+}
+
+PageSection cause_section(const SizedDiagnosis& sized, const DiagnosisEvidence& evidence) {
+  const Diagnosis& diagnosis = sized.diagnosis;
+  PageSection section =
+      effect_section("The suspected cause", evidence.effects, left_by(diagnosis, evidence));
+  if (!diagnosis.held_out.legs.empty()) {
+    section.blocks.emplace_back(
+        ChartRow{changes_chart(diagnosis, noise_floor(diagnosis, evidence))});
+  }
+  PageTable rivals = rivals_table(sized);
+  if (!rivals.rows.empty()) section.details.emplace_back(std::move(rivals));
+  return section;
 }
 
 }  // namespace
@@ -174,36 +234,41 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   page.subject = subject;
   page.verdict = page_verdict(diagnosis, evidence);
   page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing ? Tone::bad
+              : noise_is_wrong(diagnosis)                              ? Tone::bad
               : others_notes(diagnosis).empty()                        ? Tone::good
                                                                        : Tone::neutral;
-  page.facts = facts_on(diagnosis, evidence);
-  page.answers = answers_on(diagnosis, evidence);
-  page.sections.push_back({"Part by part", {parts_table(sized)}});
-  PageTable noise = noise_table(diagnosis);
-  if (!noise.rows.empty()) page.sections.back().blocks.emplace_back(std::move(noise));
+  page.answers = answers_of(rows_on(diagnosis, evidence));
   const NamedModel given{kGiven, evidence.given};
-  if (!evidence.effects.empty()) {
-    page.sections.push_back(effect_section("What is missing", evidence.effects));
-    PageTable rivals = rivals_table(sized);
-    if (!rivals.rows.empty()) {
-      page.sections.push_back({"What else it could be", {std::move(rivals)}});
-    }
+  std::vector<NamedModel> models{given};
+  if (evidence.with) models.push_back({with_name(evidence), *evidence.with});
+  // A place is seen on the map.
+  const bool place = std::any_of(
+      evidence.effects.begin(), evidence.effects.end(),
+      [](const EffectEvidence& one) { return place_of(one.estimate.effect).has_value(); });
+  PageSection maps = maps_section("Where legs end off", models, evidence.effects);
+  if (place) page.sections.push_back(maps);
+  if (!evidence.effects.empty()) page.sections.push_back(cause_section(sized, evidence));
+  const bool noise_first = evidence.effects.empty() && noise_is_wrong(diagnosis);
+  PageSection noise =
+      noise_first ? noise_section(given, diagnosis.under->noise) : noise_section(models);
+  PageTable sources = noise_table(diagnosis);
+  if (!sources.rows.empty()) noise.details.emplace_back(std::move(sources));
+  if (noise_first) page.sections.push_back(noise);
+  if (!evidence.with && !diagnosis.held_out.legs.empty()) {
+    std::get<ChartRow>(maps.blocks.front())
+        .push_back(held_out_chart("held-out", {{"", evidence.given.comparison.held_out}}));
   }
+  if (!place) page.sections.push_back(std::move(maps));
   if (evidence.with) {
-    const NamedModel with{with_name(evidence), *evidence.with};
-    PageSection gain = gain_section(given, with);
-    if (!diagnosis.held_out.legs.empty())
-      gain.blocks.emplace_back(ChartRow{changes_chart(diagnosis)});
-    page.sections.push_back(std::move(gain));
-    page.sections.push_back(maps_section("The map, before and after", {given, with}));
-  } else {
-    page.sections.push_back(fit_section(given));
+    page.sections.push_back(gain_section(given, models.back(), noise_floor(diagnosis, evidence)));
   }
+  if (!noise_first) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What the errors go with, in the model as given",
                                         evidence.given.comparison, evidence.trends));
   page.sections.push_back(legs_section("Legs, in the model as given", evidence.given.comparison));
+  page.sections.push_back({"Part by part", {parts_table(sized)}});
   page.sections.push_back(tried_section(sized));
-  move_tables_last(page);
+  close_tables(page);
   return page;
 }
 

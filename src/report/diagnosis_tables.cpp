@@ -4,6 +4,7 @@
 
 #include "plot/fit_charts.hpp"
 #include "report/effect_parts.hpp"
+#include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/table.hpp"
@@ -48,7 +49,8 @@ struct FindingVerdict {
   Tone tone = Tone::neutral;
 };
 
-FindingVerdict verdict_on(const Finding& one, const Diagnosis& diagnosis) {
+/// `size`: what it does in these recordings.
+FindingVerdict verdict_on(const Finding& one, const FindingSize& size, const Diagnosis& diagnosis) {
   if (one.status == Status::missing) return {"missing", Tone::bad};
   if (one.status == Status::negligible) return {"there, but too small to matter"};
   if (!diagnosis.missing.empty() &&
@@ -60,7 +62,11 @@ FindingVerdict verdict_on(const Finding& one, const Diagnosis& diagnosis) {
     return {diagnosis.missing.empty() ? "explained by noise or a single event"
                                       : "explained by what is missing"};
   }
-  if (one.status == Status::absent) return {"nothing: it would have been seen"};
+  if (one.status == Status::absent && size.seen_from > 0.0) {
+    const double found = std::max(std::abs(size.range.least), std::abs(size.range.most));
+    return {found < size.seen_from ? "nothing: it would have been seen"
+                                   : "not more than chance, though large enough to be seen"};
+  }
   return {"cannot tell from these data"};
 }
 
@@ -88,7 +94,7 @@ void add_effect_part(PageTable& table, EffectPart part, const SizedDiagnosis& si
                    [part](const Finding& one) { return part_of(one.effect) == part; });
   if (found != diagnosis.findings.end()) {
     const Effect& effect = found->effect;
-    const FindingVerdict verdict = verdict_on(*found, diagnosis);
+    const FindingVerdict verdict = verdict_on(*found, size_of(*found, sized), diagnosis);
     table.rows.push_back({name_of(part), verdict.words, name_in_words(effect),
                           what_it_would_be(effect, size_of(*found, sized).range),
                           drop_text(diagnosis, found->held_out), chance_of(*found, diagnosis)});
@@ -117,7 +123,7 @@ void add_found(PageTable& table, EffectPart part, const std::vector<EffectEviden
 }
 
 void add_noise(PageTable& table, const Diagnosis& diagnosis) {
-  if (diagnosis.under && diagnosis.under->noise.changed()) {
+  if (noise_is_wrong(diagnosis)) {
     table.rows.push_back({"noise", "other than the model states", "estimated",
                           typeset(in_words(diagnosis.under->noise)), "-", "-"});
     table.tones.push_back(Tone::bad);
@@ -161,8 +167,8 @@ PageTable tried_table(const SizedDiagnosis& sized) {
     for (const Finding& one : diagnosis.findings) {
       const Effect& effect = one.effect;
       if (!one.catalogue || part_of(effect) != part) continue;
-      const FindingVerdict verdict = verdict_on(one, diagnosis);
       const FindingSize& size = size_of(one, sized);
+      const FindingVerdict verdict = verdict_on(one, size, diagnosis);
       const std::string from = seen_from(one, size);
       table.rows.push_back({name_in_words(effect), name_of(part), verdict.words,
                             at_most(effect, size.range), from.empty() ? "-" : from,
@@ -179,8 +185,11 @@ std::vector<std::string> well_known(const SizedDiagnosis& sized) {
                            "compass offset", "hard iron", "range scale"}) {
     for (const Finding& one : sized.diagnosis.findings) {
       if (one.effect.name != name || one.status != Status::absent) continue;
-      const std::string from = seen_from(one, size_of(one, sized));
-      if (!from.empty()) texts.push_back(fmt::format("{} from {}", name, from));
+      const FindingSize& size = size_of(one, sized);
+      const std::string from = seen_from(one, size);
+      const double found = std::max(std::abs(size.range.least), std::abs(size.range.most));
+      if (!from.empty() && found < size.seen_from)
+        texts.push_back(fmt::format("{} from {}", name, from));
     }
   }
   return texts;
@@ -202,7 +211,7 @@ PageTable noise_table(const Diagnosis& diagnosis) {
                               : "",
                           one.stated > 0.0 ? fmt::format("{:.3g}", one.stated) : "-",
                           fmt::format("{:.3g}{}", one.sd, one.at_limit ? " (or beyond)" : "")});
-    table.tones.push_back(one.sd == one.stated ? Tone::neutral : Tone::bad);
+    table.tones.push_back(is_wrong(one) ? Tone::bad : Tone::neutral);
   }
   return table;
 }

@@ -4,11 +4,15 @@
 #include "plot/fit_charts.hpp"
 #include "report/diagnosis_tables.hpp"
 #include "report/fit_sections.hpp"
+#include "report/noise_verdict.hpp"
 #include "report/page_words.hpp"
+#include "report/result_rows.hpp"
+#include "report/rivals.hpp"
+#include "report/robot_off.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,6 +33,7 @@ std::vector<LadderStep> ladder_of(const Discovery& discovery) {
   std::vector<LadderStep> steps;
   for (const DiscoveryStep& one : discovery.steps) {
     steps.push_back({step_name(one), one.held_out.arrival_rms, one.chi2, one.dof});
+    if (one.added) steps.back().predicted_rms = one.predicted.arrival_rms;
   }
   return steps;
 }
@@ -77,91 +82,115 @@ PageTable step_table(const Discovery& discovery) {
   return table;
 }
 
+std::string whose_noise(const Discovery& discovery) {
+  return noise_is_wrong(discovery.last) ? "the noise found" : "its noise";
+}
+
+/// "3.1 cm off, as good as this robot's noise allows", and by which noise.
+std::string end_off(const HeldOut& legs, bool noise_found) {
+  return fmt::format("Legs end {} off{}.", distance_text(legs.arrival_rms),
+                     !as_good_as_noise(legs) ? ""
+                     : noise_found           ? ", as good as the noise found allows"
+                                             : ", as good as this robot's noise allows");
+}
+
 std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& evidence) {
   const auto& effects = evidence.effects;
   const Comparison& now = evidence.found.comparison;
-  if (effects.empty()) {
-    const std::string off = now.held_out.legs.empty()
-                                ? ""
-                                : " Legs end " + distance_text(now.held_out.arrival_rms) + " off";
-    if (!discovery.consistent) {
-      return "Nothing found, and something is unexplained: " + objection_in_words(now) + "." +
-             (off.empty() ? "" : off + ".");
-    }
-    return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.",
-                       discovery.last.tried) +
-           (off.empty() ? "" : off + ", as good as this robot's noise allows.");
+  const bool noise = noise_is_wrong(discovery.last);
+  const std::string off = now.held_out.legs.empty() ? "" : " " + end_off(now.held_out, noise);
+  if (!effects.empty()) {
+    const std::string gain =
+        gain_sentence(evidence.given.comparison, now, effects.size() == 1 ? "it" : "them");
+    return fmt::format("Found: {}. {}", named_with_rivals(effects, evidence.look_alikes),
+                       !gain.empty()      ? gain
+                       : now.consistent() ? "The model now explains the measurements."
+                                          : "Something is still unexplained.");
   }
-  std::string text = "Found: ";
-  text += named_with_sizes(effects);
-  const std::string gain =
-      gain_sentence(evidence.given.comparison, now, effects.size() == 1 ? "it" : "them");
-  if (!gain.empty()) return text + ". " + gain;
-  return text + (now.consistent() ? ". The model now explains the measurements."
-                                  : ". Something is still unexplained.");
+  if (!discovery.consistent) {
+    return fmt::format("Nothing found, and something is unexplained: {}.{}",
+                       objection_in_words(now), off);
+  }
+  if (noise) {
+    return fmt::format("The noise is not as the model states it: {}. No effect is missing.",
+                       found_and_stated(discovery.last.under->noise));
+  }
+  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}",
+                     discovery.last.tried, off);
 }
 
-std::vector<PageFact> found_facts(const Discovery& discovery, const DiscoveryEvidence& evidence) {
-  std::vector<PageFact> facts;
-  for (const EffectEvidence& one : evidence.effects) {
-    const SizeText size = size_text_of(one);
-    facts.push_back({size.size, short_name(one.estimate.effect) + " at its most" +
-                                    (size.error.empty() ? "" : "; standard error " + size.error)});
+/// What held-out legs cannot tell from the first effect found.
+std::vector<const Finding*> near_first(const Discovery& discovery, const Effect& effect) {
+  for (const Finding& one : discovery.first.findings) {
+    if (one.effect.name == effect.name) return near_rivals(discovery.first, one);
   }
-  const Comparison& given = evidence.given.comparison;
-  const Comparison& found = evidence.found.comparison;
-  const Tone tone = found.consistent() ? Tone::good : Tone::bad;
-  if (!found.held_out.legs.empty()) {
-    const double off = given.held_out.arrival_rms;
-    const double now = found.held_out.arrival_rms;
-    if (!evidence.effects.empty()) {
-      facts.push_back({distance_text(off, now), kLegsEnded, Tone::bad});
-    }
-    facts.push_back({distance_text(now, off), kLegsEndNow, tone});
-  }
-  facts.push_back({fmt::format("{:.2f}", found.misfit()),
-                   "chi\u00b2 per degree of freedom now (1 is right)", tone});
-  if (evidence.effects.empty()) {
-    facts.push_back({std::to_string(discovery.last.tried), "changes to the model tried"});
-  }
-  return facts;
+  return {};
 }
 
-std::vector<PageAnswer> found_answers(const Discovery& discovery,
-                                      const DiscoveryEvidence& evidence) {
-  const std::vector<std::vector<LookAlike>>& rivals = evidence.look_alikes;
-  std::vector<PageAnswer> answers;
-  for (const EffectEvidence& one : evidence.effects) {
-    answers.push_back({kHowLarge, sized_in_words(one)});
-  }
-  if (!evidence.effects.empty()) answers.push_back({kHowSure, gone_text(discovery)});
+ResultRows found_rows(const Discovery& discovery, const DiscoveryEvidence& evidence) {
+  ResultRows rows;
+  rows.sure = {gone_text(discovery)};
+  rows.off = off_sentences(evidence.given, evidence.found, "with the model found",
+                           evidence.found.comparison.held_out.expected_rms, whose_noise(discovery));
   for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
-    answers.push_back({kWhatElse, rivals_note(evidence.effects[k].estimate.effect, rivals[k])});
-  }
-  for (std::size_t k = 0; k < evidence.effects.size(); ++k) {
+    const EffectEvidence& one = evidence.effects[k];
+    const Effect& effect = one.estimate.effect;
+    rows.missing.push_back(what_it_is(effect));
+    rows.large.push_back(how_large(one));
+    for (std::string& sentence :
+         rival_sentences(effect, evidence.look_alikes[k],
+                         k == 0 ? near_first(discovery, effect) : std::vector<const Finding*>{})) {
+      rows.otherwise.push_back(std::move(sentence));
+    }
     if (!evidence.next_drives[k]) continue;
-    const Effect& effect = evidence.effects[k].estimate.effect;
-    answers.push_back({kNext, fmt::format("To tell {} from its rivals, {}.", short_name(effect),
-                                          in_words(evidence.next_drives[k]))});
-  }
-  if (!evidence.effects.empty()) {
-    answers.push_back({kNext,
-                       "Use the model found (trussmap discover --out FILE writes it) with build, "
-                       "compare and the robot's own odometry."});
-  } else if (!discovery.last.lacks.empty()) {
-    answers.push_back({kNext, advised_drive(advice_on(discovery.last.lacks.front()))});
+    rows.next.push_back(fmt::format("To tell {} from its rivals, {}.", short_name(effect),
+                                    in_words(evidence.next_drives[k])));
   }
   for (const EffectEvidence& one : evidence.effects) {
-    answers.push_back({kCause, cause_note(one.estimate.effect)});
+    rows.next.push_back(what_helps(one.estimate.effect));
   }
-  if (evidence.effects.empty())
-    answers.push_back({kSeen, seen_from_note({discovery.last, evidence.sizes})});
-  answers.push_back({"Why it stopped", capitalised(stop_in_words(discovery)) + "."});
-  for (std::string& note : others_notes(discovery.last)) {
-    answers.push_back({kBeside, std::move(note)});
+  rows.next.emplace_back(
+      "Use the model found (trussmap discover --out FILE writes it) with build, compare and the "
+      "robot's own odometry.");
+  return rows;
+}
+
+ResultRows rows_without(const Discovery& discovery, const DiscoveryEvidence& evidence) {
+  const Diagnosis& last = discovery.last;
+  const bool noise = noise_is_wrong(last);
+  ResultRows rows;
+  rows.missing = {!discovery.consistent
+                      ? fmt::format("Unknown: none of {} changes tried explains it.", last.tried)
+                      : fmt::format("{}: none of {} changes tried explains more than chance.",
+                                    noise ? "No effect" : "Nothing", last.tried)};
+  if (noise) rows.large = {fmt::format("Noise: {}.", found_and_stated(last.under->noise))};
+  rows.large.push_back(seen_from_note({last, evidence.sizes}));
+  rows.sure = {fmt::format("Errors as large arise from noise alone, with probability {}.",
+                           chance_text(evidence.found.comparison.p_value))};
+  rows.off = off_sentences(evidence.found, whose_noise(discovery));
+  const std::vector<std::string> unseen = unseen_names(last);
+  rows.otherwise = {
+      unseen.empty()
+          ? "Nothing that was looked for is hidden from these recordings."
+          : fmt::format("Hidden from these recordings, and so perhaps there: {}.", listed(unseen))};
+  if (noise) {
+    rows.next = {"Use the noise found (trussmap discover --out FILE writes it into the model)."};
   }
-  std::erase_if(answers, [](const PageAnswer& one) { return one.answer.empty(); });
-  return answers;
+  rows.next.push_back(drive_that_shows_more(last));
+  return rows;
+}
+
+ResultRows rows_on(const Discovery& discovery, const DiscoveryEvidence& evidence) {
+  ResultRows rows = evidence.effects.empty() ? rows_without(discovery, evidence)
+                                             : found_rows(discovery, evidence);
+  if (!evidence.effects.empty() || !discovery.consistent) {
+    rows.missing.push_back(fmt::format("Looked for more: {}.", stop_in_words(discovery)));
+  }
+  const std::vector<std::string> others = others_notes(discovery.last);
+  // Noise that is the headline is no further suspect.
+  const bool said = evidence.effects.empty() && noise_is_wrong(discovery.last);
+  rows.otherwise.insert(rows.otherwise.end(), others.begin() + (said ? 1 : 0), others.end());
+  return rows;
 }
 
 }  // namespace
@@ -169,38 +198,44 @@ std::vector<PageAnswer> found_answers(const Discovery& discovery,
 Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidence,
                     const std::string& subject) {
   const SizedDiagnosis sized{discovery.last, evidence.sizes};
+  const bool found_any = !evidence.effects.empty();
   PageContent page;
   page.command = "discover";
   page.subject = subject;
   page.verdict = found_verdict(discovery, evidence);
-  page.tone = discovery.consistent ? Tone::good : Tone::bad;
-  page.facts = found_facts(discovery, evidence);
-  page.answers = found_answers(discovery, evidence);
-  page.sections.push_back({"Part by part", {parts_table(sized, evidence.effects)}});
-  PageTable noise = noise_table(discovery.last);
-  if (!noise.rows.empty()) page.sections.back().blocks.emplace_back(std::move(noise));
+  const bool noise_alone = !found_any && noise_is_wrong(discovery.last);
+  page.tone = discovery.consistent && !noise_alone ? Tone::good : Tone::bad;
+  page.answers = answers_of(rows_on(discovery, evidence));
   const NamedModel given{kModelGiven, evidence.given};
   const NamedModel found{kModelFound, evidence.found};
-  if (evidence.effects.empty()) {
-    page.sections.push_back(fit_section(given));
-  } else {
-    PageSection gain = gain_section(given, found, ladder_of(discovery));
-    gain.blocks.emplace_back(step_table(discovery));
+  std::vector<NamedModel> models{given};
+  if (found_any) {
+    PageSection gain = gain_section(given, found, evidence.found.comparison.held_out.expected_rms,
+                                    ladder_of(discovery));
+    gain.details.emplace_back(step_table(discovery));
     page.sections.push_back(std::move(gain));
     page.sections.push_back(effect_section("What was found", evidence.effects));
-    std::vector<NamedModel> models{given};
     for (std::size_t k = 0; k < evidence.between.size(); ++k) {
       models.push_back({step_name(discovery.steps[k + 1]), evidence.between[k]});
     }
     models.push_back(
         {evidence.between.empty() ? kModelFound : last_name(discovery), evidence.found});
-    page.sections.push_back(maps_section("The map, model by model", models));
   }
+  PageSection noise = noise_alone ? noise_section(given, discovery.last.under->noise)
+                      : found_any ? noise_section({given, found})
+                                  : noise_section({given});
+  PageTable sources = noise_table(discovery.last);
+  if (!sources.rows.empty()) noise.details.emplace_back(std::move(sources));
+  if (noise_alone) page.sections.push_back(noise);
+  page.sections.push_back(
+      maps_section("Where legs end off, model by model", models, evidence.effects));
+  if (!noise_alone) page.sections.push_back(std::move(noise));
   page.sections.push_back(trend_section("What errors go with, in the model found",
                                         evidence.found.comparison, evidence.trends));
   page.sections.push_back(legs_section("Legs, in the model found", evidence.found.comparison));
+  page.sections.push_back({"Part by part", {parts_table(sized, evidence.effects)}});
   page.sections.push_back(tried_section(sized));
-  move_tables_last(page);
+  close_tables(page);
   return page;
 }
 

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "report/fit_sections.hpp"
 #include "report/page_words.hpp"
+#include "report/result_rows.hpp"
+#include "report/robot_off.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -13,27 +15,64 @@ namespace trussmap {
 namespace {
 
 constexpr const char* kBefore = "without effects";
-constexpr const char* kAfter = "with them";
-
-std::string millimetres(const Comparison& one) {
-  return fmt::format("{:.0f} mm", 1000.0 * one.held_out.arrival_rms);
-}
+constexpr const char* kAfter = "with effects";
 
 std::string page_verdict(const Comparison& before, const Comparison& after,
                          const std::vector<EffectEvidence>& effects) {
-  std::string text;
-  if (effects.size() == 1) {
-    const EffectEstimate& only = effects.front().estimate;
-    text = only.effect.name + ": " + typeset(in_words(only.effect, only.sd)) + ".";
-  } else {
-    text = fmt::format("{} effects fitted.", effects.size());
+  if (effects.empty()) {
+    return after.consistent() ? "The noise is estimated; the model explains the measurements."
+                              : "The noise is estimated; something is still unexplained.";
   }
-  if (!before.held_out.legs.empty() && !after.held_out.legs.empty()) {
-    text += fmt::format(" Legs that no fit has seen end {} off without, {} with.",
-                        millimetres(before), millimetres(after));
-  }
+  std::string text = fmt::format("Fitted: {}.", named_with_sizes(effects));
+  const std::string gain = gain_sentence(before, after, effects.size() == 1 ? "it" : "them");
+  if (!gain.empty()) return text + " " + gain;
   return text + (after.consistent() ? " The model now explains the measurements."
                                     : " Something is still unexplained.");
+}
+
+/// How clearly an effect is other than none.
+std::string sure_of(const EffectEvidence& one) {
+  double most = 0.0;
+  for (std::size_t k = 0; k < one.estimate.sd.size(); ++k) {
+    const double sd = one.estimate.sd[k];
+    if (sd > 0.0) most = std::max(most, std::abs(one.estimate.effect.coefficients.at(k)) / sd);
+  }
+  return most > 0.0 ? fmt::format("{}: {} standard errors from none{}.",
+                                  capitalised(short_name(one.estimate.effect)), two_digits(most),
+                                  most < 2.0 ? ", which chance makes as well" : "")
+                    : "";
+}
+
+std::string still_unexplained(const Comparison& after) {
+  return after.consistent() ? "Nothing more that these measurements show."
+                            : fmt::format("Something still: {}.", objection_in_words(after));
+}
+
+ResultRows rows_on(const FitEvidence& evidence) {
+  const Comparison& after = evidence.with.comparison;
+  ResultRows rows;
+  rows.missing = {still_unexplained(after)};
+  rows.off = off_sentences(evidence.without, evidence.with, kAfter, after.held_out.expected_rms);
+  for (const EffectEvidence& one : evidence.effects) {
+    rows.large.push_back(how_large(one));
+    rows.sure.push_back(sure_of(one));
+  }
+  if (!evidence.noise.empty()) {
+    rows.large.push_back("Noise, as estimated: " + typeset(evidence.noise) + ".");
+  }
+  rows.otherwise = {"Unknown: fit tries no other effect, diagnose does."};
+  for (const EffectEvidence& one : evidence.effects) {
+    for (const UnfittedCoefficient& why : one.estimate.not_fitted) {
+      rows.next.push_back(capitalised(in_words(one.estimate, why)) + ".");
+    }
+  }
+  rows.next.emplace_back(
+      after.consistent()
+          ? "Use the model fitted (trussmap fit --out FILE writes it) with build, compare and the "
+            "robot's own odometry."
+          : "Give trussmap diagnose the model fitted (trussmap fit --out FILE writes it): it names "
+            "what is missing besides.");
+  return rows;
 }
 
 }  // namespace
@@ -47,34 +86,16 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   page.subject = subject;
   page.tone = after.consistent() ? Tone::good : Tone::bad;
   page.verdict = page_verdict(before, after, effects);
-  page.facts = {
-      {fmt::format("{:.2f}", before.misfit()), "chi\u00b2 per degree of freedom without effects"},
-      {fmt::format("{:.2f}", after.misfit()), "the same with them (1 is right)", page.tone}};
-  if (!after.held_out.legs.empty()) {
-    page.facts.push_back({millimetres(before), "held-out legs end so far off without effects"});
-    page.facts.push_back({millimetres(after), "the same with them", page.tone});
-  }
-  for (const EffectEvidence& one : effects) {
-    if (effects.size() > 1) {
-      page.notes.push_back(one.estimate.effect.name + ": " +
-                           typeset(in_words(one.estimate.effect, one.estimate.sd)));
-    }
-    for (const UnfittedCoefficient& why : one.estimate.not_fitted) {
-      page.notes.push_back(in_words(one.estimate, why));
-    }
-  }
-  if (!evidence.noise.empty()) {
-    page.notes.push_back("Under the noise as estimated, other than the model stated it: " +
-                         typeset(evidence.noise) + ".");
-  }
-  page.notes.insert(page.notes.end(), after.warnings.begin(), after.warnings.end());
+  page.answers = answers_of(rows_on(evidence));
+  page.notes = after.warnings;
   const NamedModel given{kBefore, evidence.without};
   const NamedModel fitted{kAfter, evidence.with};
-  page.sections.push_back(effect_section("The effects", effects));
-  page.sections.push_back(gain_section(given, fitted));
-  page.sections.push_back(maps_section("The map, before and after", {given, fitted}));
+  page.sections.push_back(maps_section("The map, before and after", {given, fitted}, effects));
+  if (!effects.empty()) page.sections.push_back(effect_section("The effects", effects));
+  page.sections.push_back(gain_section(given, fitted, after.held_out.expected_rms));
+  page.sections.push_back(noise_section({given, fitted}));
   page.sections.push_back(legs_section("Legs, with the effects", after));
-  move_tables_last(page);
+  close_tables(page);
   return page;
 }
 

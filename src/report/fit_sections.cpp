@@ -10,8 +10,9 @@
 #include "wording/channel_words.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kTrends = 12;
+constexpr std::size_t kWorstLegs = 12;
 
 PageTable effect_table(const std::vector<EffectEvidence>& effects) {
   PageTable table;
@@ -73,7 +75,11 @@ Chart strength_chart(const std::vector<EffectEvidence>& effects) {
 
 PageTable trend_table(const Comparison& result) {
   PageTable table;
-  table.caption = fmt::format("Trends, strongest first (of {} looked for)", result.trends.size());
+  table.caption = fmt::format(
+      "Trends, strongest first (of {} looked for). Stretch: measured too long; orientation: too "
+      "far "
+      "to the left; chi\u00b2: squared errors over what noise makes of them",
+      result.trends.size());
   table.headings = {"error of", "goes with", "explains chi\u00b2", "size (rms)", "p, adjusted"};
   table.texts = 2;
   for (const Trend& trend : result.trends) {
@@ -87,7 +93,9 @@ PageTable trend_table(const Comparison& result) {
 
 PageTable model_table(const NamedModel& before, const NamedModel& after) {
   PageTable table;
-  table.caption = "The two models";
+  table.caption =
+      "The two models; chi\u00b2 (squared errors over what noise makes of them) is about "
+      "as large as its degrees of freedom where a model is right";
   table.headings = {"", "chi\u00b2", "degrees of freedom", "p", "held-out legs end off [mm]"};
   for (const NamedModel* named : {&before, &after}) {
     const Comparison& one = named->model.comparison;
@@ -101,8 +109,14 @@ PageTable model_table(const NamedModel& before, const NamedModel& after) {
   return table;
 }
 
+/// ", leaves 16 mm".
+std::string leaves(const Effect& effect, const LeftBy& left) {
+  const auto found = left.find(effect.name);
+  return found == left.end() ? "" : ", leaves " + distance_text(found->second);
+}
+
 /// Curves of rivals that differ in nothing but their place or threshold are one.
-std::vector<NamedCurve> rival_curves(const EffectEvidence& effect) {
+std::vector<NamedCurve> rival_curves(const EffectEvidence& effect, const LeftBy& left) {
   std::vector<NamedCurve> curves;
   for (std::size_t k = 0; k < effect.response.rivals.size(); ++k) {
     const Effect& rival = effect.rivals[k];
@@ -111,14 +125,14 @@ std::vector<NamedCurve> rival_curves(const EffectEvidence& effect) {
     if (same) {
       curves.back().name += " or " + name_in_words(rival);
     } else {
-      curves.push_back({name_in_words(rival), effect.response.rivals[k]});
+      curves.push_back({name_in_words(rival) + leaves(rival, left), effect.response.rivals[k]});
     }
   }
   return curves;
 }
 
-Chart effect_chart(const std::string& id, const EffectEvidence& effect) {
-  const std::vector<NamedCurve> rivals = rival_curves(effect);
+Chart effect_chart(const std::string& id, const EffectEvidence& effect, const LeftBy& left) {
+  const std::vector<NamedCurve> rivals = rival_curves(effect, left);
   std::string caption =
       "Points: the error that the recordings show where the model lacks this effect, with 95 % "
       "intervals. Line: the effect as fitted. Where they agree, the effect has the right shape.";
@@ -128,25 +142,26 @@ Chart effect_chart(const std::string& id, const EffectEvidence& effect) {
         "the points, the harder to tell.";
   }
   return response_chart(id, name_in_words(effect.estimate.effect), caption, effect.response,
-                        "as fitted", rivals);
+                        "as fitted" + leaves(effect.estimate.effect, left), rivals);
 }
 
 }  // namespace
 
-PageSection effect_section(const std::string& title, const std::vector<EffectEvidence>& effects) {
+PageSection effect_section(const std::string& title, const std::vector<EffectEvidence>& effects,
+                           const LeftBy& left) {
   PageSection section{title, {}};
   ChartRow signatures;
   for (std::size_t k = 0; k < effects.size(); ++k) {
     if (effects[k].response.bins.empty()) continue;
-    signatures.push_back(effect_chart(fmt::format("effect-{}", k + 1), effects[k]));
+    signatures.push_back(effect_chart(fmt::format("effect-{}", k + 1), effects[k], left));
   }
   if (!signatures.empty()) section.blocks.emplace_back(std::move(signatures));
-  section.blocks.emplace_back(ChartRow{strength_chart(effects)});
-  section.blocks.emplace_back(effect_table(effects));
+  section.details.emplace_back(ChartRow{strength_chart(effects)});
+  section.details.emplace_back(effect_table(effects));
   return section;
 }
 
-PageSection gain_section(const NamedModel& before, const NamedModel& after,
+PageSection gain_section(const NamedModel& before, const NamedModel& after, double floor,
                          const std::vector<LadderStep>& ladder) {
   PageSection section{"What it gains", {}};
   const Comparison& one = before.model.comparison;
@@ -156,39 +171,45 @@ PageSection gain_section(const NamedModel& before, const NamedModel& after,
         {before.name, one.held_out.arrival_rms, one.chi2, one.dof},
         {after.name, other.held_out.arrival_rms, other.chi2, other.dof}};
     ChartRow charts{
-        ladder_chart("ladder", ladder.empty() ? two : ladder),
+        ladder_chart("ladder", ladder.empty() ? two : ladder, floor),
         held_out_chart("held-out", {{before.name, one.held_out}, {after.name, other.held_out}})};
     charts[0].height = std::max(charts[0].height, charts[1].height);
     section.blocks.emplace_back(std::move(charts));
   }
-  section.blocks.emplace_back(
-      ChartRow{source_chart("noise", {{before.name, one.sources}, {after.name, other.sources}})});
-  add_quantiles(section, {before, after});
-  section.blocks.emplace_back(model_table(before, after));
+  section.details.emplace_back(model_table(before, after));
   return section;
 }
 
-PageSection maps_section(const std::string& title, const std::vector<NamedModel>& models) {
-  double loudest = 0.0;
+PageSection maps_section(const std::string& title, const std::vector<NamedModel>& models,
+                         const std::vector<EffectEvidence>& effects) {
+  std::vector<Effect> placed;
+  for (const EffectEvidence& one : effects) placed.push_back(one.estimate.effect);
+  std::vector<std::vector<RouteError>> routes;
+  double worst = 0.0;
   for (const NamedModel& one : models) {
-    loudest = std::max(loudest, loudest_force(one.model.comparison));
+    routes.push_back(route_errors(one.model.comparison.worst, one.model.map));
+    if (!routes.back().empty()) worst = std::max(worst, routes.back().front().rms);
   }
   ChartRow maps;
   for (std::size_t k = 0; k < models.size(); ++k) {
-    const NamedModel& one = models[k];
-    std::string name = one.name;
-    name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-    maps.push_back(truss_chart(fmt::format("map-{}", k + 1), name, one.model.map,
-                               one.model.comparison.routes, loudest));
-    if (k == 0) continue;
-    maps.back().caption =
-        "Colours as in the first map: the greyer, the better the model agrees with what was "
-        "measured.";
+    const std::string id = models.size() == 1 ? "map" : fmt::format("map-{}", k + 1);
+    const std::string name = capitalised(models[k].name);
+    // Without landmarks there are no routes: the path alone.
+    maps.push_back(routes[k].empty()
+                       ? truss_chart(id, name, models[k].model.map, {}, 1.0)
+                       : route_chart(id, name, models[k].model.map, routes[k], worst));
+    add_places(maps.back(), placed);
+    if (k > 0) maps.back().caption = "The same millimetres have the same colour as in the first.";
   }
   return {title, {std::move(maps)}};
 }
 
-void add_quantiles(PageSection& section, const std::vector<NamedModel>& models) {
+PageSection noise_section(const std::vector<NamedModel>& models) {
+  std::vector<NamedSources> sources;
+  for (const NamedModel& one : models) {
+    sources.emplace_back(models.size() > 1 ? one.name : "", one.model.comparison.sources);
+  }
+  PageSection section{"Is the noise right?", {ChartRow{source_chart("noise", sources)}}};
   ChartRow charts;
   for (std::size_t k = 0; k < models.size(); ++k) {
     const bool alone = models.size() == 1;
@@ -198,64 +219,80 @@ void add_quantiles(PageSection& section, const std::vector<NamedModel>& models) 
                                  models[k].model.comparison.residuals);
     if (chart.layers.size() > 1) charts.push_back(std::move(chart));
   }
-  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
-}
-
-void move_tables_last(PageContent& page) {
-  PageSection last{"Tables", {}};
-  for (PageSection& section : page.sections) {
-    const auto is = [](const PageBlock& block) { return std::holds_alternative<ChartRow>(block); };
-    if (std::none_of(section.blocks.begin(), section.blocks.end(), is)) continue;
-    for (PageBlock& block : section.blocks) {
-      if (std::holds_alternative<PageTable>(block)) last.blocks.push_back(std::move(block));
-    }
-    std::erase_if(section.blocks,
-                  [](const PageBlock& block) { return std::holds_alternative<PageTable>(block); });
-  }
-  if (!last.blocks.empty()) page.sections.push_back(std::move(last));
-}
-
-PageSection fit_section(const NamedModel& model) {
-  const Comparison& one = model.model.comparison;
-  ChartRow noise{source_chart("noise", {{"", one.sources}})};
-  if (!one.held_out.legs.empty()) noise.push_back(held_out_chart("held-out", {{"", one.held_out}}));
-  PageSection section{"The map and the noise",
-                      {ChartRow{truss_chart("map", "Map with the forces in its bars",
-                                            model.model.map, one.routes, loudest_force(one))},
-                       std::move(noise)}};
-  add_quantiles(section, {model});
+  if (!charts.empty()) section.details.emplace_back(std::move(charts));
   return section;
+}
+
+PageSection noise_section(const NamedModel& model, const FittedNoise& found) {
+  std::vector<SourceCalibration> sources;
+  for (const NoiseSource& one : found.sources) {
+    if (!(one.stated > 0.0)) continue;
+    sources.push_back({one.name, one.sd / one.stated, one.sd_error / one.stated, 0.0});
+  }
+  PageSection section = noise_section({model});
+  Chart chart = source_chart("noise", {{"", sources}});
+  chart.title = "Noise as found, over what the model states";
+  chart.caption = "1 is as stated. By the noise found the errors scatter as they should.";
+  chart.x.title = "found over stated";
+  if (!sources.empty()) section.blocks = {ChartRow{std::move(chart)}};
+  return section;
+}
+
+void close_tables(PageContent& page) {
+  for (PageSection& section : page.sections) {
+    const auto shown = [](const PageBlock& block) {
+      return std::holds_alternative<ChartRow>(block);
+    };
+    const bool pictures = std::any_of(section.blocks.begin(), section.blocks.end(), shown);
+    std::vector<PageBlock> open;
+    std::vector<PageBlock> closed;
+    for (PageBlock& block : section.blocks) {
+      const bool table = std::holds_alternative<PageTable>(block);
+      (table || (!pictures && !closed.empty()) ? closed : open).push_back(std::move(block));
+    }
+    section.blocks = std::move(open);
+    section.details.insert(section.details.begin(), std::make_move_iterator(closed.begin()),
+                           std::make_move_iterator(closed.end()));
+  }
 }
 
 PageSection legs_section(const std::string& title, const Comparison& comparison) {
   return {title,
+          {},
           {ChartRow{legs_chart("stretch", comparison.worst, LegError::stretch),
                     legs_chart("orientation", comparison.worst, LegError::orientation)},
-           ChartRow{worst_chart("worst-legs", comparison.worst, 12)}}};
+           ChartRow{worst_chart("worst-legs", comparison.worst, kWorstLegs)}}};
 }
 
 PageSection trend_section(const std::string& title, const Comparison& result,
                           const std::vector<TrendEvidence>& trends) {
   PageSection section{title, {}};
-  section.blocks.emplace_back(
-      "For every variable, the error that goes with it most. Points are what the recordings show, "
-      "with 95 % intervals; the line is the trend that a score test finds. Points on zero: nothing "
-      "there.");
   ChartRow charts;
-  for (std::size_t k = 0; k < trends.size(); ++k) {
-    const Trend& trend = trends[k].trend;
+  std::vector<std::string> without;
+  for (const TrendEvidence& one : trends) {
+    const Trend& trend = one.trend;
+    const std::string variable = variable_in_words(one.response.variable);
+    if (!(trend.p_adjusted < kSignificance)) {
+      without.push_back(variable);
+      continue;
+    }
     charts.push_back(response_chart(
-        fmt::format("trend-{}", k + 1),
-        trend.kind + " against " + variable_in_words(trends[k].response.variable),
-        trend.p_adjusted < kSignificance
-            ? fmt::format("A trend: it explains {:.2g} % of chi\u00b2, p {}.",
-                          100.0 * trend.score / std::max(result.chi2, 1e-300),
-                          probability_text(trend.p_adjusted))
-            : fmt::format("No trend to speak of: p {}.", probability_text(trend.p_adjusted)),
-        trends[k].response, "trend"));
+        fmt::format("trend-{}", charts.size() + 1), trend.kind + " against " + variable,
+        fmt::format("A trend: it explains {:.2g} % of chi\u00b2 (squared errors over what noise "
+                    "makes of them), p {}. Points are what the recordings show, with 95 % "
+                    "intervals.",
+                    100.0 * trend.score / std::max(result.chi2, 1e-300),
+                    probability_text(trend.p_adjusted)),
+        one.response, "trend"));
   }
-  if (!charts.empty()) section.blocks.emplace_back(std::move(charts));
-  section.blocks.emplace_back(trend_table(result));
+  const bool any = !charts.empty();
+  if (any) section.blocks.emplace_back(std::move(charts));
+  if (!without.empty()) {
+    section.blocks.emplace_back(fmt::format("{} trend with {} (p of 0.05 and more).",
+                                            any ? "No" : "The errors go with nothing: no",
+                                            listed(without, "or")));
+  }
+  section.details.emplace_back(trend_table(result));
   return section;
 }
 

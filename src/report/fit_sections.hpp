@@ -8,6 +8,7 @@
 #include "report/page.hpp"
 #include "trussmap/evidence.hpp"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,31 +20,38 @@ struct NamedModel {
   const ModelEvidence& model;
 };
 
-/// Each effect as the recordings show it, how sure it is, and its coefficients.
+/// How far off held-out legs would end with an effect, m, by its name.
+using LeftBy = std::map<std::string, double>;
+
+/// Each effect as the recordings show it, beside its rivals with what each would leave; how sure it
+/// is, and its coefficients.
 [[nodiscard]] PageSection effect_section(const std::string& title,
-                                         const std::vector<EffectEvidence>& effects);
+                                         const std::vector<EffectEvidence>& effects,
+                                         const LeftBy& left = {});
 
-/// `ladder` may be empty: then it is the two models.
+/// A staircase down to what noise alone leaves (`floor`, m). `ladder` may be empty: then it is the
+/// two models.
 [[nodiscard]] PageSection gain_section(const NamedModel& before, const NamedModel& after,
-                                       const std::vector<LadderStep>& ladder = {});
+                                       double floor, const std::vector<LadderStep>& ladder = {});
 
-/// The map as each of the models has it, the same force in the same colour.
+/// The map as each of the models has it, the same millimetres in the same colour, with rings round
+/// the places of these effects.
 [[nodiscard]] PageSection maps_section(const std::string& title,
-                                       const std::vector<NamedModel>& models);
+                                       const std::vector<NamedModel>& models,
+                                       const std::vector<EffectEvidence>& effects = {});
 
-/// One model alone: its map, its noise, its held-out legs.
-[[nodiscard]] PageSection fit_section(const NamedModel& model);
+/// Source by source, beside the errors' scatter.
+[[nodiscard]] PageSection noise_section(const std::vector<NamedModel>& models);
+/// The same where the noise is what is wrong: as found, over what the model states.
+[[nodiscard]] PageSection noise_section(const NamedModel& model, const FittedNoise& found);
 
-/// Q-Q charts of the models that have errors enough to draw, side by side.
-void add_quantiles(PageSection& section, const std::vector<NamedModel>& models);
+/// What few ask for: tables, and sections that are nothing else, are closed.
+void close_tables(PageContent& page);
 
-/// Pictures first: tables of sections that have charts go to a section of their own at the end.
-void move_tables_last(PageContent& page);
-
-/// Every leg, and the worst.
+/// Every leg, and the worst: for those who ask.
 [[nodiscard]] PageSection legs_section(const std::string& title, const Comparison& comparison);
 
-/// A picture per variable.
+/// A picture per variable that errors go with, a sentence on the others.
 [[nodiscard]] PageSection trend_section(const std::string& title, const Comparison& comparison,
                                         const std::vector<TrendEvidence>& trends);
 

@@ -21,6 +21,11 @@ const char* class_of(Tone tone) {
   return tone == Tone::good ? "good" : tone == Tone::bad ? "bad" : "neutral";
 }
 
+/// What a colour says, for those who do not see it.
+const char* sign_of(Tone tone) {
+  return tone == Tone::good ? "\u2713 " : tone == Tone::bad ? "! " : "";
+}
+
 std::string element(const char* name, const std::string& text) {
   return fmt::format("<{0}>{1}</{0}>\n", name, xml_escaped(text));
 }
@@ -69,7 +74,8 @@ std::string html(const PageTable& table) {
     const Tone tone = row < table.tones.size() ? table.tones[row] : Tone::neutral;
     text += fmt::format("<tr class=\"{}\">", class_of(tone));
     for (std::size_t k = 0; k < table.rows[row].size(); ++k) {
-      text += fmt::format("<td{}>{}</td>", cell(k), xml_escaped(table.rows[row][k]));
+      text += fmt::format("<td{}>{}{}</td>", cell(k), k == 0 ? sign_of(tone) : "",
+                          xml_escaped(table.rows[row][k]));
     }
     text += "</tr>\n";
   }
@@ -87,16 +93,41 @@ struct BlockText {
   }
 };
 
+const char* tone_words(Tone tone) {
+  switch (tone) {
+    case Tone::good:
+      return "<b class=\"tone\">\u2713 in order</b> ";
+    case Tone::bad:
+      return "<b class=\"tone\">! not in order</b> ";
+    case Tone::neutral:
+      break;
+  }
+  return "";
+}
+
+std::string html(const PageSection& section) {
+  std::string text = element("h2", section.title);
+  for (const PageBlock& block : section.blocks) text += std::visit(BlockText{}, block);
+  if (section.details.empty()) return text;
+  text += fmt::format(
+      "<details class=\"more\"><summary>Details<span class=\"unseen\">: {}</span>"
+      "</summary>\n",
+      xml_escaped(section.title));
+  for (const PageBlock& block : section.details) text += std::visit(BlockText{}, block);
+  return text + "</details>\n";
+}
+
 std::string first_screen(const PageContent& page) {
   std::string text = fmt::format(
-      "<header class=\"{}\">\n<p class=\"command\">trussmap {} <span>{}</span></p>\n<h1>{}</h1>\n",
-      class_of(page.tone), xml_escaped(page.command), xml_escaped(page.subject),
-      xml_escaped(page.verdict));
+      "<header class=\"{}\">\n<p class=\"command\">{}trussmap {} <span>{}</span></p>\n"
+      "<h1>{}</h1>\n",
+      class_of(page.tone), tone_words(page.tone), xml_escaped(page.command),
+      xml_escaped(page.subject), xml_escaped(page.verdict));
   if (!page.facts.empty()) {
     text += "<dl class=\"facts\">\n";
     for (const PageFact& fact : page.facts) {
-      text += fmt::format("<div class=\"{}\"><dt>{}</dt><dd>{}</dd></div>\n", class_of(fact.tone),
-                          xml_escaped(fact.what), xml_escaped(fact.value));
+      text += fmt::format("<div class=\"{}\"><dt>{}</dt><dd>{}{}</dd></div>\n", class_of(fact.tone),
+                          xml_escaped(fact.what), sign_of(fact.tone), xml_escaped(fact.value));
     }
     text += "</dl>\n";
   }
@@ -142,10 +173,12 @@ std::string contents(const PageContent& page) {
 std::vector<const Chart*> charts_of(const PageContent& page) {
   std::vector<const Chart*> charts;
   for (const PageSection& section : page.sections) {
-    for (const PageBlock& block : section.blocks) {
-      const auto* row = std::get_if<ChartRow>(&block);
-      if (row == nullptr) continue;
-      for (const Chart& chart : *row) charts.push_back(&chart);
+    for (const std::vector<PageBlock>* blocks : {&section.blocks, &section.details}) {
+      for (const PageBlock& block : *blocks) {
+        const auto* row = std::get_if<ChartRow>(&block);
+        if (row == nullptr) continue;
+        for (const Chart& chart : *row) charts.push_back(&chart);
+      }
     }
   }
   return charts;
@@ -170,8 +203,7 @@ std::string render_page(const PageContent& page, const PageRuntime& runtime) {
   if (page.sections.size() > 1) text += contents(page);
   for (std::size_t k = 0; k < page.sections.size(); ++k) {
     text += fmt::format("<section id=\"section-{}\">\n", k + 1);
-    text += element("h2", page.sections[k].title);
-    for (const PageBlock& block : page.sections[k].blocks) text += std::visit(BlockText{}, block);
+    text += html(page.sections[k]);
     text += "</section>\n";
   }
   text +=

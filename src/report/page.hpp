@@ -7,7 +7,7 @@
 //   facts     a handful of figures, large
 //   answers   what a reader asks next, each with its question: "What else could it be?"
 //   notes     what to know or to do, a sentence each
-//   sections  texts, rows of charts, tables
+//   sections  texts, rows of charts, tables; what few ask for under "Details", which is closed
 //
 // Everything is text until it is drawn: names from anybody's files can hold whatever they like.
 // Same input, same bytes.
@@ -51,6 +51,7 @@ using PageBlock = std::variant<std::string, PageTable, ChartRow>;
 struct PageSection {
   std::string title;
   std::vector<PageBlock> blocks;
+  std::vector<PageBlock> details = {};  ///< below, closed until asked for
 };
 
 struct PageContent {

@@ -3,6 +3,7 @@
 #include "report/page_words.hpp"
 
 #include "plot/fit_charts.hpp"
+#include "report/noise_verdict.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/table.hpp"
 #include "wording/channel_words.hpp"
@@ -62,10 +63,9 @@ std::string gain_sentence(const Comparison& before, const Comparison& after,
   if (before.held_out.legs.empty() || after.held_out.legs.empty()) return "";
   const double off = before.held_out.arrival_rms;
   const double with = after.held_out.arrival_rms;
-  return fmt::format("Without {0} legs end {1} off; with {0} {2}{3}.", it, distance_text(off, with),
-                     distance_text(with, off),
-                     after.consistent() ? ", as good as this robot's noise allows"
-                                        : ", and something is still unexplained");
+  return fmt::format("Legs end {} off, {} with {}.{}", distance_text(off, with),
+                     distance_text(with, off), it,
+                     after.consistent() ? "" : " Something is still unexplained.");
 }
 
 std::string trend_variable(const Trend& trend) {
@@ -86,6 +86,15 @@ std::string listed(const std::vector<std::string>& names, const std::string& las
 
 SizeText size_text_of(const EffectEvidence& effect) {
   const Effect& one = effect.estimate.effect;
+  if (one.channel == Channel::compass && one.shape.size() == 1 && one.shape[0] == "turn_rate" &&
+      one.coefficients.size() == 1) {  // a lag
+    constexpr double kMilliseconds = 1000.0;
+    const double sd = effect.estimate.sd.empty() ? 0.0 : effect.estimate.sd[0];
+    const double lag = kMilliseconds * std::abs(one.coefficients[0]);
+    const QuantityText text = quantity_text(lag, kMilliseconds * sd);
+    return {(text.error.empty() ? two_digits(lag) : text.value) + " ms",
+            text.error.empty() ? "" : text.error + " ms"};
+  }
   const ShownUnit unit = shown_unit(channel_unit(one));
   const double least = effect.range.least;
   const double most = effect.range.most;
@@ -104,34 +113,61 @@ SizeText size_text_of(const EffectEvidence& effect) {
           text.error.empty() ? "" : text.error + with};
 }
 
+std::string named_with_size(const EffectEvidence& effect) {
+  EffectEvidence roughly = effect;
+  roughly.estimate.sd.clear();
+  return fmt::format("{} ({})", name_in_words(effect.estimate.effect), size_text_of(roughly).size);
+}
+
 std::string named_with_sizes(const std::vector<EffectEvidence>& effects) {
+  constexpr std::size_t kShort = 70;  // three lines of a narrow screen, with what it gains
   if (effects.size() == 1) {
     const EffectEvidence& only = effects.front();
-    return name_in_words(only.estimate.effect) + " \u2013 " +
-           typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most));
+    const std::string text = fmt::format(
+        "{} \u2013 {}", name_in_words(only.estimate.effect),
+        typeset(size_in_words(only.estimate.effect, only.range.least, only.range.most)));
+    return text.size() <= kShort ? text : named_with_size(only);
   }
   std::vector<std::string> names;
   for (const EffectEvidence& one : effects) {
-    EffectEvidence roughly = one;
-    roughly.estimate.sd.clear();
-    names.push_back(
-        fmt::format("{} ({})", name_in_words(one.estimate.effect), size_text_of(roughly).size));
+    names.push_back(named_with_size(one));
   }
   return listed(names);
 }
 
-std::string sized_in_words(const EffectEvidence& effect) {
+bool is_hardly_seen(const EffectEstimate& fitted) {
   constexpr double kClear = 2.0;  // standard errors
-  const SizeText size = size_text_of(effect);
-  std::string text = capitalised(effect_in_words(effect));
-  if (size.error.empty()) return text + ".";
-  text += fmt::format(" ({}, standard error {})", size.size, size.error);
-  const EffectEstimate& fitted = effect.estimate;
-  bool seen = false;
   for (std::size_t k = 0; k < fitted.sd.size(); ++k) {
-    seen = seen || std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k];
+    if (std::abs(fitted.effect.coefficients.at(k)) > kClear * fitted.sd[k]) return false;
   }
-  return text + (seen ? "." : "; beside the others it is hardly seen.");
+  return !fitted.sd.empty();
+}
+
+namespace {
+
+const char* doubt_of(const EffectEstimate& fitted) {
+  return is_hardly_seen(fitted) ? "; beside the others it is hardly seen" : "";
+}
+
+}  // namespace
+
+std::string how_large(const EffectEvidence& effect) {
+  constexpr std::size_t kMostCoefficients = 3;
+  const EffectEstimate& fitted = effect.estimate;
+  const std::size_t count = fitted.effect.coefficients.size();
+  if (count == 0 || count > kMostCoefficients || fitted.sd.size() != count) {
+    return sized_in_words(effect);
+  }
+  return fmt::format("{}: {}{}.", capitalised(name_in_words(fitted.effect)),
+                     typeset(in_words(fitted.effect, fitted.sd)), doubt_of(fitted));
+}
+
+std::string sized_in_words(const EffectEvidence& effect) {
+  const SizeText size = size_text_of(effect);
+  const std::string text = capitalised(effect_in_words(effect));
+  if (size.error.empty()) return text + ".";
+  return fmt::format("{} ({}, standard error {}){}.", text, size.size, size.error,
+                     doubt_of(effect.estimate));
 }
 
 std::string advised_drive(const Advice& advice) {
@@ -157,11 +193,29 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-std::string cause_note(const Effect& effect) {
+std::string what_it_is(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  return fmt::format("{}{}.", capitalised(name_in_words(effect)),
+                     entry == nullptr ? "" : ": " + std::string(entry->cause));
+}
+
+std::string what_helps(const Effect& effect) {
   const CatalogueEntry* entry = find_entry(effect.name);
   if (entry == nullptr) return "";
-  return fmt::format("{}: {}. What helps for good: {}.", capitalised(short_name(effect)),
-                     entry->cause, entry->remedy);
+  return fmt::format("Against {} for good: {}.", short_name(effect), entry->remedy);
+}
+
+std::vector<std::string> unseen_names(const Diagnosis& diagnosis) {
+  constexpr std::size_t kMost = 5;
+  std::vector<std::string> names;
+  for (const Unobservable& one : diagnosis.unobservable) {
+    if (names.size() == kMost) break;
+    names.push_back(name_in_words(one.effect));
+  }
+  if (diagnosis.unobservable.size() > kMost) {
+    names.push_back(fmt::format("{} more", diagnosis.unobservable.size() - kMost));
+  }
+  return names;
 }
 
 std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals) {
@@ -181,7 +235,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
 
 std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
   std::vector<std::string> notes;
-  if (diagnosis.under && diagnosis.under->noise.changed()) {
+  if (noise_is_wrong(diagnosis)) {
     notes.push_back(
         fmt::format("The noise is not as the model states it: {}. All is judged by the "
                     "noise as estimated; fit --noise and discover write it with --out.",

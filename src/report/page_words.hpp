@@ -14,22 +14,6 @@
 
 namespace trussmap {
 
-// The questions of the first screen.
-inline constexpr const char* kHowLarge = "How large?";
-inline constexpr const char* kHowSure = "How sure?";
-inline constexpr const char* kWhatElse = "What else could it be?";
-inline constexpr const char* kNext = "What to do next?";
-inline constexpr const char* kCause = "Where does it come from?";
-inline constexpr const char* kSeen = "What is ruled out?";
-inline constexpr const char* kBeside = "What else is there?";
-
-// Its figures.
-inline constexpr const char* kLegsEnd =
-    "legs (landmark to landmark) that no fit has seen end so far off";
-inline constexpr const char* kLegsEnded =
-    "legs (landmark to landmark) that no fit has seen ended so far off";
-inline constexpr const char* kLegsEndNow = "the same with the model found";
-
 /// The words of reports with the signs that a page has: "±" and "°".
 [[nodiscard]] std::string typeset(std::string text);
 
@@ -58,15 +42,24 @@ struct SizeText {
 };
 [[nodiscard]] SizeText size_text_of(const EffectEvidence& effect);
 
-/// One effect: "hard iron – the compass reads up to 2.9° too much or too little"; several: "hard
-/// iron (±2.9°) and wheelbase (2 %)".
+/// One effect, where that is short: "hard iron – the compass reads up to 2.9° too much or too
+/// little"; several: "hard iron (±2.9°) and wheelbase (2 %)".
 [[nodiscard]] std::string named_with_sizes(const std::vector<EffectEvidence>& effects);
+
+/// "hard iron (±2.9°)".
+[[nodiscard]] std::string named_with_size(const EffectEvidence& effect);
+
+/// Whether no coefficient is clearly other than 0.
+[[nodiscard]] bool is_hardly_seen(const EffectEstimate& fitted);
+
+/// "Both wheels are 2.0 ± 0.1 % larger per kg of payload.": the fitted coefficients, with their
+/// standard errors; at most, in these recordings, where they are many.
+[[nodiscard]] std::string how_large(const EffectEvidence& effect);
 
 /// "Hard iron: the compass reads up to 2.9° too much or too little (±2.91°, standard error 0.03°)."
 [[nodiscard]] std::string sized_in_words(const EffectEvidence& effect);
 
-/// "Without it legs end 21 cm off; with it 1.6 cm, as good as this robot's noise allows." Empty
-/// without held-out legs. `it`: "it", "them".
+/// "Legs end 21 cm off, 1.6 cm with it." Empty without held-out legs. `it`: "it", "them".
 [[nodiscard]] std::string gain_sentence(const Comparison& before, const Comparison& after,
                                         const std::string& it);
 
@@ -76,8 +69,13 @@ struct SizeText {
 /// How likely chance is, in a sentence.
 [[nodiscard]] std::string sure_text(double p, std::size_t tests);
 
-/// What makes an effect and what helps; empty beyond the catalogue.
-[[nodiscard]] std::string cause_note(const Effect& effect);
+/// "Hard iron: magnets and steel on the robot."; beyond the catalogue its name.
+[[nodiscard]] std::string what_it_is(const Effect& effect);
+/// "Against hard iron for good: calibrate the compass."; empty beyond the catalogue.
+[[nodiscard]] std::string what_helps(const Effect& effect);
+
+/// The first few effects that these recordings cannot show, and "3 more".
+[[nodiscard]] std::vector<std::string> unseen_names(const Diagnosis& diagnosis);
 
 /// "It could also be ...", or that it could not.
 [[nodiscard]] std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals);

@@ -60,33 +60,11 @@ ordered_json step_json(const WorkbenchLog& log, std::size_t k,
 /// The ladder of the steps, with what was predicted, and the floor that noise alone makes.
 Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
   std::vector<LadderStep> ladder;
-  ChartColumn predicted{"predicted [mm]"};
-  ChartColumn of{"step"};
   for (const std::size_t k : way) {
     const WorkbenchStep& step = log.steps[k];
-    // Names are places on an axis: an effect that was added twice has two.
-    std::string name = step_name(step);
-    const auto same = [&name](const LadderStep& one) { return one.name == name; };
-    while (std::any_of(ladder.begin(), ladder.end(), same)) name += " ";
-    ladder.push_back({name, step.arrival_rms, step.chi2, step.dof});
-    if (!step.predicted_rms) continue;
-    of.texts.push_back(name);
-    predicted.numbers.push_back(1e3 * *step.predicted_rms);
+    ladder.push_back({step_name(step), step.arrival_rms, step.chi2, step.dof, step.predicted_rms});
   }
-  Chart chart = ladder_chart("staircase", ladder);
-  const double floor = 1e3 * log.steps[way.back()].expected_rms;
-  chart.layers.push_back(
-      {LayerKind::upright, "noise alone", {{"noise alone [mm]", {floor}}}, "ink", 0.0, true});
-  if (!predicted.numbers.empty()) {
-    chart.layers.push_back({LayerKind::intervals,
-                            "as predicted",
-                            {of, predicted, {"", predicted.numbers}, {"", predicted.numbers}},
-                            "2"});
-  }
-  chart.caption +=
-      " The dashed line is what this robot's noise alone would leave; no effect goes "
-      "below it by more than chance.";
-  return chart;
+  return ladder_chart("staircase", ladder, log.steps[way.back()].expected_rms);
 }
 
 /// Held-out legs: how far off in all, the middle one, the worst.

@@ -65,23 +65,28 @@ class Windows {
 
 }  // namespace
 
-HorizonErrors horizon_errors(const FitState& fit) {
+std::vector<HorizonError> horizon_errors(const FitState& fit, const std::vector<double>& horizons) {
   constexpr int kBlocks = 5;
   const TimeBlocks blocks(fit.problem, kBlocks);
   const std::vector<Eigen::VectorXd> offsets = offsets_without_blocks(fit, blocks);
-  Windows after_10(10.0);
-  Windows after_30(30.0);
+  std::vector<Windows> windows(horizons.begin(), horizons.end());
   for (int block = 0; block < kBlocks; ++block) {
     const std::vector<ClearedRecording> clear = cleared(fit, offsets[idx(block)]);
     for (std::size_t s = 0; s < clear.size(); ++s) {
       const std::vector<double> nodes = node_times(fit, s);
       if (nodes.empty()) continue;
       const SessionPath reckoned = reckoned_path(clear[s], fit.model);
-      after_10.add(fit, s, nodes, blocks, block, reckoned);
-      after_30.add(fit, s, nodes, blocks, block, reckoned);
+      for (Windows& one : windows) one.add(fit, s, nodes, blocks, block, reckoned);
     }
   }
-  return {after_10.error(), after_30.error()};
+  std::vector<HorizonError> errors;
+  for (const Windows& one : windows) errors.push_back(one.error());
+  return errors;
+}
+
+HorizonErrors horizon_errors(const FitState& fit) {
+  const std::vector<HorizonError> errors = horizon_errors(fit, {10.0, 30.0});
+  return {errors[0], errors[1]};
 }
 
 }  // namespace trussmap

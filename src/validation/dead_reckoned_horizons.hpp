@@ -15,6 +15,8 @@
 
 #include "fit/fit_state.hpp"
 
+#include <vector>
+
 namespace trussmap {
 
 struct HorizonError {
@@ -29,5 +31,8 @@ struct HorizonErrors {
 
 /// The fit has paths.
 [[nodiscard]] HorizonErrors horizon_errors(const FitState& fit);
+/// One for each of these horizons, s.
+[[nodiscard]] std::vector<HorizonError> horizon_errors(const FitState& fit,
+                                                       const std::vector<double>& horizons);
 
 }  // namespace trussmap

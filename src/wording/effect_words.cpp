@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -83,7 +85,12 @@ std::string per_shape(const Shape& shape) {
   if (shape == "acceleration") return " per m/s^2";
   if (shape == "distance") return " per m driven";
   if (shape == "t") return " per s";
-  return " per unit of " + shape.text();
+  constexpr std::string_view kKilograms = "_kg";
+  const std::string text = shape.text();
+  if (shape.variables() == std::vector{text} && text.ends_with(kKilograms)) {
+    return " per kg of " + text.substr(0, text.size() - kKilograms.size());
+  }
+  return " per unit of " + text;
 }
 
 /// "each event turns ..." with the event named, where the shape is one.

@@ -38,7 +38,7 @@
     result.svg_shapes = parsed.querySelectorAll('path, line, text').length;
     result.svg_plain = !svg.includes('var(') && !svg.includes('<script');
     result.csv_rows = window.trussmap.csv(figure.id).split('\r\n').length - 1;
-    figure.querySelector('details').open = true;
+    figure.querySelector('.tools details').open = true;
     const [closer, , whole] = figure.querySelectorAll('button.zoom');
     if (whole) {
       const places = async () => {
@@ -57,6 +57,8 @@
   }
 
   async function check() {
+    for (const more of document.querySelectorAll('details.more')) more.open = true;
+    await new Promise(done => setTimeout(done, 50));
     const figures = [...document.querySelectorAll('figure.chart')];
     const charts = [];
     for (const figure of figures) charts.push(await checkChart(figure));

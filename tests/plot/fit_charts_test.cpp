@@ -62,6 +62,20 @@ TEST(QuantileChart, AHandfulOfErrorsIsNoSample) {
   EXPECT_EQ(five.layers[1].columns[0].size(), 5U);
 }
 
+TEST(LadderChart, HasTheFloorThatNoiseAloneLeaves) {
+  const std::vector<LadderStep> steps{
+      {"as given", 0.2, 100.0, 10}, {"+ drift", 0.1, 50.0, 10, 0.12}, {"+ drift", 0.05, 20.0, 10}};
+  const Chart chart = ladder_chart("ladder", steps, 0.015);
+  ASSERT_EQ(chart.layers.size(), 3U);  // bars, floor, predictions
+  EXPECT_EQ(chart.layers[1].name, "noise alone");
+  EXPECT_TRUE(chart.layers[1].dashed);
+  EXPECT_DOUBLE_EQ(chart.layers[1].columns[0].numbers.front(), 15.0);
+  EXPECT_EQ(chart.layers[2].columns[0].texts, std::vector<std::string>{"+ drift"});
+  EXPECT_DOUBLE_EQ(chart.layers[2].columns[1].numbers.front(), 120.0);
+  EXPECT_NE(chart.y.categories[1], chart.y.categories[2]);
+  EXPECT_EQ(ladder_chart("ladder", {steps[0]}).layers.size(), 1U);
+}
+
 TEST(TrussChart, TheSameForceHasTheSameColourOnEveryMap) {
   FittedMap map;
   map.landmarks = {{"A", {0, 0}, 1e-4 * Matrix2::Identity(), {}},

@@ -63,6 +63,25 @@ TEST(RouteChart, ColoursFromNothingToTheWorst) {
   EXPECT_NO_THROW(static_cast<void>(chart_json(chart)));
 }
 
+TEST(RouteChart, RingsThePlacesThatEffectsActAt) {
+  const Effect wide{"hard iron", Channel::compass, {"sin(heading)", "cos(heading)"}, {0.1, 0.1}};
+  Effect patch{"slippery patch", Channel::wheels, {}, {0.08}};
+  patch.shape.push_back(
+      Shape("(1+sign({r}^2-(x-{x})^2-(y-{y})^2))/2", {{"x", 1.5}, {"y", 2.0}, {"r", 0.7}}));
+  Chart chart = route_chart("map", "Map", triangle(), {}, 1.0);
+  const std::size_t before = chart.layers.size();
+  add_places(chart, {wide});
+  EXPECT_EQ(chart.layers.size(), before);
+  add_places(chart, {wide, patch});
+  ASSERT_EQ(chart.layers.size(), before + 1);
+  const ChartLayer& ring = chart.layers.back();
+  const std::vector<double> expected{1.5, 2.0, 0.7, 0.7, 0.0};
+  for (std::size_t c = 0; c < expected.size(); ++c) {
+    EXPECT_EQ(ring.columns[c].numbers, std::vector<double>{expected[c]});
+  }
+  EXPECT_NO_THROW(static_cast<void>(chart_json(chart)));
+}
+
 TEST(RouteChart, ManyRoutesAreOneNetBesideTheWorst) {
   FittedMap map;
   std::vector<LegMisfit> legs;

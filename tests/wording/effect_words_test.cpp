@@ -42,5 +42,12 @@ TEST(EffectWords, AWaveGoesRoundWithWhatIsInIt) {
   EXPECT_EQ(in_words(iron, {0.001, 0.001}).find("goes round"), std::string::npos);
 }
 
+TEST(EffectWords, ALoadIsInKilograms) {
+  const Effect load{"load on both wheels (payload_kg)", Channel::wheels, {"payload_kg"}, {0.002}};
+  EXPECT_TRUE(in_words(load, {0.0001}).ends_with(" per kg of payload")) << in_words(load, {0.0001});
+  const Effect lights{"load on both wheels (lights)", Channel::wheels, {"lights"}, {0.002}};
+  EXPECT_TRUE(in_words(lights, {0.0001}).ends_with(" per unit of lights"));
+}
+
 }  // namespace
 }  // namespace trussmap

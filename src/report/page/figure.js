@@ -174,14 +174,33 @@ export function showChart(figure, chart) {
   return entry;
 }
 
+/// Those whose place has another width than when they were drawn.
+export function drawAnew() {
+  for (const entry of charts) {
+    const width = entry.picture.clientWidth;
+    if (entry.view && width && Math.abs(width - entry.width) > 1) draw(entry);
+  }
+}
+
+/// Tables of the page itself can be saved, too.
+export function addTableTools() {
+  document.querySelectorAll('section .table').forEach((box, k) => {
+    if (box.closest('.chart')) return;
+    const cells = [...box.querySelectorAll('tr')].map(row =>
+        [...row.cells].map(cell => quoted(cell.textContent)).join(',') + '\r\n').join('');
+    const csv = make('button', {type: 'button', textContent: 'Save CSV'});
+    csv.setAttribute('aria-label', `Save the table "${box.getAttribute('aria-label')}" as CSV`);
+    csv.addEventListener('click', () => save(`table-${k + 1}.csv`, 'text/csv', cells));
+    box.after(make('p', {className: 'tools'}, csv));
+  });
+}
+
 /// Charts follow the width of the window.
 export function followWidth() {
   let waiting = 0;
   addEventListener('resize', () => {
     clearTimeout(waiting);
-    waiting = setTimeout(() => charts.forEach(entry => {
-      if (entry.view && Math.abs(entry.picture.clientWidth - entry.width) > 1) draw(entry);
-    }), 150);
+    waiting = setTimeout(drawAnew, 150);
   });
   addEventListener('scroll', () => { tip.hidden = true; }, {passive: true});
 }

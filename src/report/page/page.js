@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Draws the charts of a page, one after the other.
-import {charts, csvOf, followWidth, showChart, svgOf} from './figure.js';
+import {addTableTools, charts, csvOf, drawAnew, followWidth, showChart, svgOf} from './figure.js';
 import {notice} from './notice.js';
 
 /// The first chart at once, the others when the browser has painted it.
@@ -31,4 +31,9 @@ window.trussmap = {
   csv: id => csvOf(charts.find(entry => entry.chart.id === id).chart)
 };
 followWidth();
+/// What is closed has no width: its charts are drawn again when it opens.
+for (const more of document.querySelectorAll('details.more')) {
+  more.addEventListener('toggle', drawAnew);
+}
+addTableTools();
 beginAll();
