@@ -8,21 +8,18 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <memory>
+#include <optional>
 #include <random>
 #include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -34,7 +31,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-using asio::use_awaitable;
 using asio::ip::tcp;
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
@@ -46,6 +42,7 @@ constexpr int kMostConnections = 64;
 constexpr auto kSilence = 60s;
 constexpr auto kLook = 50ms;  // for events
 constexpr auto kHeartbeat = 10s;
+constexpr auto kRetry = 100ms;
 
 /// 128 bits that nobody can foresee.
 std::string secret() {
@@ -71,7 +68,7 @@ std::string_view text_of(const beast::string_view& text) {
 }  // namespace
 
 struct LocalServer::Listener {
-  explicit Listener(std::uint16_t port) : acceptor(context) {
+  explicit Listener(std::uint16_t port) : acceptor(context), again(context) {
     const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
     acceptor.open(here.protocol());
     acceptor.set_option(tcp::acceptor::reuse_address(true));
@@ -138,85 +135,11 @@ struct LocalServer::Listener {
     }
   }
 
-  asio::awaitable<void> send_events(beast::tcp_stream& stream, const Request& request) {
-    http::response<http::empty_body> head{http::status::ok, request.version()};
-    head.set(http::field::content_type, "text/event-stream");
-    head.set(http::field::cache_control, "no-store");
-    head.set("X-Content-Type-Options", "nosniff");
-    head.chunked(true);
-    http::response_serializer<http::empty_body> serializer{head};
-    stream.expires_after(kSilence);
-    co_await http::async_write_header(stream, serializer, use_awaitable);
-    asio::steady_timer timer(co_await asio::this_coro::executor);
-    std::string last;
-    auto said = std::chrono::steady_clock::now() - 1h;
-    while (true) {
-      std::string now = event();
-      const auto time = std::chrono::steady_clock::now();
-      if (now != last || time - said > kHeartbeat) {
-        const std::string text = fmt::format("data: {}\n\n", now);
-        stream.expires_after(kSilence);
-        co_await asio::async_write(stream, http::make_chunk(asio::buffer(text)), use_awaitable);
-        last = std::move(now);
-        said = time;
-      }
-      timer.expires_after(kLook);
-      co_await timer.async_wait(use_awaitable);
-    }
-  }
-
-  asio::awaitable<void> serve(tcp::socket socket) {
-    beast::tcp_stream stream(std::move(socket));
-    beast::flat_buffer buffer;
-    while (true) {
-      http::request_parser<http::string_body> parser;
-      parser.header_limit(kMostHeader);
-      parser.body_limit(kMostBody);
-      stream.expires_after(kSilence);
-      co_await http::async_read(stream, buffer, parser, use_awaitable);
-      const Request request = parser.release();
-      const bool allowed = is_allowed(request);
-      if (allowed && request.method() == http::verb::get && path_of(request) == "events") {
-        co_await send_events(stream, request);
-      }
-      const LocalReply refused{403, "text/plain", "not from here\n"};
-      const Response reply = response(request, allowed ? reply_to(request) : refused);
-      stream.expires_after(kSilence);
-      co_await http::async_write(stream, reply, use_awaitable);
-      if (reply.need_eof()) break;
-    }
-    beast::error_code ignored;
-    stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
-  }
-
-  /// A connection that breaks, says nothing or is no HTTP is closed, and that is all.
-  asio::awaitable<void> connection(tcp::socket socket) {
-    ++connections;
-    try {
-      co_await serve(std::move(socket));
-    } catch (const std::exception&) {
-    }
-    --connections;
-  }
-
-  asio::awaitable<void> accept() {
-    while (true) {
-      beast::error_code error;
-      tcp::socket socket = co_await acceptor.async_accept(
-          asio::make_strand(context), asio::redirect_error(use_awaitable, error));
-      if (error) {  // out of file descriptors: some become free
-        asio::steady_timer timer(context, 100ms);
-        co_await timer.async_wait(use_awaitable);
-        continue;
-      }
-      if (connections >= kMostConnections) continue;  // and so it is closed
-      const auto executor = socket.get_executor();
-      asio::co_spawn(executor, connection(std::move(socket)), asio::detached);
-    }
-  }
+  void accept();
 
   asio::io_context context;
   tcp::acceptor acceptor;
+  asio::steady_timer again;
   std::string host;
   std::string other_host;
   std::string token = secret();
@@ -224,6 +147,115 @@ struct LocalServer::Listener {
   std::function<LocalReply(const LocalRequest&)> answer;
   std::function<std::string()> event;
 };
+
+namespace {
+
+/// One connection: a request, its answer, the next; or events until it breaks. One that breaks,
+/// says nothing for long or is no HTTP is closed, and that is all.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(tcp::socket socket, LocalServer::Listener& listener)
+      : stream_(std::move(socket)), timer_(stream_.get_executor()), listener_(listener) {
+    ++listener_.connections;
+  }
+  ~Connection() { --listener_.connections; }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kMostHeader);
+    parser_->body_limit(kMostBody);
+    stream_.expires_after(kSilence);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](const beast::error_code& error, std::size_t) {
+                       if (!error) self->answer(self->parser_->release());
+                     });
+  }
+
+ private:
+  void answer(const Request& request) {
+    const bool allowed = listener_.is_allowed(request);
+    if (allowed && request.method() == http::verb::get && listener_.path_of(request) == "events") {
+      return begin_events(request);
+    }
+    const LocalReply refused{403, "text/plain", "not from here\n"};
+    response_ = listener_.response(request, allowed ? listener_.reply_to(request) : refused);
+    stream_.expires_after(kSilence);
+    http::async_write(stream_, response_,
+                      [self = shared_from_this()](const beast::error_code& error, std::size_t) {
+                        if (error) return;
+                        if (!self->response_.need_eof()) return self->read();
+                        beast::error_code ignored;
+                        self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+                      });
+  }
+
+  void begin_events(const Request& request) {
+    head_ = {http::status::ok, request.version()};
+    head_.set(http::field::content_type, "text/event-stream");
+    head_.set(http::field::cache_control, "no-store");
+    head_.set("X-Content-Type-Options", "nosniff");
+    head_.chunked(true);
+    serializer_.emplace(head_);
+    stream_.expires_after(kSilence);
+    http::async_write_header(
+        stream_, *serializer_,
+        [self = shared_from_this()](const beast::error_code& error, std::size_t) {
+          if (!error) self->look();
+        });
+  }
+
+  /// Sends what goes on where that has changed, or where nothing was said for long.
+  void look() {
+    std::string now = listener_.event();
+    const auto time = std::chrono::steady_clock::now();
+    if (now == last_ && time - said_ < kHeartbeat) return wait();
+    event_ = fmt::format("data: {}\n\n", now);
+    last_ = std::move(now);
+    said_ = time;
+    stream_.expires_after(kSilence);
+    asio::async_write(stream_, http::make_chunk(asio::buffer(event_)),
+                      [self = shared_from_this()](const beast::error_code& error, std::size_t) {
+                        if (!error) self->wait();
+                      });
+  }
+
+  void wait() {
+    timer_.expires_after(kLook);
+    timer_.async_wait([self = shared_from_this()](const beast::error_code& error) {
+      if (!error) self->look();
+    });
+  }
+
+  beast::tcp_stream stream_;
+  asio::steady_timer timer_;
+  LocalServer::Listener& listener_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  Response response_;
+  http::response<http::empty_body> head_;
+  std::optional<http::response_serializer<http::empty_body>> serializer_;
+  std::string event_;
+  std::string last_;
+  std::chrono::steady_clock::time_point said_;
+};
+
+}  // namespace
+
+void LocalServer::Listener::accept() {
+  acceptor.async_accept(asio::make_strand(context),
+                        [this](const beast::error_code& error, tcp::socket socket) {
+                          if (error) {  // out of file descriptors: some become free
+                            again.expires_after(kRetry);
+                            return again.async_wait([this](const beast::error_code&) { accept(); });
+                          }
+                          if (connections < kMostConnections) {  // else it is closed
+                            std::make_shared<Connection>(std::move(socket), *this)->read();
+                          }
+                          accept();
+                        });
+}
 
 LocalServer::LocalServer(std::uint16_t port) {
   try {
@@ -247,7 +279,7 @@ void LocalServer::run(const std::function<LocalReply(const LocalRequest&)>& answ
   constexpr int kThreads = 4;  // one that computes does not keep the others waiting
   listener_->answer = answer;
   listener_->event = event;
-  asio::co_spawn(listener_->context, listener_->accept(), asio::detached);
+  listener_->accept();
   std::vector<std::thread> threads;
   for (int k = 1; k < kThreads; ++k) threads.emplace_back([this] { listener_->context.run(); });
   listener_->context.run();

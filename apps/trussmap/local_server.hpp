@@ -48,8 +48,10 @@ class LocalServer {
   void run(const std::function<LocalReply(const LocalRequest&)>& answer,
            const std::function<std::string()>& event);
 
- private:
+  /// For the implementation's own use.
   struct Listener;
+
+ private:
   std::unique_ptr<Listener> listener_;
 };
 
