@@ -14,10 +14,9 @@
 #include <filesystem>
 #include <memory>
 #include <spawn.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
-
-extern char** environ;
 
 namespace trussmap::app {
 namespace {

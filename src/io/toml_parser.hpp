@@ -7,6 +7,8 @@
 // file or a header of such: it changes macros.
 #pragma once
 
+#include <cstdint>  // which toml++ takes to be there
+
 namespace trussmap {
 struct TomlAssertion {};
 }  // namespace trussmap

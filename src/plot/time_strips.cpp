@@ -93,11 +93,12 @@ std::optional<std::size_t> place_of(const Recording& recording, const std::strin
 std::vector<Chart> time_strips(const std::vector<Recording>& recordings) {
   std::vector<Chart> strips;
   if (recordings.empty()) return strips;
-  const RowValue speed = [](const Drive& drive, std::size_t row) {
+  const auto speed = [](const Drive& drive, std::size_t row) {
     return 0.5 * (drive.left[row] + drive.right[row]) / drive.duration(row);
   };
-  strips.push_back(chart_of("strip-speed", "speed [m/s]",
-                            strip_of(recordings, [&speed](const Recording&) { return speed; })));
+  strips.push_back(
+      chart_of("strip-speed", "speed [m/s]",
+               strip_of(recordings, [&speed](const Recording&) { return RowValue(speed); })));
   for (const Covariate& one : recordings.front().drive.covariates) {
     if (strips.size() == kMostStrips) break;
     const bool everywhere = std::all_of(

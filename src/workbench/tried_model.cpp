@@ -42,8 +42,8 @@ void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
 
 struct TriedModel::Tried {
   Tried(std::shared_ptr<const std::vector<Recording>> recordings_given, const Model& model,
-        DiagnoseOptions how, const std::function<void(TryingStage)>& progress)
-      : recordings(std::move(recordings_given)), options(std::move(how)) {
+        const DiagnoseOptions& how, const std::function<void(TryingStage)>& progress)
+      : recordings(std::move(recordings_given)), options(how) {
     say(progress, TryingStage::fitting);
     const ModelFit first = fit_model(*recordings, model, options.fit);
     say(progress, TryingStage::searching);
