@@ -371,7 +371,7 @@ const std::vector<CatalogueEntry>& catalogue() {
       {"compass lag",
        compass,
        {"turn_rate"},
-       "a compass that is read late",
+       "a compass that is read late, or early",
        "stamp its readings",
        "s",
        0.01,
