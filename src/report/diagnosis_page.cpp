@@ -37,7 +37,7 @@ std::vector<std::vector<LookAlike>> rivals_of(const Diagnosis& diagnosis) {
 std::string missing_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   const auto& effects = evidence.effects;
   const bool matters = diagnosis.findings.front().status == Status::missing;
-  const std::string text =
+  std::string text =
       fmt::format("{}: {}.", matters ? "Missing" : "Missing, but too small to matter",
                   named_with_rivals(effects, rivals_of(diagnosis)));
   const std::string it = effects.size() == 1 ? "it" : "them";

@@ -185,6 +185,7 @@ PageSection maps_section(const std::string& title, const std::vector<NamedModel>
   std::vector<Effect> placed;
   for (const EffectEvidence& one : effects) placed.push_back(one.estimate.effect);
   std::vector<std::vector<RouteError>> routes;
+  routes.reserve(models.size());
   double worst = 0.0;
   for (const NamedModel& one : models) {
     routes.push_back(route_errors(one.model.comparison.worst, one.model.map));
@@ -206,6 +207,7 @@ PageSection maps_section(const std::string& title, const std::vector<NamedModel>
 
 PageSection noise_section(const std::vector<NamedModel>& models) {
   std::vector<NamedSources> sources;
+  sources.reserve(models.size());
   for (const NamedModel& one : models) {
     sources.emplace_back(models.size() > 1 ? one.name : "", one.model.comparison.sources);
   }

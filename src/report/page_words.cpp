@@ -129,6 +129,7 @@ std::string named_with_sizes(const std::vector<EffectEvidence>& effects) {
     return text.size() <= kShort ? text : named_with_size(only);
   }
   std::vector<std::string> names;
+  names.reserve(effects.size());
   for (const EffectEvidence& one : effects) {
     names.push_back(named_with_size(one));
   }

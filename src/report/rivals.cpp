@@ -75,6 +75,7 @@ std::vector<std::string> rival_sentences(const Effect& effect, const std::vector
   if (!alike.empty() || near.empty()) sentences.push_back(rivals_note(effect, alike));
   if (near.empty()) return sentences;
   std::vector<std::string> names;
+  names.reserve(near.size());
   for (const Finding* one : near) {
     names.push_back(fmt::format("{} ({:.1f} mm)", name_in_words(one->effect),
                                 kMillimetres * one->held_out.arrival_rms));

@@ -80,6 +80,7 @@ std::vector<HorizonError> horizon_errors(const FitState& fit, const std::vector<
     }
   }
   std::vector<HorizonError> errors;
+  errors.reserve(windows.size());
   for (const Windows& one : windows) errors.push_back(one.error());
   return errors;
 }

@@ -86,7 +86,7 @@ std::string per_shape(const Shape& shape) {
   if (shape == "distance") return " per m driven";
   if (shape == "t") return " per s";
   constexpr std::string_view kKilograms = "_kg";
-  const std::string text = shape.text();
+  const std::string& text = shape.text();
   if (shape.variables() == std::vector{text} && text.ends_with(kKilograms)) {
     return " per kg of " + text.substr(0, text.size() - kKilograms.size());
   }
