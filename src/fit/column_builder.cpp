@@ -16,7 +16,7 @@ namespace {
 using Instant = ShapeContext::Instant;
 
 constexpr std::size_t kValuesKept = 24'000'000;  // numbers, of shapes
-constexpr std::size_t kBasesKept = 12'000'000;   // of channels
+constexpr std::size_t kAtOnce = 16;              // segments
 
 /// Shape and session (-1: all) of each of an effect's coefficients.
 struct Part {
@@ -70,7 +70,6 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   struct Driven {
     const std::vector<SegmentRow>* rows;
     std::vector<const std::vector<DrivePattern>*> patterns;
-    Matrix4 W;
     std::size_t first;
   };
   std::vector<Driven> driven;
@@ -87,9 +86,9 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
       const std::vector<SegmentRow>& rows = problem.segments[one.source];
       const std::size_t first = segment_rows_->size();
       segments_.push_back(
-          {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false});
+          {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false, -W});
       segment_rows_->resize(first + rows.size());
-      driven.push_back({&rows, std::move(patterns), W, first});
+      driven.push_back({&rows, std::move(patterns), first});
     } else if (one.session >= 0 && one.kind != MeasurementKind::loop) {
       const ViewPattern view = view_of(border, offsets, one);
       const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
@@ -103,22 +102,26 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     const Driven& one = driven[k];
     const std::vector<Matrix4> influences = row_influences(*one.rows, one.patterns, offsets);
     for (std::size_t row = 0; row < influences.size(); ++row) {
-      (*segment_rows_)[one.first + row] = {(*one.rows)[row].row, -(one.W * influences[row])};
+      const Matrix4& I = influences[row];
+      (*segment_rows_)[one.first + row] = {(*one.rows)[row].row,
+                                           I.block<2, 1>(0, 0),
+                                           I.block<2, 1>(0, 2),
+                                           I(2, 2),
+                                           I(3, 2),
+                                           I(3, 3)};
     }
   });
   take_training_segments();
 }
 
-/// Of a gyro's numbers only the excess counts: it stands in the first column.
 void ColumnBuilder::add_gyro(const RecordingProblem& problem, const Measurement& one,
                              const Matrix4& W) {
   const std::vector<SegmentRow>& rows = problem.segments[one.source];
   const std::vector<Vector4>& weights = problem.gyro_weights[one.source];
-  Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, true};
+  Segment segment{rows_, one.rows, idx(one.session), segment_rows_->size(), 0, 0, 0, true, -W};
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    Matrix4 influence = Matrix4::Zero();
-    influence.col(0) = -(W * (rows[row].part * weights[row]));
-    segment_rows_->push_back({rows[row].row, influence});
+    const Vector4 excess = rows[row].part * weights[row];
+    segment_rows_->push_back({rows[row].row, excess.head<2>(), excess.tail<2>()});
   }
   segment.row_end = segment_rows_->size();
   segments_.push_back(segment);
@@ -127,7 +130,6 @@ void ColumnBuilder::add_gyro(const RecordingProblem& problem, const Measurement&
 ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
   ColumnBuilder result = *this;
   result.joint_ = seconds;
-  result.bases_.clear();
   result.thinned_.clear();
   result.values_.clear();
   result.largest_.clear();
@@ -136,7 +138,6 @@ ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
 }
 
 void ColumnBuilder::forget() {
-  bases_.clear();
   thinned_.clear();
   values_.clear();
 }
@@ -182,33 +183,22 @@ RowVariables ColumnBuilder::thinned(std::size_t session, Instant at) const {
 std::size_t ColumnBuilder::make_ready(const std::vector<Job>& jobs, std::size_t begin) {
   const std::size_t rows = std::max<std::size_t>(1, training_segments_.size());
   const std::size_t most_shapes = kValuesKept / rows;
-  const std::size_t most_bases = kBasesKept / (4 * rows);
   std::map<Evaluation, const Effect*> shapes;
-  std::set<Channel> channels;
   std::size_t end = begin;
   for (; end < jobs.size(); ++end) {
     const Job& job = jobs[end];
-    const Channel channel = job.effect.channel;
     std::map<Evaluation, const Effect*> own;
-    for (const Instant at : instants_of(channel)) {
+    for (const Instant at : instants_of(job.effect.channel)) {
       const Evaluation one(job.shape, at);
       if (!shapes.contains(one)) own.emplace(one, &job.effect);
     }
-    const bool own_basis = acts_on(channel) != ActsOn::views && !channels.contains(channel);
-    const bool fits = shapes.size() + own.size() <= most_shapes &&
-                      channels.size() + (own_basis ? 1 : 0) <= most_bases;
-    if (!fits && end > begin) break;
+    if (shapes.size() + own.size() > most_shapes && end > begin) break;
     shapes.merge(own);
-    if (own_basis) channels.insert(channel);
   }
   if (values_.size() + shapes.size() > most_shapes) {
     std::erase_if(values_, [&shapes](const auto& one) { return !shapes.contains(one.first); });
   }
-  if (bases_.size() + channels.size() > most_bases) {
-    std::erase_if(bases_, [&channels](const auto& one) { return !channels.contains(one.first); });
-  }
   evaluate(shapes);
-  make_bases(channels);
   return end;
 }
 
@@ -248,50 +238,61 @@ ColumnBuilder::Values ColumnBuilder::evaluated(const Evaluation& one) const {
   return result;
 }
 
-void ColumnBuilder::make_bases(const std::set<Channel>& wanted) {
-  std::vector<Channel> missing;
-  for (const Channel channel : wanted) {
-    if (!bases_.contains(channel)) missing.push_back(channel);
+void ColumnBuilder::work_out(const Segment& segment, const std::vector<Channel>& of,
+                             std::vector<Eigen::Matrix4Xd>& units) const {
+  for (Eigen::Matrix4Xd& one : units) {
+    one.setZero(4, static_cast<Eigen::Index>(segment.end - segment.begin));
   }
-  std::vector<Eigen::Matrix4Xd> bases(missing.size());
-  parallel_for(missing.size(), [&](std::size_t k) { bases[k] = basis(missing[k]); });
-  for (std::size_t k = 0; k < missing.size(); ++k) {
-    bases_.emplace(missing[k], std::move(bases[k]));
-  }
-}
-
-Eigen::Matrix4Xd ColumnBuilder::basis(Channel channel) const {
-  Eigen::Matrix4Xd basis =
-      Eigen::Matrix4Xd::Zero(4, static_cast<Eigen::Index>(training_segments_.size()));
-  for (const Segment& segment : segments_) {
-    for (std::size_t k = segment.begin; k < segment.end; ++k) {
-      for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
-        const Row& row = (*segment_rows_)[at];
-        const DrivePattern unit = drive_pattern(
-            channel, 1.0, context_.travel(segment.session, row.row), context_.robot().wheelbase);
-        basis.col(static_cast<Eigen::Index>(k)).noalias() +=
-            segment.gyro ? Vector4(unit.excess * row.influence.col(0))
-                         : Vector4(row.influence *
-                                   Vector4(unit.advance, unit.slip, unit.turn, unit.compass));
+  const double wheelbase = context_.robot().wheelbase;
+  for (std::size_t k = segment.begin; k < segment.end; ++k) {
+    const auto column = static_cast<Eigen::Index>(k - segment.begin);
+    for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
+      const Row& row = (*segment_rows_)[at];
+      const RowTravel travel = context_.travel(segment.session, row.row);
+      for (std::size_t c = 0; c < of.size(); ++c) {
+        const DrivePattern unit = drive_pattern(of[c], 1.0, travel, wheelbase);
+        units[c].col(column) +=
+            segment.gyro ? Vector4(unit.excess * row.excess()) : row.times(unit);
       }
     }
   }
-  return basis;
 }
 
-void ColumnBuilder::add_drives(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const {
-  const Channel channel = job.effect.channel;
-  const Eigen::Matrix4Xd& units = bases_.at(channel);
-  const Values& f = values_.at({job.shape, instants_of(channel).front()});
-  for (const Segment& segment : segments_) {
-    if (job.session >= 0 && segment.session != idx(job.session)) continue;
-    const std::vector<double>& here = f[segment.session];
-    Vector4 sum = Vector4::Zero();
-    for (std::size_t k = segment.begin; k < segment.end; ++k) {
-      sum += here[training_segments_[k].place] * units.col(static_cast<Eigen::Index>(k));
-    }
-    for (int row = 0; row < segment.rows; ++row) column[segment.first_row + row] = sum[row];
+void ColumnBuilder::add_drives(std::span<const Job> jobs) const {
+  struct Summed {
+    const Job& job;
+    const Values& f;
+    std::size_t channel;
+  };
+  std::vector<Channel> channels;
+  std::vector<Summed> sums;
+  for (const Job& job : jobs) {
+    const Channel channel = job.effect.channel;
+    if (acts_on(channel) == ActsOn::views) continue;
+    const auto found = std::find(channels.begin(), channels.end(), channel);
+    const auto place = static_cast<std::size_t>(found - channels.begin());
+    if (found == channels.end()) channels.push_back(channel);
+    sums.push_back({job, values_.at({job.shape, instants_of(channel).front()}), place});
   }
+  if (sums.empty()) return;
+  parallel_ranges(segments_.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
+    std::vector<Eigen::Matrix4Xd> units(channels.size());
+    for (std::size_t s = first; s < last; ++s) {
+      const Segment& segment = segments_[s];
+      work_out(segment, channels, units);
+      for (const Summed& one : sums) {
+        if (one.job.session >= 0 && segment.session != idx(one.job.session)) continue;
+        const std::vector<double>& here = one.f[segment.session];
+        Vector4 sum = Vector4::Zero();
+        for (std::size_t k = segment.begin; k < segment.end; ++k) {
+          sum += here[training_segments_[k].place] *
+                 units[one.channel].col(static_cast<Eigen::Index>(k - segment.begin));
+        }
+        one.job.columns.col(one.job.column).segment(segment.first_row, segment.rows) =
+            (segment.W * sum).head(segment.rows);
+      }
+    }
+  });
 }
 
 void ColumnBuilder::add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const {
@@ -323,13 +324,11 @@ std::vector<Eigen::MatrixXd> ColumnBuilder::columns(std::span<const Effect> effe
   }
   for (std::size_t begin = 0; begin < jobs.size();) {
     const std::size_t end = make_ready(jobs, begin);
+    add_drives(std::span(jobs).subspan(begin, end - begin));
     parallel_for(end - begin, [&](std::size_t k) {
       const Job& job = jobs[begin + k];
-      if (acts_on(job.effect.channel) == ActsOn::views) {
-        add_views(job, job.columns.col(job.column));
-      } else {
-        add_drives(job, job.columns.col(job.column));
-      }
+      if (acts_on(job.effect.channel) != ActsOn::views) return;
+      add_views(job, job.columns.col(job.column));
     });
     begin = end;
   }

@@ -3,20 +3,21 @@
 //
 // Whitened columns of any number of effects at one fit, fast: channel x shape comes apart.
 //
-//   column = - sum over the rows k of a segment  f_k  W I_k u_k        (a view: W V u f)
+//   column = - W sum over the rows k of a segment  f_k  I_k u_k        (a view: W V u f)
 //
 //   I_k   what one unit of motion in row k does to the segment (row_influences)
 //   u_k   what one unit of the channel adds to row k (drive_pattern): the same for every shape
 //   f_k   the shape there: the same for every channel
 //
-// Channels and shapes are each worked out once. Cost of a further column: four products a row.
+// Shapes are worked out once and kept, as many as there is room for; I u once per channel and
+// segment, for all columns that are asked for together. Cost of a further column: four products a
+// row.
 #pragma once
 
 #include "fit/effect_columns.hpp"
 
 #include <map>
 #include <memory>
-#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -50,9 +51,23 @@ class ColumnBuilder {
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
 
  private:
+  /// The entries of I that are not 0 or said by others; of a gyro's numbers those of an excess.
   struct Row {
-    std::size_t row = 0;                  ///< of the drive
-    Matrix4 influence = Matrix4::Zero();  ///< whitened
+    std::size_t row = 0;  ///< of the drive
+    Vector2 along = Vector2::Zero();
+    Vector2 by_turn = Vector2::Zero();
+    double part = 0.0;
+    double reading_by_turn = 0.0;
+    double reading = 0.0;
+
+    [[nodiscard]] Vector4 times(const DrivePattern& unit) const {
+      return {along.x() * unit.advance - along.y() * unit.slip + by_turn.x() * unit.turn,
+              along.y() * unit.advance + along.x() * unit.slip + by_turn.y() * unit.turn,
+              part * unit.turn, reading_by_turn * unit.turn + reading * unit.compass};
+    }
+    [[nodiscard]] Vector4 excess() const {
+      return {along.x(), along.y(), by_turn.x(), by_turn.y()};
+    }
   };
   /// Rows of a segment that share a shape's value.
   struct Stretch {
@@ -69,6 +84,7 @@ class ColumnBuilder {
     std::size_t begin = 0;  ///< of training_segments_
     std::size_t end = 0;
     bool gyro = false;  ///< a gyro's numbers
+    Matrix4 W = Matrix4::Zero();
   };
   struct View {
     Eigen::Index first_row = 0;
@@ -95,15 +111,17 @@ class ColumnBuilder {
   void take_training_segments();
   void take_training_segments(Segment& segment);
   [[nodiscard]] RowVariables thinned(std::size_t session, ShapeContext::Instant at) const;
-  /// Works out channels and shapes for jobs from `begin` on, as many as may be kept; returns the
-  /// end of these jobs.
+  /// Works out shapes for jobs from `begin` on, as many as may be kept; returns the end of these
+  /// jobs.
   std::size_t make_ready(const std::vector<Job>& jobs, std::size_t begin);
   /// Shapes, each with an effect that asks for it.
   void evaluate(const std::map<Evaluation, const Effect*>& wanted);
-  void make_bases(const std::set<Channel>& wanted);
-  [[nodiscard]] Eigen::Matrix4Xd basis(Channel channel) const;
   [[nodiscard]] Values evaluated(const Evaluation& one) const;
-  void add_drives(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const;
+  /// Those of the jobs that act on drives.
+  void add_drives(std::span<const Job> jobs) const;
+  /// I u of a segment's stretches, per channel: 4 x stretches each.
+  void work_out(const Segment& segment, const std::vector<Channel>& of,
+                std::vector<Eigen::Matrix4Xd>& units) const;
   void add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const;
 
   const ShapeContext& context_;
@@ -114,7 +132,6 @@ class ColumnBuilder {
   std::vector<std::vector<std::size_t>> middles_;  ///< per session, rows that stand for a stretch
   std::vector<Segment> segments_;
   std::vector<View> views_;
-  std::map<Channel, Eigen::Matrix4Xd> bases_;
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
   std::map<Evaluation, Values> values_;
   /// |f| at most, spikes apart, per session; outlives the values.
