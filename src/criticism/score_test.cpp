@@ -59,6 +59,9 @@ ScoreTest::ScoreTest(const FitState& fit)
       Builders{ColumnBuilder(clean_->context, clean_->problem, clean_->border, offsets_of(fit),
                              clean_->state, weights),
                std::nullopt});
+  // Rows are not asked for again: of a week's drive they are a million.
+  clean_->problem.segments = {};
+  clean_->problem.gyro_weights = {};
   residuals_ = free_of_map(system_->residuals());
   present_ = Eigen::MatrixXd(residuals_.size(), 0);
   condition_on(clean_system_->border());

@@ -113,7 +113,7 @@ class ScoreTest {
   [[nodiscard]] Eigen::MatrixXd landmark_rows(const Eigen::MatrixXd& nodes) const;
 
   const FitState& fit_;
-  std::shared_ptr<const NoiseFree> clean_;
+  std::shared_ptr<NoiseFree> clean_;  ///< but for the rows of its problem
   std::shared_ptr<RecordingSystem> system_;
   mutable std::shared_ptr<const FittedRows> fitted_;  ///< made when first asked for
   std::shared_ptr<RecordingSystem> clean_system_;

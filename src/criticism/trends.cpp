@@ -203,6 +203,7 @@ std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
       effect.shape = variable.shapes;
       of.push_back(k);
     }
+    tests.forget();  // the last variable's shapes
     const Eigen::MatrixXd products = mean_products(variable.shapes, tests.context());
     visit_scores(tests, candidates, Resolution::exact, [&](std::size_t k, const Score& score) {
       if (score.dof == 0) return;

@@ -16,6 +16,7 @@ namespace {
 using Instant = ShapeContext::Instant;
 
 constexpr std::size_t kValuesKept = 24'000'000;  // numbers, of shapes
+constexpr std::size_t kBasesKept = 4'000'000;    // of channels
 constexpr std::size_t kAtOnce = 16;              // segments
 
 /// Shape and session (-1: all) of each of an effect's coefficients.
@@ -130,6 +131,7 @@ void ColumnBuilder::add_gyro(const RecordingProblem& problem, const Measurement&
 ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
   ColumnBuilder result = *this;
   result.joint_ = seconds;
+  result.bases_.clear();
   result.thinned_.clear();
   result.values_.clear();
   result.largest_.clear();
@@ -138,6 +140,7 @@ ColumnBuilder ColumnBuilder::coarsened(double seconds) const {
 }
 
 void ColumnBuilder::forget() {
+  bases_.clear();
   thinned_.clear();
   values_.clear();
 }
@@ -154,14 +157,15 @@ void ColumnBuilder::take_training_segments(Segment& segment) {
   std::vector<std::size_t>& middles = middles_[segment.session];
   segment.begin = training_segments_.size();
   for (std::size_t k = segment.row_begin; k < segment.row_end;) {
-    Stretch stretch{rows[k].row, k, k + 1};
+    Stretch stretch{static_cast<std::uint32_t>(rows[k].row), static_cast<std::uint32_t>(k),
+                    static_cast<std::uint32_t>(k + 1)};
     if (joint_ > 0.0) {
       double time = drive.duration(rows[k].row);
       for (; stretch.end < segment.row_end; ++stretch.end) {
         time += drive.duration(rows[stretch.end].row);
         if (time > joint_) break;
       }
-      stretch.place = middles.size();
+      stretch.place = static_cast<std::uint32_t>(middles.size());
       middles.push_back(rows[(stretch.begin + stretch.end) / 2].row);
     }
     training_segments_.push_back(stretch);
@@ -238,27 +242,41 @@ ColumnBuilder::Values ColumnBuilder::evaluated(const Evaluation& one) const {
   return result;
 }
 
-void ColumnBuilder::work_out(const Segment& segment, const std::vector<Channel>& of,
-                             std::vector<Eigen::Matrix4Xd>& units) const {
-  for (Eigen::Matrix4Xd& one : units) {
-    one.setZero(4, static_cast<Eigen::Index>(segment.end - segment.begin));
-  }
+void ColumnBuilder::work_out(const Segment& segment,
+                             std::span<const std::pair<Channel, double*>> wanted) const {
   const double wheelbase = context_.robot().wheelbase;
   for (std::size_t k = segment.begin; k < segment.end; ++k) {
-    const auto column = static_cast<Eigen::Index>(k - segment.begin);
+    const std::size_t first = 4 * (k - segment.begin);
+    for (const auto& [channel, columns] : wanted) std::fill_n(columns + first, 4, 0.0);
     for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
       const Row& row = (*segment_rows_)[at];
       const RowTravel travel = context_.travel(segment.session, row.row);
-      for (std::size_t c = 0; c < of.size(); ++c) {
-        const DrivePattern unit = drive_pattern(of[c], 1.0, travel, wheelbase);
-        units[c].col(column) +=
+      for (const auto& [channel, columns] : wanted) {
+        const DrivePattern unit = drive_pattern(channel, 1.0, travel, wheelbase);
+        Eigen::Map<Vector4>(columns + first) +=
             segment.gyro ? Vector4(unit.excess * row.excess()) : row.times(unit);
       }
     }
   }
 }
 
-void ColumnBuilder::add_drives(std::span<const Job> jobs) const {
+bool ColumnBuilder::make_room(const std::vector<Channel>& channels) {
+  const std::size_t numbers = 4 * std::max<std::size_t>(1, training_segments_.size());
+  const std::size_t most = kBasesKept / numbers;
+  if (channels.size() > most) return false;
+  const auto wanted = [&channels](Channel channel) {
+    return std::find(channels.begin(), channels.end(), channel) != channels.end();
+  };
+  std::size_t further = channels.size();
+  for (const auto& one : bases_) further -= wanted(one.first) ? 1U : 0U;
+  if (bases_.size() + further > most) {
+    std::erase_if(bases_, [&wanted](const auto& one) { return !wanted(one.first); });
+  }
+  for (const Channel channel : channels) bases_[channel];
+  return true;
+}
+
+void ColumnBuilder::add_drives(std::span<const Job> jobs) {
   struct Summed {
     const Job& job;
     const Values& f;
@@ -275,18 +293,35 @@ void ColumnBuilder::add_drives(std::span<const Job> jobs) const {
     sums.push_back({job, values_.at({job.shape, instants_of(channel).front()}), place});
   }
   if (sums.empty()) return;
+  const bool kept = make_room(channels);
+  std::vector<Eigen::Matrix4Xd*> bases;
+  std::vector<bool> missing(channels.size(), true);
+  for (std::size_t c = 0; kept && c < channels.size(); ++c) {
+    bases.push_back(&bases_.at(channels[c]));
+    missing[c] = bases[c]->cols() == 0;
+    bases[c]->resize(4, static_cast<Eigen::Index>(training_segments_.size()));
+  }
   parallel_ranges(segments_.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
-    std::vector<Eigen::Matrix4Xd> units(channels.size());
+    std::vector<double> scratch;
+    std::vector<double*> units(channels.size());
+    std::vector<std::pair<Channel, double*>> wanted;
     for (std::size_t s = first; s < last; ++s) {
       const Segment& segment = segments_[s];
-      work_out(segment, channels, units);
+      const std::size_t numbers = 4 * (segment.end - segment.begin);
+      if (!kept) scratch.resize(std::max(scratch.size(), numbers * channels.size()));
+      wanted.clear();
+      for (std::size_t c = 0; c < channels.size(); ++c) {
+        units[c] = kept ? bases[c]->data() + 4 * segment.begin : scratch.data() + c * numbers;
+        if (missing[c]) wanted.emplace_back(channels[c], units[c]);
+      }
+      if (!wanted.empty()) work_out(segment, wanted);
       for (const Summed& one : sums) {
         if (one.job.session >= 0 && segment.session != idx(one.job.session)) continue;
         const std::vector<double>& here = one.f[segment.session];
+        const double* unit = units[one.channel];
         Vector4 sum = Vector4::Zero();
-        for (std::size_t k = segment.begin; k < segment.end; ++k) {
-          sum += here[training_segments_[k].place] *
-                 units[one.channel].col(static_cast<Eigen::Index>(k - segment.begin));
+        for (std::size_t k = segment.begin; k < segment.end; ++k, unit += 4) {
+          sum += here[training_segments_[k].place] * Eigen::Map<const Vector4>(unit);
         }
         one.job.columns.col(one.job.column).segment(segment.first_row, segment.rows) =
             (segment.W * sum).head(segment.rows);

@@ -9,13 +9,14 @@
 //   u_k   what one unit of the channel adds to row k (drive_pattern): the same for every shape
 //   f_k   the shape there: the same for every channel
 //
-// Shapes are worked out once and kept, as many as there is room for; I u once per channel and
-// segment, for all columns that are asked for together. Cost of a further column: four products a
-// row.
+// Shapes and the I u of channels are worked out once and kept, as many as there is room for; where
+// there is none for I u, it is worked out segment by segment for all columns that are asked for
+// together. Cost of a further column: four products a row.
 #pragma once
 
 #include "fit/effect_columns.hpp"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -71,9 +72,9 @@ class ColumnBuilder {
   };
   /// Rows of a segment that share a shape's value.
   struct Stretch {
-    std::size_t place = 0;  ///< of the value, in its session
-    std::size_t begin = 0;  ///< of the rows
-    std::size_t end = 0;
+    std::uint32_t place = 0;  ///< of the value, in its session
+    std::uint32_t begin = 0;  ///< of the rows
+    std::uint32_t end = 0;
   };
   struct Segment {
     Eigen::Index first_row = 0;
@@ -118,10 +119,11 @@ class ColumnBuilder {
   void evaluate(const std::map<Evaluation, const Effect*>& wanted);
   [[nodiscard]] Values evaluated(const Evaluation& one) const;
   /// Those of the jobs that act on drives.
-  void add_drives(std::span<const Job> jobs) const;
-  /// I u of a segment's stretches, per channel: 4 x stretches each.
-  void work_out(const Segment& segment, const std::vector<Channel>& of,
-                std::vector<Eigen::Matrix4Xd>& units) const;
+  void add_drives(std::span<const Job> jobs);
+  /// Columns of I u, one per stretch of a segment, for each channel to where it says.
+  void work_out(const Segment& segment, std::span<const std::pair<Channel, double*>> wanted) const;
+  /// Whether there is room for so many channels' I u; those that are not there yet are empty then.
+  bool make_room(const std::vector<Channel>& channels);
   void add_views(const Job& job, Eigen::Ref<Eigen::VectorXd> column) const;
 
   const ShapeContext& context_;
@@ -132,6 +134,7 @@ class ColumnBuilder {
   std::vector<std::vector<std::size_t>> middles_;  ///< per session, rows that stand for a stretch
   std::vector<Segment> segments_;
   std::vector<View> views_;
+  std::map<Channel, Eigen::Matrix4Xd> bases_;  ///< I u per stretch
   std::map<ShapeContext::Instant, std::vector<RowVariables>> thinned_;
   std::map<Evaluation, Values> values_;
   /// |f| at most, spikes apart, per session; outlives the values.

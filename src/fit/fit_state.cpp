@@ -79,7 +79,7 @@ class Fitter {
       }
       if (fit_.settled) break;
     }
-    if (options_.paths && (fit_.model.effects.empty() || only_common())) lay_paths();
+    if (options_.paths && !columns_see_paths()) lay_paths();
     report();
     return std::move(fit_);
   }
@@ -266,7 +266,7 @@ class Fitter {
                                         : common_error_columns(recordings, robot);
     RecordingStart start = start_of(problem, common, how);
     if (!common.empty()) take_common_errors(start.coefficients);
-    if (!as_fitted || needs_paths()) {
+    if (!as_fitted || columns_see_paths()) {
       fit_.paths = fitted_paths(recordings, robot, problem, {}, {}, start.state);
     }
     if (as_fitted) {
@@ -291,8 +291,8 @@ class Fitter {
     return fit_.common_errors > 0 && fit_.common_errors == fit_.model.effects.size();
   }
 
-  [[nodiscard]] bool needs_paths() const {
-    return options_.paths || (!fit_.model.effects.empty() && !only_common());
+  [[nodiscard]] bool columns_see_paths() const {
+    return !fit_.model.effects.empty() && !only_common();
   }
 
   [[nodiscard]] bool has_nodes_of(const FitState& other) const {
@@ -458,7 +458,7 @@ class Fitter {
   void take_paths() {
     // Without effects nothing depends on the path but what asks for it afterwards.
     const std::vector<SessionPath> before = std::move(fit_.paths);
-    if (!fit_.model.effects.empty() && !only_common()) lay_paths();
+    if (columns_see_paths()) lay_paths();
     offset_change_ = relinearised();
     moved_ = 0.0;
     for (std::size_t s = 0; s < std::min(before.size(), fit_.paths.size()); ++s) {
