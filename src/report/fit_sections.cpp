@@ -183,6 +183,7 @@ PageSection gain_section(const NamedModel& before, const NamedModel& after, doub
 PageSection maps_section(const std::string& title, const std::vector<NamedModel>& models,
                          const std::vector<EffectEvidence>& effects) {
   std::vector<Effect> placed;
+  placed.reserve(effects.size());
   for (const EffectEvidence& one : effects) placed.push_back(one.estimate.effect);
   std::vector<std::vector<RouteError>> routes;
   routes.reserve(models.size());

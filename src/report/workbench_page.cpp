@@ -76,7 +76,7 @@ constexpr const char* kBody = R"html(<header id="head">
 <ol id="steps"></ol>
 <h3>Noise</h3>
 <div id="noise"></div>
-<label id="handle-line">If it were <input type="range" id="handle" min="0" max="3" step="0.05" value="0"> <output id="handle-factor">1</output> times as large:</label>
+<label id="handle-line">If the noise were <input type="range" id="handle" min="0" max="3" step="0.05" value="0"> <output id="handle-factor">1</output> times as large as believed:</label>
 <p id="handle-words" aria-live="polite"></p>
 </section>
 <section id="time" aria-label="In time"></section>
@@ -90,9 +90,9 @@ constexpr const char* kBody = R"html(<header id="head">
 }  // namespace
 
 std::string workbench_page(const PageRuntime& runtime) {
-  const std::string style = fmt::format(
-      "\n{}.tall-320 {{ min-height: 320px; }}\n.tall-260 {{ min-height: 260px; }}\n",
-      runtime.style);
+  const std::string style =
+      fmt::format("\n{}.tall-320 {{ min-height: 320px; }}\n.tall-260 {{ min-height: 260px; }}\n",
+                  runtime.style);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

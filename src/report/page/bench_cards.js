@@ -66,7 +66,8 @@ export function showOn(list, state, does) {
 
 function candidate(one, does) {
   const item = card(one.name, [
-    make('span', {className: 'save', textContent: saving(one.saves_mm)}),
+    make('span', {className: 'save', textContent:
+      one.status === 'missing' && one.saves_mm < 0 ? 'when fitted' : saving(one.saves_mm)}),
     act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;

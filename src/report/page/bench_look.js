@@ -25,6 +25,9 @@ export const request = () => looked && {...looked.ask};
 
 function saves(reply) {
   if (reply.leaves_mm === null) return '';
+  if (state.on.length && looked.card?.status === 'missing' && reply.leaves_mm > reply.now_mm) {
+    return 'How much it saves shows when it is fitted: what the model has already changes with it.';
+  }
   return `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
          `\u03c7\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
 }
@@ -37,6 +40,10 @@ function showWords(reply) {
     reply.formula, reply.does && `Acts on ${reply.does}.`, reply.cause && `Comes from ${reply.cause}.`,
     reply.remedy && `What helps for good: ${reply.remedy}.`].filter(Boolean).join(' \u00b7 ');
   by('add').hidden = looked.on;
+  // Sliders and the duel are of what is pinned.
+  const passing = looked.name !== pinned?.name;
+  by('sliders').hidden = passing;
+  by('duel-line').classList.toggle('passing', passing);
   const rival = reply.rivals[0];
   by('duel-words').textContent = !rival ? ''
       : (rival.leaves_mm === null ? '' : `${rival.name} would leave ${rival.leaves_mm.toFixed(1)} mm. `) +

@@ -17,7 +17,7 @@ function words(factor, reply) {
   }
   const missing = alarms.filter(one => one.status === 'missing');
   const gone = missing.filter(one => lost.includes(one)).map(one => one.name);
-  if (!alarms.length) return 'There is no alarm that it could silence.';
+  if (!alarms.length) return 'No effect is more than chance as it is.';
   return `${alarms.length - lost.length} of ${alarms.length} effects would still be more than chance` +
       (!missing.length ? '.' : gone.length ? `; so much noise would swallow ${gone.join(' and ')}.`
                                            : `; ${missing.map(one => one.name).join(' and ')} would still be seen.`);

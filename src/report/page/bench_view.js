@@ -56,7 +56,7 @@ function showSteps(state, busy, go) {
       textContent: step.name});
     button.dataset.step = step.step;
     button.addEventListener('click', () => go(step.step));
-    const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)})`;
+    const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
     const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
     const item = make('li', {}, button, ` ${step.mm.toFixed(1)} mm${foretold}${beside}`);
     if (here) item.setAttribute('aria-current', 'step');
