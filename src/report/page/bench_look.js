@@ -70,6 +70,11 @@ async function show(target) {
   }
 }
 
+function showPinned(target) {
+  pinned = target;
+  return show(target);
+}
+
 function sliderOf(one, k, values) {
   const input = make('input', {type: 'range', min: one.least, max: one.most, step: one.step / 20,
                                value: values[k]});
@@ -77,14 +82,14 @@ function sliderOf(one, k, values) {
   input.addEventListener('input', () => {
     values[k] = Number(input.value);
     value.textContent = String(+values[k].toPrecision(4));
-    show({...looked, ask: {...looked.ask, values: values.slice()}});
+    showPinned({...looked, ask: {...looked.ask, values: values.slice()}});
   });
   input.addEventListener('change', async () => {
     const reply = await best({version, finding: looked.ask.finding, values}).catch(() => null);
     if (!reply) return;
     reply.values.forEach((at, j) => { values[j] = at; });
     showSliders(looked.card, values);
-    show({...looked, ask: {...looked.ask, values: values.slice()}});
+    showPinned({...looked, ask: {...looked.ask, values: values.slice()}});
   });
   return make('label', {}, one.name + ' ', input, ' ', value);
 }
@@ -131,8 +136,7 @@ export function leave() {
 export function begin() {
   by('duel').addEventListener('change', () => {
     const rivals = by('duel').value === '' ? [] : [Number(by('duel').value)];
-    pinned = {...looked, ask: {...looked.ask, rivals}};
-    show(pinned);
+    showPinned({...looked, ask: {...looked.ask, rivals}});
   });
 }
 
