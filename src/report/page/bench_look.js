@@ -20,7 +20,6 @@ let looked = null;   // what is shown
 let asked = 0;
 const answers = new Map();  // of this state
 
-export const lookedAt = () => looked;
 export const request = () => looked && {...looked.ask};
 
 function saves(reply) {
