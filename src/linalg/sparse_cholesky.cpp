@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "linalg/sparse_cholesky.hpp"
 
+#include "geometry/index.hpp"
+#include "linalg/updatable_factor.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -50,6 +54,9 @@ struct SparseCholesky::Cholmod {
     cholmod_start(&common);
     common.print = 0;
     common.error_handler = nullptr;
+#ifndef TRUSSMAP_GPL
+    common.supernodal = CHOLMOD_SIMPLICIAL;
+#endif
     if (ordering == Ordering::automatic) return;
     common.nmethods = 1;
     common.method[0].ordering = ordering == Ordering::amd     ? CHOLMOD_AMD
@@ -75,19 +82,54 @@ struct SparseCholesky::Cholmod {
     }
   }
 
-  /// CHOLMOD changes a factor by columns whose rows are in the order of the factor.
-  [[nodiscard]] cholmod_sparse* in_factor_order(const SparseMatrix& columns) {
-    cholmod_sparse view = view_of(columns, 0);
-    cholmod_sparse* permuted =
-        cholmod_submatrix(&view, static_cast<int*>(factor->Perm),
-                          static_cast<SuiteSparse_long>(factor->n), nullptr, -1, 1, 1, &common);
-    check("permute an update");
-    return permuted;
+  /// The factor as one that can be changed, made where it is not there yet.
+  [[nodiscard]] UpdatableFactor& changing() {
+    if (changed) return *changed;
+    if (factor->is_super != 0 || factor->is_ll != 0) {
+      cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, factor, &common);
+      check("make the factor one that can be updated");
+    }
+    const auto n = static_cast<int>(factor->n);
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    place.resize(factor->n);
+    for (int k = 0; k < n; ++k) place[idx(permutation[k])] = k;
+    // Each column: its pivot d_j first, then L below it.
+    const auto* begin = static_cast<const int*>(factor->p);
+    const auto* count = static_cast<const int*>(factor->nz);
+    const auto* row = static_cast<const int*>(factor->i);
+    const auto* value = static_cast<const double*>(factor->x);
+    changed.emplace(n);
+    for (int j = 0; j < n; ++j) {
+      const int first = begin[j];
+      changed->append_column(value[first], row + first + 1, value + first + 1, count[j] - 1);
+    }
+    return *changed;
+  }
+
+  /// A column of a sparse matrix, in the order of the factor.
+  [[nodiscard]] std::vector<FactorEntry> in_factor_order(const SparseMatrix& matrix,
+                                                         Eigen::Index column) const {
+    std::vector<FactorEntry> entries;
+    for (SparseMatrix::InnerIterator at(matrix, column); at; ++at) {
+      entries.push_back({place[idx(static_cast<int>(at.row()))], at.value()});
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const FactorEntry& one, const FactorEntry& other) { return one.row < other.row; });
+    return entries;
+  }
+
+  void solve_changed(Eigen::VectorXd& x) const {
+    Eigen::VectorXd y(x.size());
+    for (std::size_t k = 0; k < place.size(); ++k) y[place[k]] = x[static_cast<Eigen::Index>(k)];
+    changed->solve_in_place(y);
+    for (std::size_t k = 0; k < place.size(); ++k) x[static_cast<Eigen::Index>(k)] = y[place[k]];
   }
 
   mutable cholmod_common common{};
   cholmod_factor* factor = nullptr;
-  cholmod_dense* solution = nullptr;  // kept between calls of solve_in_place
+  std::optional<UpdatableFactor> changed;  ///< in place of `factor`
+  std::vector<int> place;                  ///< of A's columns in it
+  cholmod_dense* solution = nullptr;       // kept between calls of solve_in_place
   cholmod_dense* forward = nullptr;
   cholmod_dense* backward = nullptr;
 };
@@ -105,6 +147,7 @@ void SparseCholesky::analyse(const SparseMatrix& lower) {
 }
 
 void SparseCholesky::factorise(const SparseMatrix& lower) {
+  cholmod_->changed.reset();
   cholmod_sparse a = view_of(lower, -1);
   cholmod_->common.status = CHOLMOD_OK;
   cholmod_factorize(&a, cholmod_->factor, &cholmod_->common);
@@ -118,6 +161,15 @@ void SparseCholesky::factorise(const SparseMatrix& lower) {
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) const {
   if (b.size() == 0) return b;
+  if (cholmod_->changed) {
+    Eigen::MatrixXd x(b.rows(), b.cols());
+    for (Eigen::Index k = 0; k < b.cols(); ++k) {
+      Eigen::VectorXd column = b.col(k);
+      cholmod_->solve_changed(column);
+      x.col(k) = column;
+    }
+    return x;
+  }
   cholmod_dense rhs = view_of(b.data(), b.rows(), b.cols());
   cholmod_dense* x = cholmod_solve(CHOLMOD_A, cholmod_->factor, &rhs, &cholmod_->common);
   cholmod_->check("solve");
@@ -133,6 +185,10 @@ Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) const {
 
 void SparseCholesky::solve_in_place(Eigen::VectorXd& x) {
   Cholmod& c = *cholmod_;
+  if (c.changed) {
+    c.solve_changed(x);
+    return;
+  }
   cholmod_dense rhs = view_of(x.data(), x.rows(), 1);
   cholmod_solve2(CHOLMOD_A, c.factor, &rhs, nullptr, &c.solution, nullptr, &c.forward, &c.backward,
                  &c.common);
@@ -154,61 +210,38 @@ void SparseCholesky::downdate(const SparseMatrix& w) {
 }
 
 void SparseCholesky::change(bool add, const SparseMatrix& w) {
-  auto* factor = cholmod_->factor;
-  cholmod_sparse* permuted = cholmod_->in_factor_order(w);
-  cholmod_updown(add ? 1 : 0, permuted, factor, &cholmod_->common);
-  cholmod_free_sparse(&permuted, &cholmod_->common);
-  cholmod_->check("update the factor");
+  UpdatableFactor& factor = cholmod_->changing();
+  std::vector<std::vector<FactorEntry>> columns;
+  const auto same_rows = [](const auto& one, const auto& other) {
+    return std::ranges::equal(one, other, {}, &FactorEntry::row, &FactorEntry::row);
+  };
+  for (Eigen::Index k = 0; k < w.cols(); ++k) {
+    std::vector<FactorEntry> column = cholmod_->in_factor_order(w, k);
+    if (!columns.empty() && !same_rows(columns.front(), column)) {
+      factor.change(add, columns);
+      columns.clear();
+    }
+    columns.push_back(std::move(column));
+  }
+  factor.change(add, columns);
 }
 
 void SparseCholesky::add_row(int row, const SparseMatrix& column) {
-  auto* factor = cholmod_->factor;
-  const auto* permutation = static_cast<const int*>(factor->Perm);
-  const auto place = std::find(permutation, permutation + factor->n, row) - permutation;
-  cholmod_sparse* permuted = cholmod_->in_factor_order(column);
-  cholmod_rowadd(static_cast<size_t>(place), permuted, factor, &cholmod_->common);
-  cholmod_free_sparse(&permuted, &cholmod_->common);
-  cholmod_->check("add a row to the factor");
+  UpdatableFactor& factor = cholmod_->changing();
+  factor.add_row(cholmod_->place[idx(row)], cholmod_->in_factor_order(column, 0));
 }
 
 void SparseCholesky::solve_updated(Eigen::VectorXd& x) {
-  const cholmod_factor& factor = *cholmod_->factor;
-  if (factor.is_super != 0 || factor.is_ll != 0) {
-    cholmod_change_factor(CHOLMOD_REAL, 0, 0, 0, 1, cholmod_->factor, &cholmod_->common);
-    cholmod_->check("make the factor one that can be updated");
-  }
-  const auto* permutation = static_cast<const int*>(factor.Perm);
-  const auto* begin = static_cast<const int*>(factor.p);
-  const auto* count = static_cast<const int*>(factor.nz);
-  const auto* row = static_cast<const int*>(factor.i);
-  const auto* value = static_cast<const double*>(factor.x);
-  const auto n = static_cast<Eigen::Index>(factor.n);
-  // Each column: its pivot d_j first, then L below it.
-  Eigen::VectorXd y(n);
-  for (Eigen::Index k = 0; k < n; ++k) y[k] = x[permutation[k]];
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double yj = y[j];
-    if (yj == 0.0) continue;
-    const int first = begin[j];
-    for (int k = first + 1; k < first + count[j]; ++k) y[row[k]] -= value[k] * yj;
-    y[j] = yj / value[first];
-  }
-  for (Eigen::Index j = n - 1; j >= 0; --j) {
-    const int first = begin[j];
-    const int last = first + count[j];
-    double sums[2] = {y[j], 0.0};
-    int k = first + 1;
-    for (; k + 2 <= last; k += 2) {
-      sums[0] -= value[k] * y[row[k]];
-      sums[1] -= value[k + 1] * y[row[k + 1]];
-    }
-    if (k < last) sums[0] -= value[k] * y[row[k]];
-    y[j] = sums[0] + sums[1];
-  }
-  for (Eigen::Index k = 0; k < n; ++k) x[permutation[k]] = y[k];
+  static_cast<void>(cholmod_->changing());
+  cholmod_->solve_changed(x);
 }
 
 double SparseCholesky::log_determinant() const {
+  if (cholmod_->changed) {
+    double sum = 0.0;
+    for (const double pivot : cholmod_->changed->pivots()) sum += std::log(pivot);
+    return sum;
+  }
   const cholmod_factor& factor = *cholmod_->factor;
   const auto* x = static_cast<const double*>(factor.x);
   double sum = 0.0;
@@ -231,11 +264,15 @@ double SparseCholesky::log_determinant() const {
 }
 
 double SparseCholesky::reciprocal_condition() const {
+  if (cholmod_->changed) {
+    const auto [least, most] = std::ranges::minmax(cholmod_->changed->pivots());
+    return least / most;
+  }
   return cholmod_rcond(cholmod_->factor, &cholmod_->common);
 }
 
 double SparseCholesky::factor_nonzeros() const {
-  return cholmod_->common.lnz;
+  return cholmod_->changed ? cholmod_->changed->nonzeros() : cholmod_->common.lnz;
 }
 
 }  // namespace trussmap
