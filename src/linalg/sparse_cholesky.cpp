@@ -54,7 +54,7 @@ struct SparseCholesky::Cholmod {
     cholmod_start(&common);
     common.print = 0;
     common.error_handler = nullptr;
-#ifndef TRUSSMAP_GPL
+#ifndef TRUSSMAP_GPL  // that module is under the GPL
     common.supernodal = CHOLMOD_SIMPLICIAL;
 #endif
     if (ordering == Ordering::automatic) return;
