@@ -8,8 +8,11 @@
 #include "trussmap/error.hpp"
 #include "trussmap/pages.hpp"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -82,6 +85,22 @@ Effect effect_of(const json& asked, const BenchView& view) {
   return effect;
 }
 
+/// Numbers of the legs in an area of the map, or in a span of elapsed time; empty without a choice.
+std::vector<std::size_t> legs_of(const json& asked, const BenchView& view) {
+  if (!asked.contains("choice")) return {};
+  const json& choice = asked.at("choice");
+  std::vector<std::size_t> legs;
+  if (choice.contains("area")) {
+    const auto [x, y, x2, y2] = choice.at("area").get<std::array<double, 4>>();
+    legs = legs_in_area(view.now, {x, y}, {x2, y2});
+  } else {
+    const auto [from, to] = choice.at("time").get<std::array<double, 2>>();
+    legs = legs_in_time(view.now, {std::min(from, to), std::max(from, to)});
+  }
+  if (legs.empty()) throw Refusal{400, "no leg is there"};
+  return legs;
+}
+
 LocalReply preview(const json& asked, const BenchView& view) {
   const Effect effect = effect_of(asked, view);
   std::vector<Effect> rivals;
@@ -91,7 +110,7 @@ LocalReply preview(const json& asked, const BenchView& view) {
     rivals.push_back(view.now.diagnosis().findings[finding].effect);
     rivals.back().coefficients.clear();
   }
-  return {.body = preview_json(view.now.preview(effect, rivals),
+  return {.body = preview_json(view.now.preview(effect, rivals, legs_of(asked, view)),
                                view.now.diagnosis().held_out.arrival_rms)};
 }
 
@@ -106,7 +125,7 @@ LocalReply shown_effect(const json& asked, const BenchView& view) {
   const auto effect = asked.at("effect").get<std::size_t>();
   if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
   EffectPreview preview;
-  preview.evidence = view.now.shown(effect);
+  preview.evidence = view.now.shown(effect, legs_of(asked, view));
   preview.dof = 1;
   return {.body = preview_json(preview, view.now.diagnosis().held_out.arrival_rms)};
 }
@@ -137,12 +156,22 @@ BenchWork::Step step_of(const json& asked, const BenchView& view) {
     if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
     return [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.remove(effect, watch); };
   }
+  if (what == "exclude") {
+    return [legs = legs_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
+      bench.exclude(legs, watch);
+    };
+  }
+  if (what == "include") {
+    return [](Workbench& bench, const WorkbenchWatch& watch) { bench.include_all(watch); };
+  }
   if (what == "go") {
     const auto step = asked.at("step").get<std::size_t>();
     if (step >= view.log.steps.size()) throw Refusal{400, "there is no such step"};
     return [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); };
   }
-  throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove or go", what)};
+  throw Refusal{
+      400,
+      fmt::format("a step does not do \"{}\", expected add, remove, exclude, include or go", what)};
 }
 
 LocalReply step(const json& asked, BenchWork& work, const BenchView& view) {
@@ -184,6 +213,7 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   if (request.path == "preview") return preview(asked, *view);
   if (request.path == "best") return best(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);
+  if (request.path == "legs") return {.body = selection_json(view->now, legs_of(asked, *view))};
   if (request.path == "noise") return with_noise(asked, *view);
   if (request.path == "step") return step(asked, work, *view);
   return refusal(404, "there is nothing here");

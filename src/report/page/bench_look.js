@@ -18,6 +18,7 @@ let version = 0;     // of the state
 let pinned = null;   // what to go back to
 let looked = null;   // what is shown
 let asked = 0;
+let choice = null;   // of legs; null: all
 const answers = new Map();  // of this state
 
 export const request = () => looked && {...looked.ask};
@@ -46,16 +47,17 @@ function showWords(reply) {
   const rival = reply.rivals[0];
   by('duel-words').textContent = !rival ? ''
       : (rival.leaves_mm === null ? '' : `${rival.name} would leave ${rival.leaves_mm.toFixed(1)} mm. `) +
-        (rival.apart ? `To tell them apart: ${rival.apart}.` : '');
+        rival.verdict;
 }
 
 async function show(target) {
   const mine = ++asked;
   looked = target;
-  const key = JSON.stringify([target.on, target.ask]);
+  const ask = choice ? {...target.ask, choice} : target.ask;
+  const key = JSON.stringify([target.on, ask]);
   try {
     const known = answers.get(key);
-    const reply = known || await (target.on ? shown : preview)({version, ...target.ask});
+    const reply = known || await (target.on ? shown : preview)({version, ...ask});
     if (!reply || mine !== asked) return;
     answers.set(key, reply);
     showWords(reply);
@@ -130,6 +132,12 @@ export const pinOwn = (effect, fault) =>
 /// Back to what is pinned.
 export function leave() {
   if (pinned && looked !== pinned) show(pinned);
+}
+
+/// Points of these legs alone.
+export function choose(next) {
+  choice = next;
+  if (looked) show(looked);
 }
 
 export function begin() {

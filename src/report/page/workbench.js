@@ -7,6 +7,7 @@
 //   pointing, typing --> preview                 pressing --> step, of the version that is shown
 import {ask, follow, tell} from './bench_api.js';
 import {showCandidates, showOn} from './bench_cards.js';
+import * as legs from './bench_legs.js';
 import * as look from './bench_look.js';
 import * as noise from './bench_noise.js';
 import {beginOwn} from './bench_own.js';
@@ -55,6 +56,7 @@ function setBusy(now) {
   }
   by('undo').disabled = busy || !state || state.at === 0;
   by('redo').disabled = busy || !onward.length;
+  legs.setBusy(busy);
   document.documentElement.dataset.busy = String(busy);
 }
 
@@ -71,11 +73,12 @@ async function renew(to) {
   state = next;
   version = to;
   showAll();
+  const chosen = legs.renew(state, version);
   if (first) {
     beginOwn(state, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
-  await Promise.all([look.renew(state, version), noise.renew(state, version)]);
+  await Promise.all([chosen, look.renew(state, version), noise.renew(state, version)]);
   document.documentElement.dataset.at = String(state.at);
   document.documentElement.dataset.steps = String(state.steps.length);
 }
@@ -106,6 +109,7 @@ by('add').addEventListener('click', () => {
   step({do: 'add', ...(effect ? {effect} : {finding, ...(values ? {values} : {})})});
 });
 look.begin();
+legs.begin(look.choose, what => { onward = []; step(what); });
 noise.begin();
 followWidth();
 follow(onStatus, gone => {
