@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+#
+# The gallery: a page for every effect that `trussmap effects` lists. What the command knows is asked
+# of it; what happens on a robot stands in effects.toml; the picture is that of a simulated recording,
+# diagnosed when the site is built. Usage: gallery.py --check COMMAND
+import hashlib
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from pages import HERE, TOP, without_code
+
+WORLD = "--mesh 4x4 --uneven --tours 3"
+GROUPS = ("Wheels", "Turning", "Floor and slip", "Gears and encoders", "Gyro", "Compass", "Sightings",
+          "Truth and fixes", "Other drives")
+FIELDS = ("group", "happens", "look", "effect")
+
+# What a row's motion or reading becomes.
+CHANNELS = {
+    "travel": r"\mathrm{d}s' = \mathrm{d}s\,(1+g)",
+    "left": r"\mathrm{d}L' = \mathrm{d}L\,(1+g)",
+    "right": r"\mathrm{d}R' = \mathrm{d}R\,(1+g)",
+    "wheels": r"\mathrm{d}L' = \mathrm{d}L\,(1+g), \qquad \mathrm{d}R' = \mathrm{d}R\,(1+g)",
+    "difference": r"\mathrm{d}L' = \mathrm{d}L\,(1-\tfrac{g}{2}), \qquad "
+                  r"\mathrm{d}R' = \mathrm{d}R\,(1+\tfrac{g}{2})",
+    "turn": r"\mathrm{d}\theta' = \mathrm{d}\theta\,(1+g)",
+    "drift": r"\mathrm{d}\theta' = \mathrm{d}\theta + g\,\mathrm{d}t",
+    "advance": r"\mathrm{d}s' = \mathrm{d}s + g",
+    "rotate": r"\mathrm{d}\theta' = \mathrm{d}\theta + g",
+    "creep": r"\text{slip to the left} = g\,\mathrm{d}s",
+    "compass": r"\text{reading} = \theta + g",
+    "bearing": r"\text{reading} = \text{bearing} + g",
+    "sighting_yaw": r"\text{reading} = \text{yaw} + g",
+    "range": r"\text{reading} = \text{range} + g",
+    "range_scale": r"\text{reading} = \text{range}\,(1+g)",
+    "gyro": r"\text{reading} = \dot\theta + g",
+    "gyro_scale": r"\dot\theta = \text{reading}\,(1+g)",
+    "lever": r"\text{sensor} = \text{axle} + g\ \text{ahead}",
+    "lever_left": r"\text{sensor} = \text{axle} + g\ \text{to the left}",
+    "delay": r"t_{\text{stamp}} = t + g",
+    "truth_heading": r"\theta_{\text{truth}} = \theta + g",
+    "antenna": r"\text{antenna} = \text{axle} + g\ \text{ahead}",
+    "antenna_left": r"\text{antenna} = \text{axle} + g\ \text{to the left}",
+    "fix_delay": r"t_{\text{stamp}} = t + g",
+    "sideways": r"\mathrm{d}s'_{\text{left}} = \mathrm{d}s_{\text{left}}\,(1+g)",
+    "steer": r"\beta' = \beta + g",
+    "steer_gain": r"\beta' = \beta\,(1+g)",
+    **{f"wheel{k}": rf"\mathrm{{d}}w_{k}' = \mathrm{{d}}w_{k}\,(1+g)" for k in range(1, 7)},
+}
+
+
+def slug_of(name):
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def formula_of(shape):
+    """A shape as TeX: names upright, products without a star."""
+    text = shape.replace("{}", "COLUMN")
+    text = re.sub(r"\{(\w+)\}", r"\1", text)
+    text = re.sub(r"\b(sin|cos|tan|exp|log|max|min)\b", r"\\\1 ", text)
+    text = re.sub(r"\b(abs|sign|sqrt)\b", r"\\operatorname{\1}", text)
+    text = re.sub(r"(?<![\\\w{])([a-z_]{2,}|COLUMN)\b",
+                  lambda m: r"\text{" + m[1].replace("_", r"\_") + "}", text)
+    text = re.sub(r"\bv0\b", "v_0", text)
+    return text.replace("*", r"\,")
+
+
+def sum_of(shapes):
+    if len(shapes) == 1:
+        return "c" if shapes[0] == "1" else rf"c\,{factor(shapes[0])}"
+    return " + ".join(rf"c_{k}\,{factor(shape)}" for k, shape in enumerate(shapes, 1))
+
+
+def factor(shape):
+    """In brackets where it is a sum."""
+    depth = 0
+    for char in shape:
+        depth += {"(": 1, ")": -1}.get(char, 0)
+        if depth == 0 and char in "+-":
+            return rf"\left({formula_of(shape)}\right)"
+    return formula_of(shape)
+
+
+class Gallery:
+    def __init__(self, command):
+        self.command = Path(command).resolve()
+        self.entries = json.loads(self.run(["effects", "--json", "/dev/stdout"]).split("\n}\n")[0] + "\n}")[
+            "effects"]
+        self.texts = tomllib.loads((HERE / "effects.toml").read_text())
+        self.slugs = {entry["name"]: slug_of(entry["name"]) for entry in self.entries}
+        self.drawn = "--drawing" in self.run(["effects", "--help"])
+
+    def run(self, words, folder=None):
+        ran = subprocess.run([self.command, *words], cwd=folder, text=True, capture_output=True,
+                             env={**os.environ, "NO_COLOR": "1"})
+        if ran.returncode != 0:
+            raise RuntimeError(f"trussmap {shlex.join(map(str, words))}: {ran.stderr.strip()}")
+        return ran.stdout
+
+    def faults(self):
+        """What keeps an effect of the catalogue from having its page."""
+        names = [entry["name"] for entry in self.entries]
+        found = [f"{name} is not in docs/site/effects.toml" for name in names
+                 if name not in self.texts]
+        found += [f"docs/site/effects.toml has {name}, which the catalogue has not"
+                  for name in self.texts if name not in names]
+        for name, text in self.texts.items():
+            found += [f"{name} has no {field}" for field in FIELDS if not text.get(field)]
+            if text.get("group") not in GROUPS:
+                found.append(f"{name}: {text.get('group')} is no group")
+        found += [f"{entry['name']}: no formula for channel {entry['channel']}"
+                  for entry in self.entries if entry["channel"] not in CHANNELS]
+        if len(set(self.slugs.values())) != len(names):
+            found.append("two effects have the same page")
+        if not names:
+            found.append("the command lists no effects")
+        return found
+
+    # A recording to try, and what a diagnosis says of it.
+
+    def commands(self, name):
+        """The lines that make the recording rec."""
+        text = self.texts[name]
+        if "recording" in text:
+            return text["recording"].strip().splitlines()
+        options = text.get("drive", "")
+        world = WORLD if "--mesh" not in options else WORLD.replace("--mesh 4x4 ", "")
+        words = f"trussmap simulate {world} {options}".split()
+        return [" ".join(words) + f' --effect "{text["effect"]}" --out rec']
+
+    def signature(self, entry, folder):
+        """Simulates and diagnoses; the diagnosis, and the picture of it. Kept from build to build."""
+        name = entry["name"]
+        lines = self.commands(name)
+        key = hashlib.sha256(json.dumps([self.hash, lines, 3]).encode()).hexdigest()
+        kept = folder / "key"
+        if not (kept.exists() and kept.read_text() == key):
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            with tempfile.TemporaryDirectory(prefix="trussmap-effect-") as scratch:
+                place = Path(scratch)
+                (place / "trussmap").symlink_to(self.command)
+                script = "\n".join(["trussmap() { ./trussmap --threads 1 \"$@\"; }"] + lines + [
+                    "trussmap diagnose rec --model rec/model.toml --json diagnosis.json --plots plots "
+                    "> diagnosis.txt"])
+                ran = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=place, text=True,
+                                     capture_output=True, env={**os.environ, "NO_COLOR": "1"})
+                if ran.returncode != 0:
+                    raise RuntimeError(f"{name}: {ran.stderr.strip() or ran.stdout.strip()}")
+                shutil.copy(place / "diagnosis.json", folder)
+                shutil.copy(place / "diagnosis.txt", folder)
+                shutil.copytree(place / "plots", folder / "plots")
+                if self.drawn:
+                    self.run(["effects", name, "--drawing", folder / "drawing.svg"])
+            kept.write_text(key)
+        return {"json": json.loads((folder / "diagnosis.json").read_text()),
+                "text": (folder / "diagnosis.txt").read_text(), "folder": folder}
