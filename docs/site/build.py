@@ -40,7 +40,7 @@ def katex(out):
 def sphinx(out):
     environment = {**os.environ, "TRUSSMAP_SITE": str(out)}
     for output in (out / "html",):
-        ran = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-j", "auto", "-b", "html",
+        ran = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html",
                               "-c", pages.HERE, "-d", out / "doctrees", out / "source", output],
                              env=environment)
         if ran.returncode != 0:

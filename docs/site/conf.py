@@ -19,7 +19,7 @@ release = re.search(r"project\(trussmap\s+VERSION\s+([0-9.]+)",
 version = release
 
 extensions = ["myst_parser", "breathe", "katex_math"]
-myst_enable_extensions = ["dollarmath", "html_image", "colon_fence"]
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["files"]

@@ -18,9 +18,9 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from pages import HERE, TOP, without_code
+from pages import HERE, TOP, slug_of
 
-WORLD = "--mesh 4x4 --uneven --tours 3"
+WORLD = "--mesh 4x4 --uneven --tours 2"
 GROUPS = ("Wheels", "Turning", "Floor and slip", "Gears and encoders", "Gyro", "Compass", "Sightings",
           "Truth and fixes", "Other drives")
 FIELDS = ("group", "happens", "look", "effect")
@@ -57,10 +57,6 @@ CHANNELS = {
     "steer_gain": r"\beta' = \beta\,(1+g)",
     **{f"wheel{k}": rf"\mathrm{{d}}w_{k}' = \mathrm{{d}}w_{k}\,(1+g)" for k in range(1, 7)},
 }
-
-
-def slug_of(name):
-    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 
 def formula_of(shape):
@@ -150,7 +146,7 @@ class Gallery:
             with tempfile.TemporaryDirectory(prefix="trussmap-effect-") as scratch:
                 place = Path(scratch)
                 (place / "trussmap").symlink_to(self.command)
-                script = "\n".join(["trussmap() { ./trussmap --threads 1 \"$@\"; }"] + lines + [
+                script = "\n".join(["trussmap() { ./trussmap \"$@\" --threads 1; }"] + lines + [
                     "trussmap diagnose rec --model rec/model.toml --json diagnosis.json --plots plots "
                     "> diagnosis.txt"])
                 ran = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=place, text=True,
@@ -165,3 +161,151 @@ class Gallery:
             kept.write_text(key)
         return {"json": json.loads((folder / "diagnosis.json").read_text()),
                 "text": (folder / "diagnosis.txt").read_text(), "folder": folder}
+
+    # Pages.
+
+    def page(self, entry, signature, place):
+        name = entry["name"]
+        text = self.texts[name]
+        lines = [f"# {name}", "", text["happens"].strip(), "",
+                 "| | |", "|---|---|",
+                 f"| in a model, in `--effect` | `{entry['in_full']}` |",
+                 f"| cause | {entry['cause']} |",
+                 f"| what helps | {entry['remedy']} |",
+                 f"| acts on | {entry['acts_on']} (channel [`{entry['channel']}`](../effects.md#channels)) |",
+                 f"| goes with | {', '.join(f'`{one}`' for one in entry['shape'])} |"]
+        if entry["column"]:
+            also = "".join(f" or `{one}`" for one in entry["also_of"])
+            lines.append(f"| `COLUMN` | a further column of `drive.csv`{also} |")
+        for one in entry["parameters"]:
+            usual = f", about {one['usual']:g}" if one["usual"] else ""
+            lines.append(f"| `{one['name']}` | {one['unit']}{usual}; sought by `diagnose` |")
+        lines.append(f"| unit of a coefficient | {entry['unit'] or 'none'} |")
+        if entry["detectable"]:
+            lines.append(f"| seen from about | {entry['detectable']:g} {entry['channel_unit']} on "
+                         "(60 legs of 5 m with survey and compass) |")
+        lines += ["", "## Formula", "", f"$${CHANNELS[entry['channel']]}, \\qquad "
+                  f"g = {sum_of(entry['shape'])}$$", ""]
+        if signature:
+            lines += self.shown(entry, signature, place)
+        lines += ["## What to look at on the robot", "", text["look"].strip(), ""]
+        lines += ["## A recording to try", "", "```sh", *self.commands(name),
+                  "trussmap diagnose rec --model rec/model.toml --html page.html", "```", ""]
+        if signature:
+            first = signature["text"].split("\n\n")[0].strip().splitlines()
+            lines += ["It says:", "", "```text", *first, "```", ""]
+        return "\n".join(lines)
+
+    def shown(self, entry, signature, place):
+        """Picture, look-alikes, and the drive that tells them apart, as this recording has them."""
+        lines = []
+        best = self.found(entry, signature)
+        picture = signature["folder"] / "plots" / "effect-1.svg"
+        drawing = signature["folder"] / "drawing.svg"
+        slug = self.slugs[entry["name"]]
+        if drawing.exists():
+            shutil.copy(drawing, place / f"{slug}-drawing.svg")
+            lines += [f"![Drawing of {entry['name']}]({slug}-drawing.svg)", ""]
+        if picture.exists():
+            shutil.copy(picture, place / f"{slug}.svg")
+            lines += ["## What it looks like", "",
+                      "The error of the recording below against its cause: points as it shows them, the line as "
+                      "it was found.", "", f"![Error against its cause]({slug}.svg)", ""]
+        lines += ["## What looks the same", ""]
+        rivals = best["indistinguishable_from"]
+        if rivals:
+            lines += ["In this recording:", "", "| effect | cosine |", "|---|---|"]
+            lines += [f"| {self.linked(one['effect'], one)} | {one['cosine']:.3f} |" for one in rivals]
+            drive = signature["json"].get("next_drive")
+            if drive:
+                lines += ["", f"**To tell them apart:** {drive}."]
+        else:
+            lines.append("In this recording, nothing that was tried.")
+        known = self.known_look_alikes(entry["name"])
+        if known:
+            lines += ["", "What is known of it:", "", "| pair | what to drive, or what decides |", "|---|---|", *known]
+        return lines + [""]
+
+    def linked(self, name, one):
+        entry = name.split(" (")[0]
+        shape = ", ".join(f"`{text}`" for text in one["shape"])
+        if entry in self.slugs:
+            return f"[{name}]({self.slugs[entry]}.md)"
+        return f"`{one['channel']}` × {shape}"
+
+    def known_look_alikes(self, name):
+        """Rows of docs/effects.md that speak of it."""
+        section = (TOP / "docs/effects.md").read_text().split("\n## Look-alikes", 1)[1].split("\n## ", 1)[0]
+        rows = re.findall(r"^(\| .*`.* \|.*\|)$", section, re.M)
+        return [row for row in rows if f"`{name}`" in row]
+
+    def found(self, entry, signature):
+        """The candidate that is this effect, or that looks the same: else the recording is no good one to try."""
+        candidates = signature["json"]["candidates"]
+        for best in candidates[:3]:
+            alike = [best, *best["indistinguishable_from"]]
+            if any(one["effect"].split(" (")[0] == entry["name"] for one in alike):
+                return best
+        raise RuntimeError(f"{entry['name']}: its recording names {candidates[0]['effect']}")
+
+    def index(self):
+        lines = ["# Gallery of effects", "",
+                 "Every effect of the [catalogue](../effects.md#catalogue): what happens, how it shows, what looks the "
+                 "same, and a recording to try. An effect of your own is as good as one of these "
+                 "([effects](../effects.md#an-effect-of-your-own)).", ""]
+        for group in GROUPS:
+            lines += [f"## {group}", "", "| effect | what causes it | what helps |", "|---|---|---|"]
+            lines += [f"| [{one['name']}]({self.slugs[one['name']]}.md) | {one['cause']} | {one['remedy']} |"
+                      for one in self.of_group(group)]
+            lines.append("")
+        names = [self.slugs[one["name"]] for group in GROUPS for one in self.of_group(group)]
+        return "\n".join(lines) + "\n```{toctree}\n:hidden:\n\n" + "\n".join(names) + "\n```\n"
+
+    def of_group(self, group):
+        return [one for one in self.entries if self.texts[one["name"]]["group"] == group]
+
+
+def write(stage, command, work):
+    gallery = Gallery(command)
+    faults = gallery.faults()
+    if faults:
+        sys.exit("\n".join(faults))
+    gallery.hash = hashlib.sha256(gallery.command.read_bytes()).hexdigest()
+    place = stage.folder / "gallery"
+    place.mkdir(parents=True, exist_ok=True)
+
+    def one_page(entry):
+        try:
+            signature = gallery.signature(entry, work / gallery.slugs[entry["name"]])
+            return gallery.page(entry, signature, place)
+        except RuntimeError as error:
+            return error
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        pages = list(pool.map(one_page, gallery.entries))
+    errors = [str(one) for one in pages if isinstance(one, RuntimeError)]
+    if errors:
+        sys.exit("gallery:\n" + "\n".join(errors))
+    for entry, page in zip(gallery.entries, pages):
+        stage.write(f"gallery/{gallery.slugs[entry['name']]}", page)
+    stage.write("gallery/index", gallery.index())
+
+
+def check(command):
+    """Every effect of the catalogue has its page, and no other: the test, which builds no site."""
+    gallery = Gallery(command)
+    faults = gallery.faults()
+    for entry in gallery.entries if not faults else []:
+        page = gallery.page(entry, None, None)
+        if entry["name"] not in page or "$$" not in page:
+            faults.append(f"{entry['name']}: its page is empty")
+        if f"({gallery.slugs[entry['name']]}.md)" not in gallery.index():
+            faults.append(f"{entry['name']} is not in the gallery's index")
+    print("\n".join(faults) or f"{len(gallery.entries)} effects, each with its page")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3 or sys.argv[1] != "--check":
+        sys.exit("usage: gallery.py --check COMMAND")
+    check(sys.argv[2])

@@ -33,7 +33,7 @@ def opening(path):
 
 def write(stage):
     order = in_reading_order()
-    text = ("# C++ headers\n\nIn reading order; `#include <trussmap/NAME.hpp>`. [Reading the code]"
+    text = ("# C++ headers\n\nIn reading order; `#include <trussmap/NAME.hpp>`. All is in `namespace trussmap`, which is left out here. [Reading the code]"
             "(../reading-the-code.md) says what to read for what.\n\n| header | subject |\n|---|---|\n")
     for name, subject in order:
         text += f"| [{name}]({name}.rst) | {subject} |\n"
@@ -41,6 +41,6 @@ def write(stage):
         idea = "".join(f"   {line}\n" if line else "\n"
                        for line in opening(TOP / "include/trussmap" / title).splitlines())
         stage.write(f"cpp/{name}", f"{title}\n{'=' * len(title)}\n\n.. code-block:: none\n\n{idea}\n"
-                    f".. doxygenfile:: {title}\n   :project: trussmap\n   :sections: briefdescription detaileddescription func public-attrib public-func public-static-func public-type enum typedef user-defined var innerclass innernamespace\n", ".rst")
+                    f".. doxygenfile:: {title}\n   :project: trussmap\n   :sections: briefdescription detaileddescription func public-attrib public-func public-static-func public-type enum typedef user-defined var innerclass\n", ".rst")
     text += "\n```{toctree}\n:hidden:\n\n" + "\n".join(name for name, _ in order) + "\n```\n"
     stage.write("cpp/index", text)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # Which files are pages of the site, and what their links become there.
+import json
 import os
 import re
 import shutil
@@ -12,6 +13,13 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 TOP = HERE.parents[1]
 LINK = re.compile(r'(\]\(|<img src=")([^)"\s]+)')
+
+IMAGE = re.compile(r'^<img src="([^"]+)" width="(\d+)" alt="([^"]*)">$', re.M)
+
+
+def as_directive(image):
+    """An <img> as Sphinx takes it, with a colon in its text or not."""
+    return (f"```{{image}} {image[1]}\n---\nalt: {json.dumps(image[3])}\nwidth: {image[2]}px\n---\n```")
 
 
 class Contents:
@@ -42,6 +50,11 @@ class Contents:
 
     def below(self, name):
         return [one for one in self.files if one.startswith(name + "/")]
+
+
+def slug_of(name):
+    """An effect's page."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 
 def without_code(text):
@@ -107,6 +120,8 @@ class Stage:
             return os.path.relpath(f"cpp/{header[1]}.rst", back or ".")
         if at == "include/trussmap":
             return os.path.relpath("cpp/index.md", back or ".")
+        if at == "docs/effects.md" and anchor == "#catalogue" and name != "effects":
+            return os.path.relpath("gallery/index.md", back or ".")  # the catalogue's pages
         if at in self.contents.names:
             return os.path.relpath(self.contents.names[at] + ".md", back or ".") + anchor
         if at in ("docs", "docs/"):
@@ -118,7 +133,11 @@ class Stage:
         for line, prose in without_code((TOP / path).read_text()):
             if prose:
                 line = LINK.sub(lambda m: m[1] + self.link(m[2], path, name), line)
+                line = IMAGE.sub(as_directive, line)
             text += line
+        if name == "effects":  # the catalogue's rows lead to the gallery
+            text = re.sub(r"^\| (`([a-z][a-z0-9 -]+)(?: \([^`]*\))?`) \|(?=[^|]*\| `[a-z_0-9]+` ×)",
+                          lambda m: f"| [{m[1]}](gallery/{slug_of(m[2])}.md) |", text, flags=re.M)
         below = self.contents.below(name)
         if below:
             text += tree([os.path.relpath(one, os.path.dirname(name)) for one in below])
