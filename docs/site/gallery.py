@@ -71,6 +71,10 @@ def formula_of(shape):
     return text.replace("*", r"\,")
 
 
+def picture_title(path):
+    return re.search(r"<title>(.*?)</title>", path.read_text())[1]
+
+
 def sum_of(shapes):
     if len(shapes) == 1:
         return "c" if shapes[0] == "1" else rf"c\,{factor(shapes[0])}"
@@ -209,8 +213,14 @@ class Gallery:
         if picture.exists():
             shutil.copy(picture, place / f"{slug}.svg")
             lines += ["## What it looks like", "",
-                      "The error of the recording below against its cause: points as it shows them, the line as "
-                      "it was found.", "", f"![Error against its cause]({slug}.svg)", ""]
+                      "The error of the [recording below](#a-recording-to-try): points as it shows them, with 95 % "
+                      "intervals; the line as the diagnosis found it; dashed what looks nearly the same.", "",
+                      f"![{picture_title(picture)}: the error of the recording]({slug}.svg)", ""]
+        route_map = signature["folder"] / "plots" / "map-1.svg"
+        if route_map.exists():
+            shutil.copy(route_map, place / f"{slug}-map.svg")
+            lines += ["On the map: routes coloured by how far their legs end off, as long as the model lacks the "
+                      "effect.", "", f"![Map of the recording]({slug}-map.svg)", ""]
         lines += ["## What looks the same", ""]
         rivals = best["indistinguishable_from"]
         if rivals:

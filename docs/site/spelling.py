@@ -7,6 +7,7 @@
 import re
 import subprocess
 import sys
+import tomllib
 
 from pages import HERE, TOP, Contents, without_code
 
@@ -26,8 +27,9 @@ def prose_of(path):
 
 
 def texts_of_effects():
-    return re.sub(r'^(effect|drive|group) = .*$|^\[.*\]$|^#.*$', "",
-                  (HERE / "effects.toml").read_text(), flags=re.M)
+    effects = tomllib.loads((HERE / "effects.toml").read_text())
+    text = " ".join(one["happens"] + " " + one["look"] for one in effects.values())
+    return re.sub(r"`[^`]*`|\]\([^)]*\)", " ", text)
 
 
 def unknown(text):
