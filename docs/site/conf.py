@@ -23,9 +23,8 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["files"]
-nitpicky = False
 highlight_language = "none"
-numfig = False
+toc_object_entries = False  # a thousand declarations in the sidebar of every page
 
 breathe_projects = {"trussmap": str(out / "doxygen" / "xml")}
 breathe_default_project = "trussmap"

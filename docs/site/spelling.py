@@ -34,11 +34,11 @@ def texts_of_effects():
 
 def unknown(text):
     """Words that no list has. Plurals and other endings are the dictionary's affair."""
-    known = set(WORDS.read_text().split())
+    known = set(WORDS.read_text().lower().split())
     ran = subprocess.run(["aspell", "list", "--lang=en_GB", "--encoding=utf-8"], input=text,
                          text=True, capture_output=True, check=True)
     words = {word.removesuffix("'s").removesuffix("'") for word in ran.stdout.split()}
-    return sorted(word for word in words if word not in known and word.lower() not in known)
+    return sorted(word for word in words if word.lower() not in known)
 
 
 def check(contents, names=None):
