@@ -39,12 +39,11 @@ def katex(out):
 
 def sphinx(out):
     environment = {**os.environ, "TRUSSMAP_SITE": str(out)}
-    for output in (out / "html",):
-        ran = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html",
-                              "-c", pages.HERE, "-d", out / "doctrees", out / "source", output],
-                             env=environment)
-        if ran.returncode != 0:
-            sys.exit("the site was not built: see the warnings above")
+    ran = subprocess.run(["sphinx-build", "-W", "--keep-going", "-q", "-b", "html", "-c", pages.HERE,
+                          "-d", out / "doctrees", out / "source", out / "html"], env=environment)
+    if ran.returncode != 0:
+        shutil.rmtree(out / "doctrees", ignore_errors=True)  # or the next build would not warn again
+        sys.exit("the site was not built: see the warnings above")
 
 
 def main():
@@ -63,13 +62,13 @@ def main():
     spelling.check(contents)
     done("spelling")
     stage = pages.Stage(out / "source", contents)
-    shutil.rmtree(out / "source", ignore_errors=True)
     for name, path in contents.files.items():
         stage.page(name, path)
     commands.write(stage, command)
     headers.write(stage)
     done("pages")
     gallery.write(stage, command, out / "gallery")
+    stage.forget()
     done("gallery of effects")
     doxygen(out)
     katex(out)

@@ -13,5 +13,5 @@ for line in open(sys.argv[1], encoding="utf-8"):
         line = line.replace("\\", "\\\\")
     if re.fullmatch(r"namespace trussmap \{|\}  // namespace trussmap", line.rstrip()):
         line = "\n"
-    line = re.sub(r" = \{\.[^}]*\}", "", line)
+    line = re.sub(r"( = )?\{ *\.[^{}]*\}(?=;)", "", line)
     sys.stdout.write(line)

@@ -168,7 +168,7 @@ class Gallery:
 
     # Pages.
 
-    def page(self, entry, signature, place):
+    def page(self, entry, signature, stage):
         name = entry["name"]
         text = self.texts[name]
         lines = [f"# {name}", "", text["happens"].strip(), "",
@@ -191,7 +191,7 @@ class Gallery:
         lines += ["", "## Formula", "", f"$${CHANNELS[entry['channel']]}, \\qquad "
                   f"g = {sum_of(entry['shape'])}$$", ""]
         if signature:
-            lines += self.shown(entry, signature, place)
+            lines += self.shown(entry, signature, stage)
         lines += ["## What to look at on the robot", "", text["look"].strip(), ""]
         lines += ["## A recording to try", "", "```sh", *self.commands(name),
                   "trussmap diagnose rec --model rec/model.toml --html page.html", "```", ""]
@@ -200,7 +200,7 @@ class Gallery:
             lines += ["It says:", "", "```text", *first, "```", ""]
         return "\n".join(lines)
 
-    def shown(self, entry, signature, place):
+    def shown(self, entry, signature, stage):
         """Picture, look-alikes, and the drive that tells them apart, as this recording has them."""
         lines = []
         best = self.found(entry, signature)
@@ -208,17 +208,17 @@ class Gallery:
         drawing = signature["folder"] / "drawing.svg"
         slug = self.slugs[entry["name"]]
         if drawing.exists():
-            shutil.copy(drawing, place / f"{slug}-drawing.svg")
+            stage.copy(drawing, f"gallery/{slug}-drawing.svg")
             lines += [f"![Drawing of {entry['name']}]({slug}-drawing.svg)", ""]
         if picture.exists():
-            shutil.copy(picture, place / f"{slug}.svg")
+            stage.copy(picture, f"gallery/{slug}.svg")
             lines += ["## What it looks like", "",
                       "The error of the [recording below](#a-recording-to-try): points as it shows them, with 95 % "
                       "intervals; the line as the diagnosis found it; dashed what looks nearly the same.", "",
                       f"![{picture_title(picture)}: the error of the recording]({slug}.svg)", ""]
         route_map = signature["folder"] / "plots" / "map-1.svg"
         if route_map.exists():
-            shutil.copy(route_map, place / f"{slug}-map.svg")
+            stage.copy(route_map, f"gallery/{slug}-map.svg")
             lines += ["On the map: routes coloured by how far their legs end off, as long as the model lacks the "
                       "effect.", "", f"![Map of the recording]({slug}-map.svg)", ""]
         lines += ["## What looks the same", ""]
@@ -281,13 +281,11 @@ def write(stage, command, work):
     if faults:
         sys.exit("\n".join(faults))
     gallery.hash = hashlib.sha256(gallery.command.read_bytes()).hexdigest()
-    place = stage.folder / "gallery"
-    place.mkdir(parents=True, exist_ok=True)
 
     def one_page(entry):
         try:
             signature = gallery.signature(entry, work / gallery.slugs[entry["name"]])
-            return gallery.page(entry, signature, place)
+            return gallery.page(entry, signature, stage)
         except RuntimeError as error:
             return error
 

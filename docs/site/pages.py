@@ -79,10 +79,28 @@ class Stage:
     def __init__(self, folder, contents):
         self.folder = folder
         self.contents = contents
+        self.made = set()
+
+    def forget(self):
+        """Takes away what an earlier build has left."""
+        for path in sorted(self.folder.rglob("*"), reverse=True):
+            if path.is_file() and path not in self.made:
+                path.unlink()
+            elif path.is_dir() and not any(path.iterdir()):
+                path.rmdir()
+
+    def copy(self, source, name):
+        """What has not changed keeps its time, so that Sphinx does not do it again."""
+        target = self.folder / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        self.made.add(target)
+        if not target.exists() or target.read_bytes() != source.read_bytes():
+            shutil.copyfile(source, target)
 
     def write(self, name, text, ending=".md"):
         path = self.folder / (name + ending)
         path.parent.mkdir(parents=True, exist_ok=True)
+        self.made.add(path)
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
 
@@ -92,6 +110,7 @@ class Stage:
         target = self.folder / "files" / path
         if source.is_dir():
             target = target.with_name(target.name + ".zip")
+            self.made.add(target)
             target.parent.mkdir(parents=True, exist_ok=True)
             with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
                 for one in sorted(source.rglob("*")):
@@ -99,8 +118,7 @@ class Stage:
                         archive.writestr(zipfile.ZipInfo(f"{source.name}/{one.relative_to(source)}"),
                                          one.read_bytes(), zipfile.ZIP_DEFLATED)
         else:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, target)
+            self.copy(source, target.relative_to(self.folder))
         return target.relative_to(self.folder)
 
     def link(self, target, path, name):

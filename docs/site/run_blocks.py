@@ -5,7 +5,7 @@
 # Runs what the pages show. Blocks of one page run in their order, in a scratch folder that has
 # maps/ and build/trussmap, as the top of the project has them. Usage: run_blocks.py COMMAND [PAGE...]
 #
-#   ```sh                     run by bash; must end with status 0
+#   ```sh                     run by bash; must end with status 0. What builds (make, cmake) is not run
 #   ``` with "$ " lines       each run, and must print what stands below it, up to "..."
 #   ```python                 run, where the package trussmap can be imported
 #   ```diff                   must apply to the project as it is, after those before it on the page
@@ -105,6 +105,9 @@ class Page:
                 if kind in ("", "console") and re.search(r"^\$ ", body, re.M):
                     job = self.prompts
                 if job is None:
+                    continue
+                if kind == "sh" and re.search(r"^(make|cmake|apt-get)\b", body, re.M):
+                    self.skipped.append(f"{self.path.relative_to(TOP)}:{line}: it builds")
                     continue
                 if mark or (kind == "python" and not python_there):
                     why = mark[2] if mark else "the Python package is not there"
