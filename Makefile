@@ -12,6 +12,8 @@
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
+#   make site          the documentation as a site, build/site/html/index.html (installs Sphinx and its like)
+#   make site-check    run what the pages show: every block of commands
 #   make install-deps  install the Debian packages that the build needs
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -22,7 +24,7 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test fuzz tsan install-deps test-deps configure build command clean
+.PHONY: all check demo test site site-check fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -46,6 +48,12 @@ check: install-deps build
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)
 
+site: site-deps command
+	@docs/site/build.py build/trussmap build/site
+
+site-check: install-deps command
+	@docs/site/run_blocks.py build/trussmap
+
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev
 	@CC=clang CXX=clang++ cmake --preset fuzz $(GENERATOR) >/dev/null
@@ -62,6 +70,10 @@ install-deps:
 
 test-deps:
 	@.ci/install-deps chromium
+
+site-deps:
+	@.ci/install-deps python3-sphinx python3-myst-parser furo python3-breathe doxygen libjs-katex nodejs \
+	  codespell aspell aspell-en patch
 
 clean:
 	rm -rf build build-*

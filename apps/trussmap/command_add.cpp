@@ -75,7 +75,7 @@ void setup_add(const Command& app) {
       .type_name("FILE");
   command
       .add_option("EFFECT", options->effect,
-                  "Name from the catalogue (trussmap simulate --help lists it), or your own")
+                  "Name from the catalogue (trussmap effects lists it), or your own")
       .required()
       .type_name("NAME");
   command.add_option("--channel", options->channel, "Where an effect of your own acts")

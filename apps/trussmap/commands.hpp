@@ -21,6 +21,7 @@ void setup_compare(const Command& app);
 void setup_convert(const Command& app);
 void setup_diagnose(const Command& app);
 void setup_discover(const Command& app);
+void setup_effects(const Command& app);
 void setup_fit(const Command& app);
 void setup_fleet(const Command& app);
 void setup_merge(const Command& app);

@@ -4,7 +4,6 @@
 
 #include "commands.hpp"
 #include "terminal.hpp"
-#include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/table.hpp"
@@ -50,7 +49,7 @@ Effect named_effect(const std::string& option) {
   if (find_entry(name) == nullptr) {
     throw UsageError(
         fmt::format("--effect \"{}\": \"{}\" is not in the catalogue, whose names "
-                    "trussmap simulate --help lists",
+                    "trussmap effects lists",
                     option, name));
   }
   try {
@@ -110,20 +109,22 @@ std::vector<Effect> effects_of(const EffectOptions& options) {
   return effects;
 }
 
+std::string name_with_brackets(const CatalogueEntry& entry) {
+  if (entry.of_covariate()) return name_of(entry, "COLUMN");
+  if (!entry.has_parameters()) return std::string(entry.name);
+  std::string open;
+  for (const OpenParameter& one : entry.parameters) {
+    open += fmt::format("{}{}=..", open.empty() ? "" : ", ", one.name);
+  }
+  return name_of(entry, open);
+}
+
 std::string catalogue_text() {
   std::string text = "Effects, with the unit of their coefficients (channel x shape):\n";
   for (const CatalogueEntry& entry : catalogue()) {
-    std::string name(entry.name);
-    if (entry.of_covariate()) name = name_of(entry, "COLUMN");
-    if (entry.has_parameters()) {
-      std::string open;
-      for (const OpenParameter& one : entry.parameters) {
-        open += fmt::format("{}{}=..", open.empty() ? "" : ", ", one.name);
-      }
-      name = name_of(entry, open);
-    }
-    text += fmt::format("  {:<42} {:<10} {} x {}\n", name, entry.unit.empty() ? "-" : entry.unit,
-                        name_of(entry.channel), fmt::join(entry.pattern, "; "));
+    text += fmt::format("  {:<42} {:<10} {} x {}\n", name_with_brackets(entry),
+                        entry.unit.empty() ? "-" : entry.unit, name_of(entry.channel),
+                        fmt::join(entry.pattern, "; "));
   }
   return text;
 }

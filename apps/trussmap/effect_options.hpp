@@ -6,6 +6,7 @@
 #pragma once
 
 #include "command_line.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/model.hpp"
 
 #include <string>
@@ -25,6 +26,9 @@ void add_effect_options(const Command& command, EffectOptions& options);
 /// The model's effects, then the named ones: each with channel, shape and coefficients. Throws
 /// UsageError, in one line.
 [[nodiscard]] std::vector<Effect> effects_of(const EffectOptions& options);
+
+/// "tyre drift (COLUMN)", "missed ticks (v0=..)": with what is open in brackets.
+[[nodiscard]] std::string name_with_brackets(const CatalogueEntry& entry);
 
 /// The catalogue's names with the unit of their coefficients, for --help.
 [[nodiscard]] std::string catalogue_text();

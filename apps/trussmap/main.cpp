@@ -93,6 +93,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_convert(commands);
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
+  trussmap::app::setup_effects(commands);
   trussmap::app::setup_fit(commands);
   trussmap::app::setup_fleet(commands);
   trussmap::app::setup_merge(commands);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <string>
 #include <vector>
@@ -26,8 +27,8 @@ using testing::run_trussmap;
 using testing::ScratchFolder;
 
 const std::vector<std::string> kCommands = {
-    "add", "adjust", "build", "calibrate", "compare",  "convert", "diagnose", "discover",
-    "fit", "merge",  "noise", "reveal",    "simulate", "tour",    "umbmark"};
+    "add",     "adjust", "build", "calibrate", "compare", "convert",  "diagnose", "discover",
+    "effects", "fit",    "merge", "noise",     "reveal",  "simulate", "tour",     "umbmark"};
 
 TEST(Command, HelpIsThereForEveryCommand) {
   const std::string all = run_trussmap("--help").output;
@@ -79,6 +80,49 @@ TEST(Command, HelpSaysWhatARecordingIs) {
       EXPECT_NE(help.find(line), std::string::npos) << name << ": " << line;
     }
   }
+}
+
+/// What the documentation's table of the catalogue has: names without brackets, each with its
+/// channel.
+std::map<std::string, std::string> documented_effects() {
+  std::ifstream page(TRUSSMAP_SOURCE_DIR "/docs/effects.md");
+  static const std::regex kRow(R"(\| `([a-z0-9 -]+)[^`]*` \| [^|]* \| `([a-z_0-9]+)` × .*)");
+  std::map<std::string, std::string> effects;
+  for (std::string line; std::getline(page, line);) {
+    std::smatch row;
+    if (!std::regex_match(line, row, kRow)) continue;
+    std::string name = row[1];
+    name.erase(name.find_last_not_of(' ') + 1);
+    effects[name] = row[2];
+  }
+  return effects;
+}
+
+TEST(EffectsCommand, ListsWhatTheDocumentationHas) {
+  const ScratchFolder scratch;
+  const std::string json = (scratch.path() / "e.json").string();
+  const Ran ran = run_trussmap("effects --json " + json);
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  std::map<std::string, std::string> listed;
+  for (const auto& one : read_json(json)["effects"]) {
+    const std::string in_full = one["in_full"];
+    EXPECT_NE(ran.output.find("  " + in_full + " "), std::string::npos) << in_full;
+    EXPECT_FALSE(one["cause"].get<std::string>().empty()) << in_full;
+    listed[one["name"]] = one["channel"];
+  }
+  EXPECT_GT(listed.size(), 50U);
+  EXPECT_EQ(listed, documented_effects());
+}
+
+TEST(EffectsCommand, TellsOfOneAndRefusesWhatItDoesNotKnow) {
+  const Ran one = run_trussmap("effects 'tyre drift (temperature_C)'");
+  EXPECT_EQ(one.status, 0);
+  EXPECT_EQ(one.output.rfind("tyre drift (COLUMN)\n", 0), 0U) << one.output;
+  EXPECT_NE(one.output.find("calibrate again from time to time"), std::string::npos);
+  const Ran none = run_trussmap("effects gremlins");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_EQ(none.output,
+            "trussmap: \"gremlins\" is not in the catalogue, whose names trussmap effects lists\n");
 }
 
 TEST(Command, AGraphWithPosesIsNoMapAndIsNamed) {

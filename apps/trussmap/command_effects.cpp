@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap effects: the catalogue, or one effect of it.
+#include "commands.hpp"
+#include "effect_options.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/write_files.hpp"
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct EffectsCommand {
+  std::string name;
+  std::string json;
+};
+
+std::vector<const CatalogueEntry*> asked_for(const std::string& name) {
+  std::vector<const CatalogueEntry*> entries;
+  if (name.empty()) {
+    for (const CatalogueEntry& entry : catalogue()) entries.push_back(&entry);
+  } else if (const CatalogueEntry* entry = find_entry(name)) {
+    entries.push_back(entry);
+  } else {
+    throw UsageError(
+        fmt::format("\"{}\" is not in the catalogue, whose names trussmap effects lists", name));
+  }
+  return entries;
+}
+
+ordered_json entry_json(const CatalogueEntry& entry) {
+  ordered_json parameters = ordered_json::array();
+  for (const OpenParameter& one : entry.parameters) {
+    parameters.push_back({{"name", one.name}, {"unit", one.unit}, {"usual", one.usual}});
+  }
+  const ChannelFacts& channel = facts_of(entry.channel);
+  return {{"name", entry.name},
+          {"in_full", name_with_brackets(entry)},
+          {"channel", channel.name},
+          {"acts_on", channel.does_what},
+          {"channel_unit", channel.unit},
+          {"shape", entry.pattern},
+          {"unit", entry.unit},
+          {"cause", entry.cause},
+          {"remedy", entry.remedy},
+          {"detectable", entry.detectable},
+          {"column", entry.of_covariate()},
+          {"also_of", entry.also_of},
+          {"parameters", parameters}};
+}
+
+std::string json_text(const std::vector<const CatalogueEntry*>& entries) {
+  ordered_json list = ordered_json::array();
+  for (const CatalogueEntry* entry : entries) list.push_back(entry_json(*entry));
+  return ordered_json{{"effects", list}}.dump(2) + "\n";
+}
+
+std::string entry_text(const CatalogueEntry& entry) {
+  const ChannelFacts& channel = facts_of(entry.channel);
+  std::string text = fmt::format(
+      "{}\n\n  cause        {}\n  remedy       {}\n  acts on      {} (channel {})\n"
+      "  goes with    {}\n  coefficient  {}\n",
+      name_with_brackets(entry), entry.cause, entry.remedy, channel.does_what, channel.name,
+      fmt::join(entry.pattern, "; "), entry.unit.empty() ? "-" : entry.unit);
+  if (entry.detectable > 0.0) {
+    text += fmt::format("  seen from    {:g}{}{} on, roughly\n", entry.detectable,
+                        channel.unit.empty() ? "" : " ", channel.unit);
+  }
+  return text;
+}
+
+void run_effects(const EffectsCommand& options) {
+  const std::vector<const CatalogueEntry*> entries = asked_for(options.name);
+  if (!options.json.empty()) write_files({{options.json, json_text(entries)}});
+  fmt::print("{}", options.name.empty() ? catalogue_text() : entry_text(*entries.front()));
+}
+
+}  // namespace
+
+void setup_effects(const Command& app) {
+  auto options = std::make_shared<EffectsCommand>();
+  const Command command =
+      app.add_subcommand("effects", "List the catalogue of physical effects, or tell of one");
+  command.add_option("NAME", options->name, "An effect of the catalogue").type_name("NAME");
+  command.add_option("--json", options->json, "Write the same as JSON").type_name("FILE");
+  command.footer(
+      "  trussmap effects\n"
+      "  trussmap effects \"turn scrub\"\n"
+      "\"seen from\": the largest effect in a recording that 60 legs of 5 m with survey and "
+      "compass\n"
+      "just show, in the channel's unit; how the robot drives decides.");
+  command.callback([options] { run_effects(*options); });
+}
+
+}  // namespace trussmap::app
