@@ -2,26 +2,31 @@
 // SPDX-License-Identifier: MIT
 //
 // The workbench's verdict, map, error, steps and strips of time, as a state has them.
-import {make, showChart} from './figure.js';
+import {by, make, within} from './dom.js';
+import {showChart} from './figure.js';
 
-const by = id => document.getElementById(id);
-
+/** @param {string} id @param {string} [text] */
 function say(id, text) {
   by(id).textContent = text || '';
   by(id).hidden = !text;
 }
 
-/// A chart in its figure.
+/**
+ * A chart in its figure.
+ * @param {string} id
+ * @param {Chart | null} chart
+ */
 export function showFigure(id, chart) {
   const figure = by(id);
   figure.hidden = !chart;
   if (!chart) return;
-  figure.querySelector('h3').textContent = chart.title;
+  within(figure, 'h3').textContent = chart.title;
   const caption = figure.querySelector('.read p');
   if (caption) caption.textContent = chart.caption;
   showChart(figure, chart);
 }
 
+/** @param {BenchState} state */
 function showVerdict(state) {
   by('subject').textContent = state.subject;
   by('verdict').textContent = state.verdict.text;
@@ -34,6 +39,7 @@ function showVerdict(state) {
   document.title = 'trussmap: ' + state.verdict.text;
 }
 
+/** @param {BenchState} state */
 function showError(state) {
   const figure = state.figure;
   by('figure-now').textContent = figure ? figure.now : '\u2013';
@@ -46,6 +52,7 @@ function showError(state) {
   showFigure('staircase', figure ? state.staircase : null);
 }
 
+/** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
 function showSteps(state, busy, go) {
   const now = state.steps[state.at];
   by('steps').replaceChildren(...state.steps.map(step => {
@@ -54,7 +61,7 @@ function showSteps(state, busy, go) {
     const button = make('button', {
       type: 'button', disabled: busy || here, className: 'step' + (step.on_way ? ' way' : ''),
       textContent: step.name});
-    button.dataset.step = step.step;
+    button.dataset.step = String(step.step);
     button.addEventListener('click', () => go(step.step));
     const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
     const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
@@ -64,11 +71,13 @@ function showSteps(state, busy, go) {
   }));
 }
 
+/** @param {BenchState} state */
 function showNoise(state) {
   by('noise').replaceChildren(
       ...state.noise.lines.map(textContent => make('p', {textContent})));
 }
 
+/** @param {BenchState} state */
 function showStrips(state) {
   const box = by('time');
   if (box.dataset.shown === state.subject) return;  // recordings stay what they are
@@ -81,12 +90,14 @@ function showStrips(state) {
   }
 }
 
+/** @param {BenchState} state */
 function showUnseen(state) {
   by('unseen').hidden = !state.unseen.length;
-  by('unseen').querySelector('ul').replaceChildren(...state.unseen.map(one =>
+  within(by('unseen'), 'ul').replaceChildren(...state.unseen.map(one =>
       make('li', {textContent: `${one.name}: ${one.why}; ${one.drive}`})));
 }
 
+/** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
 export function showState(state, busy, go) {
   showVerdict(state);
   showFigure('map', state.map);

@@ -6,15 +6,21 @@
 const UNIT_CIRCLE = 'M-1,0A1,1,0,1,0,1,0A1,1,0,1,0,-1,0Z';
 const SHADES = 7;
 
+/** @param {string} role */
 export const colourOf = role => /^\d+$/.test(role) ? `var(--c${role})` : `var(--${role})`;
-const shadeColour = k => `var(--d${k})`;
-const isCategory = axis => Boolean(axis.categories);
+const shadeColour = (/** @type {number} */ k) => `var(--d${k})`;
+const isCategory = (/** @type {ChartAxis} */ axis) => Boolean(axis.categories);
 
-/// Rows of a layer, a mark each.
+/**
+ * Rows of a layer, a mark each.
+ * @param {ChartLayer} layer
+ */
 export function rowsOf(layer) {
   const count = layer.columns.length ? layer.columns[0].values.length : 0;
+  /** @type {Row[]} */
   const rows = new Array(count);
   for (let k = 0; k < count; ++k) {
+    /** @type {Row} */
     const row = {};
     layer.columns.forEach((column, c) => { row['c' + c] = column.values[k]; });
     if (layer.shade) {
@@ -27,7 +33,11 @@ export function rowsOf(layer) {
   return rows;
 }
 
-/// Columns of a layer that lie on the x axis, and on the y axis.
+/**
+ * Columns of a layer that lie on the x axis, and on the y axis.
+ * @param {ChartLayer} layer
+ * @param {Chart} chart
+ */
 function placesOf(layer, chart) {
   const sideways = isCategory(chart.y);
   switch (layer.kind) {
@@ -41,11 +51,15 @@ function placesOf(layer, chart) {
   }
 }
 
+/**
+ * @param {Chart} chart
+ * @param {0 | 1} which axis: x, y
+ */
 function extent(chart, which) {
   const axis = which ? chart.y : chart.x;
   if (axis.range) return axis.range.slice();
   let low = Infinity, high = -Infinity;
-  const take = value => {
+  const take = (/** @type {number | string | null} */ value) => {
     if (typeof value !== 'number' || (axis.log && !(value > 0))) return;
     if (value < low) low = value;
     if (value > high) high = value;
@@ -54,8 +68,10 @@ function extent(chart, which) {
     for (const c of placesOf(layer, chart)[which]) layer.columns[c].values.forEach(take);
     if (layer.kind === 'bars' && placesOf(layer, chart)[which][0] === 1) take(0);
     if (layer.kind === 'ellipses') {
-      layer.columns[which].values.forEach((at, k) => {
-        const reach = Math.max(layer.columns[2].values[k], layer.columns[3].values[k]) || 0;
+      const numbers = (/** @type {number} */ c) => layer.columns[c].values.map(Number);
+      const a = numbers(2), b = numbers(3);
+      numbers(which).forEach((at, k) => {
+        const reach = Math.max(a[k], b[k]) || 0;
         take(at - reach);
         take(at + reach);
       });
@@ -69,16 +85,26 @@ function extent(chart, which) {
   return [axis.zero && low === 0 ? 0 : low - margin, axis.zero && high === 0 ? 0 : high + margin];
 }
 
-/// Both ranges stretched about their middles until a unit is as long on both.
+/**
+ * Both ranges stretched about their middles until a unit is as long on both.
+ * @param {number[][]} ranges
+ * @param {number} width
+ * @param {number} height
+ */
 function equalised([x, y], width, height) {
   const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
-  const about = (range, pixels) => {
+  const about = (/** @type {number[]} */ range, /** @type {number} */ pixels) => {
     const middle = (range[0] + range[1]) / 2;
     return [middle - unit * pixels / 2, middle + unit * pixels / 2];
   };
   return [about(x, width), about(y, height)];
 }
 
+/**
+ * @param {'x' | 'y'} name
+ * @param {ChartAxis} axis
+ * @param {object} domain
+ */
 function scale(name, axis, domain) {
   const range = name === 'x' ? 'width' : 'height';
   if (isCategory(axis)) {
@@ -88,24 +114,33 @@ function scale(name, axis, domain) {
   return {name, type: axis.log ? 'log' : 'linear', domain, range, zero: false};
 }
 
+/**
+ * @param {ChartLayer} layer
+ * @param {number} index
+ * @param {Chart} chart
+ * @returns {object[]}
+ */
 function marksOf(layer, index, chart) {
   const from = {data: 'd' + index};
   const vertical = isCategory(chart.y);
+  /** @type {(name: 'x' | 'y', axis: ChartAxis) => (column: number) => object} */
   const across = (name, axis) => column => isCategory(axis)
       ? {scale: name, field: 'c' + column, band: 0.5, offset: layer.offset || 0}
       : {scale: name, field: 'c' + column};
   const x = across('x', chart.x), y = across('y', chart.y);
   const colour = layer.shade ? {field: 'colour'} : {value: colourOf(layer.colour)};
   const dash = layer.dashed ? {strokeDash: {value: [6, 4]}} : {};
-  const line = width => ({stroke: colour, strokeWidth: {value: layer.size || width}, ...dash});
+  const line = (/** @type {number} */ width) => ({stroke: colour, strokeWidth: {value: layer.size || width}, ...dash});
   const said = {tooltip: {signal: 'datum'}, cursor: {value: 'default'}};
+  /** @type {(type: string, update: object, more?: object) => object} */
   const mark = (type, update, more = {}) =>
       ({type, name: 'layer' + index, from, aria: false, encode: {update}, clip: true, ...more});
   // What has nothing to say does not answer.
+  /** @type {(type: string, update: object, hover: object) => object} */
   const lively = (type, update, hover) => layer.columns.some(column => column.name)
       ? mark(type, {}, {encode: {update: {...update, ...said}, hover}})
       : mark(type, update, {interactive: false});
-  const defined = (...columns) =>
+  const defined = (/** @type {number[]} */ ...columns) =>
       ({signal: columns.map(c => `isValid(datum.c${c})`).join(' && ')});
   switch (layer.kind) {
     case 'dots': {
@@ -130,7 +165,7 @@ function marksOf(layer, index, chart) {
                      {strokeWidth: {value: 8}})];
     }
     case 'ellipses': {
-      const pixels = c => ({signal: `max(1.5, datum.c${c} * abs(scale('x', 1) - scale('x', 0)))`});
+      const pixels = (/** @type {number} */ c) => ({signal: `max(1.5, datum.c${c} * abs(scale('x', 1) - scale('x', 0)))`});
       return [lively('path', {x: x(0), y: y(1), path: {value: UNIT_CIRCLE}, scaleX: pixels(2),
                               scaleY: pixels(3), angle: {signal: '-datum.c4 * 180 / PI'},
                               fill: colour, fillOpacity: {value: 0.18}, stroke: colour,
@@ -175,7 +210,10 @@ function marksOf(layer, index, chart) {
   return [];
 }
 
-/// Names in the legend with their colours, each once.
+/**
+ * Names in the legend with their colours, each once.
+ * @param {Chart} chart
+ */
 function legendOf(chart) {
   const entries = new Map();
   for (const layer of chart.layers) {
@@ -189,12 +227,14 @@ function legendOf(chart) {
 
 const text = {font: 'system-ui, Liberation Sans, sans-serif'};
 
+/** @param {Chart} chart @param {number} width */
 export function specOf(chart, width) {
   const legend = legendOf(chart);
   let domains = [extent(chart, 0), extent(chart, 1)];
   // Room for the axes, near enough for a map's proportions.
   if (chart.equal) domains = equalised(domains, width - 65, chart.height);
-  const axis = (orient, of, name) => ({
+  const axis = (/** @type {string} */ orient, /** @type {ChartAxis} */ of,
+                /** @type {'x' | 'y'} */ name) => ({
     orient, scale: name, title: of.title, grid: !isCategory(of), ticks: false, labelPadding: 6,
     domain: false, tickCount: {signal: `ceil(${name === 'x' ? 'width / 90' : 'height / 45'})`},
     labelLimit: name === 'y' ? Math.min(220, width * 0.4) : 110,
