@@ -124,6 +124,9 @@ struct TruthCalibration {
 /// none. In a page colours follow the page's.
 [[nodiscard]] std::string effect_drawing(const Effect& effect);
 
+/// An effect explained, as JSON for that page: its text (wording.hpp) and its drawing.
+[[nodiscard]] std::string explanation_json(const Effect& effect);
+
 /// Pictures as SVG files: the map before and after, over its survey where there is one; where runs
 /// round a square of this side [m] ended, a cluster per direction and round; end errors with the
 /// 95 % ellipses of the runs and of the estimate.

@@ -108,6 +108,7 @@ struct WorkbenchStep {
   Kind kind = Kind::given;
   std::string effect;         ///< that was added or removed
   std::size_t from = 0;       ///< the step that it began at; of the first its own
+  std::string label = {};     ///< what its maker calls it; empty: nothing
   Model model;                ///< what was added has no coefficients
   double arrival_rms = 0.0;   ///< m, of the held-out legs; 0 without any
   double expected_rms = 0.0;  ///< m, likewise, by the noise
@@ -152,6 +153,8 @@ class Workbench {
 
   void add(const Effect& effect, const WorkbenchWatch& watch = {});
   void remove(std::size_t effect, const WorkbenchWatch& watch = {});
+  /// What a step is called from now on; empty: nothing. Throws std::out_of_range.
+  void rename(std::size_t step, std::string label);
   /// Back, or on, to a step that was made.
   void go_to(std::size_t step, const WorkbenchWatch& watch = {});
 

@@ -51,6 +51,7 @@ ordered_json json(const WorkbenchStep& step) {
                          {"dof", step.dof},
                          {"model", format_model(step.model)}};
   if (step.predicted_rms) result["predicted_rms"] = *step.predicted_rms;
+  if (!step.label.empty()) result["label"] = step.label;
   return result;
 }
 
@@ -64,6 +65,7 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, const std::s
   step.chi2 = json.at("chi2").get<double>();
   step.dof = json.at("dof").get<int>();
   if (json.contains("predicted_rms")) step.predicted_rms = json.at("predicted_rms").get<double>();
+  step.label = json.value("label", "");
   step.model = model_from_text(json.at("model").get<std::string>(),
                                fmt::format("{}, model of step {}", file, number));
   return step;

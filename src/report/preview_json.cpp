@@ -5,6 +5,7 @@
 #include "report/view_json.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/workbench.hpp"
 
 #include <fmt/format.h>
@@ -61,6 +62,15 @@ std::string preview_json(const EffectPreview& preview, double arrival_rms) {
   result["chart"] = evidence.response.bins.empty() && evidence.response.curve.empty()
                         ? ordered_json(nullptr)
                         : chart_view(chart_of(preview));
+  return safe_text(result);
+}
+
+std::string explanation_json(const Effect& effect) {
+  const Explanation explanation = explanation_of(effect);
+  ordered_json result = effect_view(effect);
+  result["explanation"] = {
+      {"does", explanation.does}, {"look", explanation.look}, {"drive", explanation.drive}};
+  result["drawing"] = effect_drawing(effect);
   return safe_text(result);
 }
 

@@ -45,12 +45,15 @@ std::string step_name(const WorkbenchStep& step) {
 ordered_json step_json(const WorkbenchLog& log, std::size_t k,
                        const std::vector<std::size_t>& way) {
   const WorkbenchStep& step = log.steps[k];
+  ordered_json has = ordered_json::array();
+  for (const Effect& one : step.model.effects) has.push_back(name_in_words(one));
   const bool on_way = std::find(way.begin(), way.end(), k) != way.end();
   return {{"step", k},
           {"from", step.from},
           {"name", step_name(step)},
+          {"label", step.label},
           {"on_way", on_way},
-          {"effects", step.model.effects.size()},
+          {"has", std::move(has)},
           {"mm", 1e3 * step.arrival_rms},
           {"predicted_mm",
            step.predicted_rms ? ordered_json(1e3 * *step.predicted_rms) : ordered_json(nullptr)},

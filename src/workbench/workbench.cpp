@@ -122,6 +122,10 @@ void Workbench::remove(std::size_t effect, const WorkbenchWatch& watch) {
   take(std::move(step), watch);
 }
 
+void Workbench::rename(std::size_t step, std::string label) {
+  log_.steps.at(step).label = std::move(label);
+}
+
 void Workbench::go_to(std::size_t step, const WorkbenchWatch& watch) {
   WorkbenchLog log = log_;
   static_cast<void>(log.steps.at(step));

@@ -86,6 +86,8 @@ TEST(PageScripts, GetWhatTheirTypesSay) {
   for (const json& card : state.at("cards")) {
     types.hold(answer(bench, "preview", {{"finding", card.at("finding")}, {"rivals", {0, 1}}}),
                "Preview", "preview of " + card.at("name").get<std::string>());
+    types.hold(answer(bench, "explain", {{"finding", card.at("finding")}}), "ExplainReply",
+               "explanation of " + card.at("name").get<std::string>());
     json values = json::array();
     for (const json& parameter : card.at("parameters")) values.push_back(parameter.at("value"));
     if (values.empty()) continue;

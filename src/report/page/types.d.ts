@@ -53,8 +53,9 @@ interface BenchStep {
   step: number;
   from: number;
   name: string;
+  label: string;
   on_way: boolean;
-  effects: number;
+  has: string[];
   mm: number;
   predicted_mm: number | null;
   chi2_per_dof: number;
@@ -194,6 +195,26 @@ interface Preview {
   p: string;
   rivals: PreviewRival[];
   chart: Chart | null;
+}
+
+interface ExplanationWords {
+  does: string;
+  look: string;
+  drive: string;
+}
+
+interface ExplainReply {
+  id: string;
+  name: string;
+  formula: string;
+  part: string;
+  channel: string;
+  does: string;
+  shape: string[];
+  cause?: string;
+  remedy?: string;
+  explanation: ExplanationWords;
+  drawing: string;
 }
 
 interface BestReply {
