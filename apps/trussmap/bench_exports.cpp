@@ -38,10 +38,25 @@ bool is_of_catalogue(const Effect& effect) {
   }
 }
 
+/// " --exclude ..." of a step; empty where it uses all.
+std::string exclusion(const WorkbenchStep& step, std::size_t recordings) {
+  std::vector<std::string> stretches;
+  for (std::size_t s = 0; s < step.excluded.size(); ++s) {
+    for (const TimeSpan& span : step.excluded[s]) {
+      const std::string number = recordings > 1 ? fmt::format("{}:", s + 1) : std::string();
+      stretches.push_back(fmt::format("{}{}:{}", number, span.from, span.to));
+    }
+  }
+  return stretches.empty() ? std::string()
+                           : fmt::format(" --exclude {}", fmt::join(stretches, ","));
+}
+
 std::string commands(const BenchView& view, const BenchOrigin& origin) {
   std::vector<std::string> folders;
   for (const std::string& one : origin.recordings) folders.push_back(quoted(one));
-  const std::string recordings = fmt::format("{}", fmt::join(folders, " "));
+  const std::string recordings =
+      fmt::format("{}{}", fmt::join(folders, " "),
+                  exclusion(view.log.steps[view.log.at], origin.recordings.size()));
   const Model& given = view.log.steps.front().model;
   std::string text =
       "#!/bin/sh\n# What was done in the workbench, by commands. The noise is estimated anew by "

@@ -8,8 +8,11 @@
 #include "trussmap/error.hpp"
 #include "trussmap/pages.hpp"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -82,6 +85,22 @@ Effect effect_of(const json& asked, const BenchView& view) {
   return effect;
 }
 
+/// Numbers of the legs in an area of the map, or in a span of elapsed time; empty without a choice.
+std::vector<std::size_t> legs_of(const json& asked, const BenchView& view) {
+  if (!asked.contains("choice")) return {};
+  const json& choice = asked.at("choice");
+  std::vector<std::size_t> legs;
+  if (choice.contains("area")) {
+    const auto [x, y, x2, y2] = choice.at("area").get<std::array<double, 4>>();
+    legs = legs_in_area(view.now, {x, y}, {x2, y2});
+  } else {
+    const auto [from, to] = choice.at("time").get<std::array<double, 2>>();
+    legs = legs_in_time(view.now, {std::min(from, to), std::max(from, to)});
+  }
+  if (legs.empty()) throw Refusal{400, "no leg is there"};
+  return legs;
+}
+
 LocalReply preview(const json& asked, const BenchView& view) {
   const Effect effect = effect_of(asked, view);
   std::vector<Effect> rivals;
@@ -91,7 +110,7 @@ LocalReply preview(const json& asked, const BenchView& view) {
     rivals.push_back(view.now.diagnosis().findings[finding].effect);
     rivals.back().coefficients.clear();
   }
-  return {.body = preview_json(view.now.preview(effect, rivals),
+  return {.body = preview_json(view.now.preview(effect, rivals, legs_of(asked, view)),
                                view.now.diagnosis().held_out.arrival_rms)};
 }
 
@@ -117,7 +136,7 @@ LocalReply explain(const json& asked, const BenchView& view) {
 
 LocalReply shown_effect(const json& asked, const BenchView& view) {
   EffectPreview preview;
-  preview.evidence = view.now.shown(place_of_effect(asked, view));
+  preview.evidence = view.now.shown(place_of_effect(asked, view), legs_of(asked, view));
   preview.dof = 1;
   return {.body = preview_json(preview, view.now.diagnosis().held_out.arrival_rms)};
 }
@@ -161,12 +180,21 @@ BenchWork::Step step_of(const json& asked, const BenchView& view) {
     return [step = place_of_step(asked, view), label = std::move(label)](
                Workbench& bench, const WorkbenchWatch&) { bench.rename(step, label); };
   }
+  if (what == "exclude") {
+    return [legs = legs_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
+      bench.exclude(legs, watch);
+    };
+  }
+  if (what == "include") {
+    return [](Workbench& bench, const WorkbenchWatch& watch) { bench.include_all(watch); };
+  }
   if (what == "go") {
     const std::size_t step = place_of_step(asked, view);
     return [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); };
   }
-  throw Refusal{400,
-                fmt::format("a step does not do \"{}\", expected add, remove, go or name", what)};
+  throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove, exclude, "
+                                 "include, go or name",
+                                 what)};
 }
 
 LocalReply step(const json& asked, BenchWork& work, const BenchView& view) {
@@ -209,6 +237,7 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   if (request.path == "best") return best(asked, *view);
   if (request.path == "explain") return explain(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);
+  if (request.path == "legs") return {.body = selection_json(view->now, legs_of(asked, *view))};
   if (request.path == "noise") return with_noise(asked, *view);
   if (request.path == "step") return step(asked, work, *view);
   return refusal(404, "there is nothing here");

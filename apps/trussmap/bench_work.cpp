@@ -7,6 +7,7 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <sys/resource.h>
@@ -25,6 +26,16 @@ std::vector<ProgressStep> stages() {
   return {{"fitting the map", 5}, {"looking for what is missing", 50}, {"comparing", 10}};
 }
 
+bool same_spans(const std::vector<std::vector<TimeSpan>>& a,
+                const std::vector<std::vector<TimeSpan>>& b) {
+  const auto same = [](const TimeSpan& one, const TimeSpan& other) {
+    return one.from == other.from && one.to == other.to;
+  };
+  return std::ranges::equal(a, b, [&same](const auto& one, const auto& other) {
+    return std::ranges::equal(one, other, same);
+  });
+}
+
 std::optional<WorkbenchLog> log_in(const BenchJob& job) {
   const std::filesystem::path file = job.folder / kLog;
   if (!std::filesystem::exists(file)) return std::nullopt;
@@ -32,6 +43,11 @@ std::optional<WorkbenchLog> log_in(const BenchJob& job) {
   if (format_model(log.steps.front().model) != format_model(job.model)) {
     throw InputError(file.string(), 0,
                      "the work began with another model, expected the same (or another --work)");
+  }
+  if (!same_spans(log.steps.front().excluded, job.options.fit.excluded)) {
+    throw InputError(file.string(), 0,
+                     "the work began with other times excluded, expected the same (or another "
+                     "--work)");
   }
   return log;
 }

@@ -4,6 +4,7 @@
 
 #include "option_checks.hpp"
 #include "recording_warnings.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/survey_comparison.hpp"
@@ -54,6 +55,14 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
       .type_name("WHAT,...");
   command
       .add_option(
+          "--exclude", options.exclude,
+          "Do not use what was measured and driven from one time to another [s], of the Nth "
+          "recording")
+      .delimiter(',')
+      .check(stretch_of_time())
+      .type_name("[N:]FROM:TO,...");
+  command
+      .add_option(
           "--gate", options.gate,
           "Leave sightings, fixes and loops out that all others contradict by more standard "
           "deviations than this (0: leave none out)")
@@ -86,6 +95,32 @@ void leave_contradicting_points_out(ModelRecordings& input, const ModelFit& with
       input.notes.push_back(
           fmt::format("landmark {}: its survey contradicts all the others, and is left out", name));
     }
+  }
+}
+
+/// Stretches of time are of recordings that are there.
+void check_stretches(const std::vector<Recording>& recordings,
+                     const std::vector<std::string>& stretches) {
+  for (const std::string& text : stretches) {
+    const StretchOfTime one = parse_stretch(text);
+    const std::size_t count = recordings.size();
+    if (!one.recording && count > 1) {
+      throw InputError(
+          "--exclude " + text, 0,
+          fmt::format("does not say of which of {} recordings, expected N:FROM:TO", count));
+    }
+    const std::size_t place = one.recording.value_or(0);
+    if (place >= count) {
+      throw InputError("--exclude " + text, 0,
+                       fmt::format("there is no recording {}, expected 1 to {}", place + 1, count));
+    }
+    const Drive& drive = recordings[place].drive;
+    if (drive.rows() == 0 || (one.time.from < drive.t.back() && one.time.to > drive.start())) {
+      continue;
+    }
+    throw InputError("--exclude " + text, 0,
+                     fmt::format("{} lasts from {:g} s to {:g} s, expected a part of that",
+                                 recordings[place].name, drive.start(), drive.t.back()));
   }
 }
 
@@ -127,6 +162,7 @@ ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
   result.recordings = read_recordings(options.recordings);
   result.model = read_model(options.model, result.recordings);
   take_wheels(result.recordings, result.model.robot);
+  check_stretches(result.recordings, options.exclude);
   warn_of_mistakes(result.recordings, result.model, options.model);
   take_frames(result, options);
   return result;
@@ -145,6 +181,12 @@ FitOptions fit_options(const ModelRecordingsOptions& options) {
   result.use_truth = !left_out("truth");
   result.use_fixes = !left_out("fixes");
   result.use_loops = !left_out("loops");
+  for (const std::string& text : options.exclude) {
+    const StretchOfTime one = parse_stretch(text);
+    const std::size_t place = one.recording.value_or(0);
+    if (result.excluded.size() <= place) result.excluded.resize(place + 1);
+    result.excluded[place].push_back(one.time);
+  }
   if (options.gate > 0.0) result.gate = options.gate * options.gate;
   result.most_left_out = kMostLeftOut;
   return result;

@@ -20,14 +20,16 @@ struct ModelRecordingsOptions {
   std::string model;
   std::string json;
   std::vector<std::string> without;
-  double gate = kModelGate;     // sd, 0: none
+  std::vector<std::string> exclude;  ///< stretches of time
+  double gate = kModelGate;          // sd, 0: none
   std::optional<double> every;  // s between frames of sightings; 0: all; absent: as errors last
   double level = kSignificance;
   LegOptions legs;
   bool stated_noise = false;
 };
 
-/// RECORDING..., --model, --json, --without, --min-drive, --leg, --holdout, --gate, --every,
+/// RECORDING..., --model, --json, --without, --exclude, --min-drive, --leg, --holdout, --gate,
+/// --every,
 /// --level.
 void add_model_recordings(const Command& command, ModelRecordingsOptions& options);
 
@@ -55,7 +57,7 @@ void take_wheels(std::vector<Recording>& recordings, const Robot& robot);
 /// A line for each note.
 void print_notes(const ModelRecordings& input);
 
-/// --without and --gate; the effects are fitted.
+/// --without, --exclude and --gate; the effects are fitted.
 [[nodiscard]] FitOptions fit_options(const ModelRecordingsOptions& options);
 [[nodiscard]] CompareOptions compare_options(const ModelRecordingsOptions& options);
 [[nodiscard]] DiagnoseOptions diagnose_options(const ModelRecordingsOptions& options);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace trussmap::app {
 namespace {
@@ -28,7 +29,44 @@ bool is_whole_number(const std::string& text, std::uint64_t least) {
   return value && *value >= least;
 }
 
+std::optional<StretchOfTime> stretch_in(const std::string& text) {
+  std::vector<std::string> parts{""};
+  for (const char one : text) {
+    if (one == ':') {
+      parts.emplace_back();
+    } else {
+      parts.back() += one;
+    }
+  }
+  StretchOfTime result;
+  if (parts.size() == 3) {
+    if (!is_whole_number(parts.front(), 1)) return std::nullopt;
+    result.recording = std::stoul(parts.front()) - 1;
+    parts.erase(parts.begin());
+  }
+  if (parts.size() != 2) return std::nullopt;
+  const std::optional<double> from = finite_number(parts[0]);
+  const std::optional<double> to = finite_number(parts[1]);
+  if (!from || !to || !(*from < *to)) return std::nullopt;
+  result.time = {*from, *to};
+  return result;
+}
+
 }  // namespace
+
+Check stretch_of_time() {
+  return {[](const std::string& text) {
+            return stretch_in(text) ? ""
+                                    : "'" + text +
+                                          "' is no stretch of time, expected FROM:TO or N:FROM:TO "
+                                          "in seconds, FROM below TO, N a recording's number";
+          },
+          ""};
+}
+
+StretchOfTime parse_stretch(const std::string& text) {
+  return stretch_in(text).value();
+}
 
 Check above_zero() {
   return {[](const std::string& text) {

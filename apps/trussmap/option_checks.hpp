@@ -6,8 +6,11 @@
 
 #include "command_line.hpp"
 #include "trussmap/map_builder.hpp"
+#include "trussmap/recording.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace trussmap::app {
@@ -20,6 +23,17 @@ namespace trussmap::app {
 
 /// A whole number from `least` on.
 [[nodiscard]] Check whole_number(std::uint64_t least);
+
+/// "FROM:TO" or "N:FROM:TO": s, FROM below TO, of recording N, from 1 on.
+[[nodiscard]] Check stretch_of_time();
+
+struct StretchOfTime {
+  std::optional<std::size_t> recording;  ///< from 0 on; absent: of the only one
+  TimeSpan time;
+};
+
+/// What stretch_of_time() let through.
+[[nodiscard]] StretchOfTime parse_stretch(const std::string& text);
 
 /// A number of landmarks from 2 on, "all" or "auto".
 [[nodiscard]] Check eta_text();

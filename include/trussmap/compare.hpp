@@ -34,6 +34,7 @@ namespace trussmap {
 inline constexpr double kSignificance = 0.05;
 
 struct LegMisfit {
+  std::size_t leg = 0;  ///< its number among all legs, as LegPrediction's
   std::string from;
   std::string to;
   double t = 0.0;                  ///< s, at its end

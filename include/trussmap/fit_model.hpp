@@ -37,6 +37,9 @@ struct FitOptions {
   /// Share of these: where more would be left out the gate widens, at last to none. Few are
   /// ever misread; where many contradict the rest, the model is wrong.
   double most_left_out = 1.0;
+  /// Per recording, in its own time (or none at all): what is sighted or known within is not used,
+  /// nor is what is driven between two such instants, if a part of it is within.
+  std::vector<std::vector<TimeSpan>> excluded = {};
 };
 
 /// Why a coefficient was not fitted.
@@ -118,8 +121,8 @@ struct SummarisedFitOptions {
 class SummarisedFit {
  public:
   /// Throws std::invalid_argument where the model has what cannot be summarised: an effect per
-  /// session or of the variable `session`, a delay, steering, noise with heavy tails; or where the
-  /// tolerance is not positive.
+  /// session or of the variable `session`, a delay, steering, noise with heavy tails; where the
+  /// tolerance is not positive, or where spans of time are excluded.
   explicit SummarisedFit(const Model& model, const SummarisedFitOptions& options = {});
   ~SummarisedFit();
   SummarisedFit(SummarisedFit&&) noexcept;

@@ -114,6 +114,9 @@ struct TruthCalibration {
 /// stated, while it is still being estimated.
 [[nodiscard]] std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
                                          const std::string& subject, bool provisional = false);
+/// Of that, what the page shows when these legs are chosen, by their numbers, ascending.
+[[nodiscard]] std::string selection_json(const TriedModel& now,
+                                         const std::vector<std::size_t>& legs);
 /// The same of an effect that is looked at: "+ name" beside the present model's error `arrival_rms`
 /// [m]. Of one that the model has, without figures of what it would save.
 [[nodiscard]] std::string preview_json(const EffectPreview& preview, double arrival_rms);

@@ -32,6 +32,12 @@ namespace trussmap {
 
 inline constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
+/// Part of a recording's time.
+struct TimeSpan {
+  double from = 0.0;  ///< s
+  double to = 0.0;    ///< s
+};
+
 struct Covariate {
   std::string name;            ///< a letter, then letters, digits, _
   std::vector<double> values;  ///< one per drive row, in the column's own unit

@@ -8,14 +8,15 @@
 //                                             score tests, no fit
 //                           shown(effect)     one that the model has, as the recordings show it
 //                                             where the model lacks it alone
+//                           legs()            where, when, whether they count; both of the above
+//                                             can look at some legs alone
 //
-//   Workbench   the steps: given --add--> + hard iron --add--> + wheelbase
+//   Workbench   the steps: given --add--> + hard iron --add--> + wheelbase --exclude--> 3 legs
 //                                             '------remove--> ...
-//               Each is a model without fitted coefficients, which follow from it and the
-//               recordings alone: a step that is returned to has the same figures to the last
-//               digit.
+//               Each is a model without fitted coefficients, which follow from it and from what is
+//               excluded alone: a step that is returned to has the same figures to the last digit.
 //
-// Held-out legs are the same at every step, and no fit sees them.
+// Held-out legs are the same at every step, and no fit that is judged by them sees them.
 #pragma once
 
 #include "trussmap/diagnose.hpp"
@@ -58,6 +59,19 @@ struct EffectParameter {
 /// they are.
 [[nodiscard]] double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double factor);
 
+/// A leg of the recordings.
+struct TriedLeg {
+  std::size_t number = 0;  ///< among all legs, as LegPrediction's
+  std::size_t recording = 0;
+  std::string from;  ///< landmarks; empty between truth rows or fixes
+  std::string to;
+  TimeSpan time;                    ///< as recorded
+  Vector2 begin = Vector2::Zero();  ///< m, map frame, where the robot was
+  Vector2 end = Vector2::Zero();
+  bool held_out = false;  ///< the model is judged by it: it cannot be excluded
+  bool excluded = false;  ///< no fit sees it
+};
+
 /// What a model is being tried for at the moment.
 enum class TryingStage { fitting, searching, comparing };
 
@@ -91,27 +105,44 @@ class TriedModel {
 
   /// Throws std::invalid_argument, in a sentence, on an effect that cannot be applied to these
   /// recordings (a variable that they do not have, a value that is not finite).
-  [[nodiscard]] EffectPreview preview(const Effect& effect,
-                                      const std::vector<Effect>& rivals = {}) const;
+  /// The response is that of the legs of these numbers; of all without any.
+  [[nodiscard]] EffectPreview preview(const Effect& effect, const std::vector<Effect>& rivals = {},
+                                      const std::vector<std::size_t>& legs = {}) const;
 
-  /// An effect of the model by its place there. One more fit, kept. Throws std::out_of_range.
-  [[nodiscard]] EffectEvidence shown(std::size_t effect) const;
+  /// An effect of the model by its place there. One more fit, kept until another is asked for.
+  /// Throws std::out_of_range.
+  [[nodiscard]] EffectEvidence shown(std::size_t effect,
+                                     const std::vector<std::size_t>& legs = {}) const;
+
+  /// All of them, in order of their numbers.
+  [[nodiscard]] const std::vector<TriedLeg>& legs() const;
 
  private:
   struct Tried;
   std::shared_ptr<const Tried> tried_;
 };
 
+/// Numbers of the legs of which the straight way crosses the rectangle between two corners, m, map
+/// frame.
+[[nodiscard]] std::vector<std::size_t> legs_in_area(const TriedModel& model, const Vector2& corner,
+                                                    const Vector2& opposite);
+/// Of those that a span of time has a part of; recordings one after the other, from 0 on.
+[[nodiscard]] std::vector<std::size_t> legs_in_time(const TriedModel& model,
+                                                    const TimeSpan& elapsed);
+
 /// One model on the way.
 struct WorkbenchStep {
-  enum class Kind { given, add, remove };
+  enum class Kind { given, add, remove, exclude, include };
   Kind kind = Kind::given;
-  std::string effect;         ///< that was added or removed
-  std::size_t from = 0;       ///< the step that it began at; of the first its own
-  std::string label = {};     ///< what its maker calls it; empty: nothing
-  Model model;                ///< what was added has no coefficients
-  double arrival_rms = 0.0;   ///< m, of the held-out legs; 0 without any
-  double expected_rms = 0.0;  ///< m, likewise, by the noise
+  std::string effect;      ///< that was added or removed
+  std::size_t from = 0;    ///< the step that it began at; of the first its own
+  std::string label = {};  ///< what its maker calls it; empty: nothing
+  Model model;             ///< what was added has no coefficients
+  /// FitOptions::excluded here.
+  std::vector<std::vector<TimeSpan>> excluded = {};
+  std::size_t excluded_legs = 0;
+  double arrival_rms = 0.0;                            ///< m, of the held-out legs; 0 without any
+  double expected_rms = 0.0;                           ///< m, likewise, by the noise
   std::optional<double> predicted_rms = std::nullopt;  ///< m, before the fit
   double chi2 = 0.0;
   int dof = 0;
@@ -153,6 +184,11 @@ class Workbench {
 
   void add(const Effect& effect, const WorkbenchWatch& watch = {});
   void remove(std::size_t effect, const WorkbenchWatch& watch = {});
+  /// Fits without the legs of these numbers, too, from here on, and without what only they tie to
+  /// the map. Held-out legs stay; std::invalid_argument where there are no others.
+  void exclude(const std::vector<std::size_t>& legs, const WorkbenchWatch& watch = {});
+  /// Takes back in what has been excluded here.
+  void include_all(const WorkbenchWatch& watch = {});
   /// What a step is called from now on; empty: nothing. Throws std::out_of_range.
   void rename(std::size_t step, std::string label);
   /// Back, or on, to a step that was made.
@@ -160,6 +196,7 @@ class Workbench {
 
  private:
   [[nodiscard]] TriedModel tried(const WorkbenchLog& log, const WorkbenchWatch& watch) const;
+  [[nodiscard]] WorkbenchStep from_here(WorkbenchStep::Kind kind) const;
   void take(WorkbenchStep step, const WorkbenchWatch& watch);
 
   std::shared_ptr<const std::vector<Recording>> recordings_;

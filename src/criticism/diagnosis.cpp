@@ -111,8 +111,7 @@ class Diagnostician {
 
   [[nodiscard]] bool changes_nothing(const Tested& one, const HeldOutMetrics& with_it,
                                      double floor) const {
-    return legs_.same_layout(state_.problem) && !result_.held_out.legs.empty() &&
-           fit_.p_value > kFitsAnyway &&
+    return legs_.has_slopes() && !result_.held_out.legs.empty() && fit_.p_value > kFitsAnyway &&
            with_it.arrival_rms > (1.0 - kNegligible) * result_.held_out.arrival_rms &&
            detectable_rise(one, floor) < kNegligible;
   }

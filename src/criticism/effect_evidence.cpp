@@ -32,12 +32,13 @@ double seen_from(const Finding& finding, ShapeRanges& ranges) {
 }  // namespace
 
 EffectEvidence seen_effect(const EffectEstimate& estimate, std::vector<Effect> rivals,
-                           const FitState& fit, const ScoreTest& tests) {
+                           const FitState& fit, const ScoreTest& tests,
+                           const Eigen::VectorXd& rows) {
   const Effect& effect = estimate.effect;
   EffectEvidence one{estimate, {}, range_of(effect, tests.context()), std::move(rivals)};
   const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
   if (!variable.empty()) {
-    one.response = response_along(variable, effect, fit, tests, one.rivals);
+    one.response = response_along(variable, effect, fit, tests, one.rivals, rows);
   }
   if (one.response.curve.empty() && !one.response.bins.empty()) {
     one.response.curve =

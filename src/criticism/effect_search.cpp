@@ -53,7 +53,7 @@ bool all(const Tested&) {
 EffectSearch::EffectSearch(const FitState& fit, const ScoreTest& tests,
                            const SearchOptions& options, const HeldOutLegs* legs)
     : fit_(fit), tests_(tests), options_(options), legs_(legs), dispersion_(fit, tests) {
-  if (legs_ != nullptr && !legs_->same_layout(fit.problem)) legs_ = nullptr;
+  if (legs_ != nullptr && !legs_->has_slopes()) legs_ = nullptr;
 }
 
 void EffectSearch::run() {
@@ -103,7 +103,7 @@ void EffectSearch::take(Tested& tested, const Candidate& candidate, Score& score
   tested.candidate = candidate;
   tested.dispersion = dispersion_of(score, dispersion_);
   if (legs_ != nullptr && score.dof > 0) {
-    tested.slopes = legs_->slopes(score.columns, score.landmarks);
+    tested.slopes = legs_->slopes(candidate.effect, score.columns, score.landmarks);
   }
   drop_columns(score);
   tested.score = score;

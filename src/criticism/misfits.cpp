@@ -39,6 +39,7 @@ class Legs {
     const Measurement& to = problem_.measurements[leg.to];
     DrivenLeg result;
     LegMisfit& one = result.misfit;
+    one.leg = leg.number;
     one.from = from.to < 0 ? std::string() : problem_.landmarks[idx(from.to)];
     one.to = to.to < 0 ? std::string() : problem_.landmarks[idx(to.to)];
     one.t = leg.time.to;
@@ -125,7 +126,7 @@ Misfits find_misfits(const FitState& fit, const ScoreTest& tests, const LegOptio
   Misfits result;
   const Legs legs(fit, tests.system());
   std::map<RouteName, RouteMisfit> routes;
-  for (const LegSpan& span : leg_spans(fit.recordings, fit.problem, options)) {
+  for (const LegSpan& span : leg_spans(fit, options)) {
     DrivenLeg leg = legs.driven(span);
     add(leg, routes);
     result.legs.push_back(std::move(leg.misfit));

@@ -31,11 +31,13 @@ std::optional<Shape> formula_of(const std::string& variable, const Effect& effec
 }
 
 /// Least squares by the modes that the data show; bins that no measurement sees are dropped.
-/// `traces`: what rivals leave in the measurements, estimated in the same way.
+/// `traces`: what rivals leave in the measurements, estimated in the same way. `rows`: those that
+/// count; empty: all.
 void estimate(Response& response, const Score& score, double prior_sd, const FitState& fit,
-              const ScoreTest& tests, const Eigen::MatrixXd& traces) {
+              const ScoreTest& tests, const Eigen::MatrixXd& traces, const Eigen::VectorXd& rows) {
   std::vector<ResponseBin>& bins = response.bins;
-  const Eigen::MatrixXd& M = score.projected;
+  Eigen::MatrixXd M = score.projected;
+  if (rows.size() > 0) M = rows.asDiagonal() * M;
   const Eigen::MatrixXd S = M.transpose() * M;
   const SymmetricModes modes = symmetric_modes(S);
   const double least =
@@ -49,7 +51,10 @@ void estimate(Response& response, const Score& score, double prior_sd, const Fit
     explained += g[mode] * g[mode] * inverse[mode];
   }
   const double left = tests.residuals().squaredNorm() - explained;
-  const double dof = static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
+  // Of some rows nobody knows how many values the map has taken.
+  const double dof = rows.size() > 0
+                         ? 0.0
+                         : static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
   const Eigen::MatrixXd projected = modes.eigenvectors * inverse.asDiagonal() *
                                     modes.eigenvectors.transpose() * (M.transpose() * traces);
   response.rivals.resize(static_cast<std::size_t>(traces.cols()));
@@ -199,7 +204,8 @@ std::vector<Vector2> levelled(std::vector<Vector2> curve, const Effect& effect,
 }  // namespace
 
 Response response_along(const std::string& variable, const Effect& effect, const FitState& fit,
-                        const ScoreTest& tests, const std::vector<Effect>& rivals) {
+                        const ScoreTest& tests, const std::vector<Effect>& rivals,
+                        const Eigen::VectorXd& rows) {
   const ChannelFacts& facts = facts_of(effect.channel);
   Response result;
   result.channel = effect.channel;
@@ -217,7 +223,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   result.bins = std::move(bins.bins);
   std::vector<Effect> traced = rivals;
   traced.push_back(effect);
-  estimate(result, scores.front(), facts.prior_sd, fit, tests, traces_of(traced, tests));
+  estimate(result, scores.front(), facts.prior_sd, fit, tests, traces_of(traced, tests), rows);
   const std::vector<Vector2> projected = std::move(result.rivals.back());
   result.rivals.pop_back();
   if (result.bins.empty()) return result;

@@ -28,10 +28,12 @@ namespace trussmap {
 [[nodiscard]] std::string natural_variable(const Effect& effect);
 
 /// The effect's channel along a variable (kPlace: from its place), and the curve of its
-/// coefficients, if it has any. What the tests are conditioned on is not in the picture.
+/// coefficients, if it has any. What the tests are conditioned on is not in the picture. `rows`: of
+/// each row of the fit's system 1 where bins are to show it, else 0; empty: all.
 [[nodiscard]] Response response_along(const std::string& variable, const Effect& effect,
                                       const FitState& fit, const ScoreTest& tests,
-                                      const std::vector<Effect>& rivals = {});
+                                      const std::vector<Effect>& rivals = {},
+                                      const Eigen::VectorXd& rows = {});
 
 /// Least and largest g of an effect over all rows in which the robot moves.
 [[nodiscard]] EffectRange range_of(const Effect& effect, const ShapeContext& context);

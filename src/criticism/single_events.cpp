@@ -50,7 +50,7 @@ class Collector {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       if (at(k).kind == MeasurementKind::segment) segment_from[at(k).from] = k;
     }
-    for (const LegSpan& leg : leg_spans(fit_.recordings, problem_)) {
+    for (const LegSpan& leg : leg_spans(fit_)) {
       const Measurement& from = at(leg.from);
       const Measurement& to = at(leg.to);
       const bool sighted = from.to >= 0 && to.to >= 0;

@@ -9,6 +9,7 @@
 #include "parallel/parallel_for.hpp"
 #include "recording/floor_code.hpp"
 #include "recording/legs.hpp"
+#include "recording/time_spans.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -180,10 +181,9 @@ class Collector {
     }
   }
 
-  /// Whether nothing between two successive instants counts.
+  /// Whether the drive between two successive instants does not count.
   [[nodiscard]] bool is_left_out(double from, double to) const {
-    return std::any_of(spans_.begin(), spans_.end(),
-                       [&](const TimeSpan& span) { return span.from <= from && to <= span.to; });
+    return overlaps_any({from, to}, spans_);
   }
 
   /// Drops instants inside what is left out, and those that would stand alone.

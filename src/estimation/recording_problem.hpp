@@ -153,12 +153,6 @@ struct RecordingProblem {
   [[nodiscard]] int pose_node(int pose) const { return landmark_count() + pose; }
 };
 
-/// Part of a session's time.
-struct TimeSpan {
-  double from = 0.0;  ///< s
-  double to = 0.0;    ///< s
-};
-
 struct ProblemOptions {
   bool survey = true;        ///< use survey.csv
   bool truth = true;         ///< use truth.csv
@@ -172,8 +166,8 @@ struct ProblemOptions {
   double fix_path = 0.25;
   double least_spin = 0.1;   ///< rad: a shorter spin is no change of motion
   double least_drive = 0.1;  ///< m: nor is a shorter drive
-  /// Per session, in order of time (or none at all): what is driven there, and what is sighted or
-  /// known in between, is left out. A stretch of which one instant is left goes with it.
+  /// Per session (or none at all): what is sighted or known there, and every drive between two such
+  /// instants that is partly within, is left out. An instant that would stand alone goes with it.
   std::vector<std::vector<TimeSpan>> left_out = {};
 };
 

@@ -4,6 +4,7 @@
 
 #include "estimation/measurement_rows.hpp"
 #include "fit/fit_state.hpp"
+#include "recording/time_spans.hpp"
 #include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
@@ -58,6 +59,9 @@ FitterOptions fitter_options(const FitOptions& options) {
   how.problem.loops = options.use_loops;
   how.gate = options.gate;
   how.most_left_out = options.most_left_out;
+  for (const std::vector<TimeSpan>& spans : options.excluded) {
+    how.problem.left_out.push_back(merged(spans));
+  }
   return how;
 }
 

@@ -132,11 +132,17 @@ class Fitter {
   void lay_out() {
     laid_out_ = fit_.model.effects;
     fit_.recordings = retimed(as_steered(), fit_.model.effects, fit_.model.robot);
-    fit_.problem = make_problem(fit_.recordings, fit_.model, problem_options());
+    fit_.used = problem_options();
+    fit_.problem = make_problem(fit_.recordings, fit_.model, fit_.used);
   }
 
   [[nodiscard]] ProblemOptions problem_options() const {
     ProblemOptions result = options_.problem;
+    if (result.left_out.size() > recorded_.size()) {
+      throw std::invalid_argument(joined("spans are left out of ", result.left_out.size(),
+                                         " recordings, of which there are ", recorded_.size()));
+    }
+    result.left_out.resize(result.left_out.empty() ? 0 : recorded_.size());
     for (std::size_t s = 0; s < result.left_out.size(); ++s) {
       std::vector<double> ends;
       for (const TimeSpan& span : result.left_out[s]) {
@@ -573,6 +579,12 @@ class Fitter {
 };
 
 }  // namespace
+
+RecordingProblem whole_problem(const FitState& fit) {
+  ProblemOptions all = fit.used;
+  all.left_out.clear();
+  return make_problem(fit.recordings, fit.model, all);
+}
 
 std::map<std::string, Vector2> landmark_places(const FitState& fit) {
   return places_in(fit.problem, fit.adjustment.state);

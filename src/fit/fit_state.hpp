@@ -53,7 +53,8 @@ struct FitState {
   std::vector<EffectEstimate> effects;
   std::vector<Recording> recordings;  ///< as fitted: moved back by the delays
   RecordingProblem problem;
-  EffectColumns columns;          ///< known effects held, the others free, at `coefficients`
+  ProblemOptions used;    ///< by which the problem was made; spans in the times of `recordings`
+  EffectColumns columns;  ///< known effects held, the others free, at `coefficients`
   std::size_t common_errors = 0;  ///< how many of the last effects are freed common errors
   RecordingAdjustment adjustment;
   std::vector<SessionPath> paths;  ///< may be empty where the options ask for none
@@ -79,6 +80,9 @@ struct FitState {
 
 /// How many coefficients were estimated.
 [[nodiscard]] int estimated_coefficients(const FitState& fit);
+
+/// All that was measured, what the fit leaves out included.
+[[nodiscard]] RecordingProblem whole_problem(const FitState& fit);
 
 /// Where the fit has the landmarks, m, map frame.
 [[nodiscard]] std::map<std::string, Vector2> landmark_places(const FitState& fit);

@@ -56,6 +56,11 @@ class SummarisedFit::Impl {
   Impl(Model model, const SummarisedFitOptions& options)
       : options_(options), model_(std::move(model)), sessions_({options.tolerance}) {
     require_summable(model_, options.tolerance);
+    if (!options.fit.excluded.empty()) {
+      throw std::invalid_argument(
+          "spans of time are excluded: sessions that are added one after the other are taken "
+          "whole");
+    }
   }
 
   void add(const Recording& recording) {

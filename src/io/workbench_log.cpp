@@ -20,8 +20,11 @@ using nlohmann::ordered_json;
 using Kind = WorkbenchStep::Kind;
 
 constexpr const char* kFormat = "trussmap workbench 1";
-constexpr std::array<std::pair<Kind, const char*>, 3> kKinds{
-    {{Kind::given, "given"}, {Kind::add, "add"}, {Kind::remove, "remove"}}};
+constexpr std::array<std::pair<Kind, const char*>, 5> kKinds{{{Kind::given, "given"},
+                                                              {Kind::add, "add"},
+                                                              {Kind::remove, "remove"},
+                                                              {Kind::exclude, "exclude"},
+                                                              {Kind::include, "include"}}};
 
 const char* name_of(Kind kind) {
   return kKinds.at(static_cast<std::size_t>(kind)).second;
@@ -31,8 +34,9 @@ Kind kind_named(const std::string& name, const std::string& file) {
   for (const auto& [kind, known] : kKinds) {
     if (name == known) return kind;
   }
-  throw InputError(file, 0,
-                   "no step is of the kind \"" + name + "\", expected given, add or remove");
+  throw InputError(
+      file, 0,
+      "no step is of the kind \"" + name + "\", expected given, add, remove, exclude or include");
 }
 
 ordered_json fingerprints_of(const std::vector<Recording>& recordings) {
@@ -52,10 +56,36 @@ ordered_json json(const WorkbenchStep& step) {
                          {"model", format_model(step.model)}};
   if (step.predicted_rms) result["predicted_rms"] = *step.predicted_rms;
   if (!step.label.empty()) result["label"] = step.label;
+  if (!step.excluded.empty()) {
+    ordered_json& recordings = result["excluded"] = ordered_json::array();
+    for (const std::vector<TimeSpan>& spans : step.excluded) {
+      ordered_json& list = recordings.emplace_back(ordered_json::array());
+      for (const TimeSpan& span : spans) list.push_back({span.from, span.to});
+    }
+    result["excluded_legs"] = step.excluded_legs;
+  }
   return result;
 }
 
-WorkbenchStep step_of(const ordered_json& json, std::size_t number, const std::string& file) {
+std::vector<std::vector<TimeSpan>> excluded_of(const ordered_json& json, std::size_t recordings,
+                                               const std::string& file) {
+  std::vector<std::vector<TimeSpan>> result;
+  for (const ordered_json& list : json) {
+    std::vector<TimeSpan>& spans = result.emplace_back();
+    for (const ordered_json& span : list) {
+      spans.push_back({span.at(0).get<double>(), span.at(1).get<double>()});
+    }
+  }
+  if (result.size() > recordings) {
+    throw InputError(file, 0,
+                     fmt::format("times are excluded of {} recordings, of which there are {}",
+                                 result.size(), recordings));
+  }
+  return result;
+}
+
+WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t recordings,
+                      const std::string& file) {
   WorkbenchStep step;
   step.kind = kind_named(json.at("kind").get<std::string>(), file);
   step.effect = json.at("effect").get<std::string>();
@@ -66,6 +96,10 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, const std::s
   step.dof = json.at("dof").get<int>();
   if (json.contains("predicted_rms")) step.predicted_rms = json.at("predicted_rms").get<double>();
   step.label = json.value("label", "");
+  if (json.contains("excluded")) {
+    step.excluded = excluded_of(json.at("excluded"), recordings, file);
+    step.excluded_legs = json.at("excluded_legs").get<std::size_t>();
+  }
   step.model = model_from_text(json.at("model").get<std::string>(),
                                fmt::format("{}, model of step {}", file, number));
   return step;
@@ -99,7 +133,7 @@ WorkbenchLog read_workbench_log(const std::filesystem::path& path,
     }
     WorkbenchLog log;
     for (const ordered_json& one : whole.at("steps")) {
-      log.steps.push_back(step_of(one, log.steps.size(), file));
+      log.steps.push_back(step_of(one, log.steps.size(), recordings.size(), file));
       const WorkbenchStep& step = log.steps.back();
       if (log.steps.size() == 1 ? step.from != 0 : step.from >= log.steps.size() - 1) {
         throw InputError(file, 0,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "plot/time_strips.hpp"
 
+#include "recording/elapsed_time.hpp"
+#include "recording/time_spans.hpp"
 #include "wording/channel_words.hpp"
 
 #include <algorithm>
@@ -21,22 +23,19 @@ constexpr std::size_t kMostStrips = 5;
 using RowValue = std::function<double(const Drive& drive, std::size_t row)>;
 using RowValues = std::function<std::optional<RowValue>(const Recording&)>;
 
-double length_of(const Drive& drive) {
-  return drive.rows() > 0 ? drive.t.back() - drive.start() : 0.0;
-}
-
 struct Strip {
   std::vector<double> t;
   std::vector<double> value;
 };
 
 Strip strip_of(const std::vector<Recording>& recordings, const RowValues& values) {
-  double whole = 0.0;
-  for (const Recording& one : recordings) whole += length_of(one.drive);
+  const std::vector<double> shifts = elapsed_shifts(recordings);
+  const Drive& last = recordings.back().drive;
+  const double whole = last.rows() > 0 ? last.t.back() + shifts.back() : shifts.back();
   const double share = std::max(whole / kPoints, 1e-9);
   Strip strip;
-  double before = 0.0;
-  for (const Recording& recording : recordings) {
+  for (std::size_t s = 0; s < recordings.size(); ++s) {
+    const Recording& recording = recordings[s];
     const Drive& drive = recording.drive;
     const std::optional<RowValue> value = values(recording);
     double sum = 0.0, time = 0.0;
@@ -45,18 +44,43 @@ Strip strip_of(const std::vector<Recording>& recordings, const RowValues& values
       sum += (*value)(drive, row) * duration;
       time += duration;
       if (time < share && row + 1 < drive.rows()) continue;
-      strip.t.push_back(before + drive.t[row] - drive.start() - 0.5 * time);
+      strip.t.push_back(drive.t[row] + shifts[s] - 0.5 * time);
       strip.value.push_back(time > 0.0 ? sum / time : 0.0);
       sum = time = 0.0;
     }
-    before += length_of(drive);
-    strip.t.push_back(before);
+    if (drive.rows() == 0) continue;
+    strip.t.push_back(drive.t.back() + shifts[s]);
     strip.value.push_back(kAbsent);
   }
   return strip;
 }
 
-Chart chart_of(const std::string& id, const std::string& title, Strip strip) {
+/// Over the strip's whole height.
+ChartLayer band_over(const std::vector<TimeSpan>& spans, const std::string& name,
+                     const std::string& colour, const Strip& strip) {
+  double least = 0.0, most = 0.0;
+  for (const double value : strip.value) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  ChartLayer band{LayerKind::band, name, {{"", {}}, {"", {}}, {"", {}}}};
+  band.colour = colour;
+  const auto add = [&band](double t, double low, double high) {
+    band.columns[0].numbers.push_back(t);
+    band.columns[1].numbers.push_back(low);
+    band.columns[2].numbers.push_back(high);
+  };
+  for (const TimeSpan& span : spans) {
+    add(span.from, least, most);
+    add(span.to, least, most);
+    add(span.to, kAbsent, kAbsent);
+  }
+  return band;
+}
+
+Chart chart_of(const std::string& id, const std::string& title, Strip strip,
+               const MarkedTimes& marked) {
   Chart chart;
   chart.id = id;
   chart.title = title;
@@ -66,6 +90,12 @@ Chart chart_of(const std::string& id, const std::string& title, Strip strip) {
   ChartLayer line{
       LayerKind::line, "", {{"t [s]", std::move(strip.t)}, {title, std::move(strip.value)}}};
   line.size = 1.2;
+  if (!marked.chosen.empty()) {
+    chart.layers.push_back(band_over(merged(marked.chosen), "chosen", "2", strip));
+  }
+  if (!marked.excluded.empty()) {
+    chart.layers.push_back(band_over(merged(marked.excluded), "excluded", "muted", strip));
+  }
   chart.layers.push_back(std::move(line));
   return chart;
 }
@@ -90,15 +120,16 @@ std::optional<std::size_t> place_of(const Recording& recording, const std::strin
 
 }  // namespace
 
-std::vector<Chart> time_strips(const std::vector<Recording>& recordings) {
+std::vector<Chart> time_strips(const std::vector<Recording>& recordings,
+                               const MarkedTimes& marked) {
   std::vector<Chart> strips;
   if (recordings.empty()) return strips;
   const auto speed = [](const Drive& drive, std::size_t row) {
     return 0.5 * (drive.left[row] + drive.right[row]) / drive.duration(row);
   };
-  strips.push_back(
-      chart_of("strip-speed", "speed [m/s]",
-               strip_of(recordings, [&speed](const Recording&) { return RowValue(speed); })));
+  strips.push_back(chart_of(
+      "strip-speed", "speed [m/s]",
+      strip_of(recordings, [&speed](const Recording&) { return RowValue(speed); }), marked));
   for (const Covariate& one : recordings.front().drive.covariates) {
     if (strips.size() == kMostStrips) break;
     const bool everywhere = std::all_of(
@@ -112,7 +143,7 @@ std::vector<Chart> time_strips(const std::vector<Recording>& recordings) {
     });
     if (!varies(strip)) continue;
     strips.push_back(chart_of("strip-" + std::to_string(strips.size()), variable_in_words(one.name),
-                              std::move(strip)));
+                              std::move(strip), marked));
   }
   return strips;
 }

@@ -11,8 +11,15 @@
 
 namespace trussmap {
 
+/// What is marked in the strips, in their own time (elapsed_shifts).
+struct MarkedTimes {
+  std::vector<TimeSpan> chosen;
+  std::vector<TimeSpan> excluded;
+};
+
 /// Sessions one after the other; a point is the mean over its share of the time. Covariates that
 /// all sessions have and that vary, the first few.
-[[nodiscard]] std::vector<Chart> time_strips(const std::vector<Recording>& recordings);
+[[nodiscard]] std::vector<Chart> time_strips(const std::vector<Recording>& recordings,
+                                             const MarkedTimes& marked = {});
 
 }  // namespace trussmap

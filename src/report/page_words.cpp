@@ -72,6 +72,10 @@ std::string trend_variable(const Trend& trend) {
   return trend.against == "all" ? "everything alike" : trend.against;
 }
 
+std::string counted_legs(std::size_t legs) {
+  return fmt::format("{} leg{}", legs, legs == 1 ? "" : "s");
+}
+
 std::string chance_text(double p) {
   return p < 1e-12 ? "next to 0" : probability_text(p);
 }

@@ -26,6 +26,9 @@ namespace trussmap {
 /// "16 mm", "21 cm", "1.3 m". With `beside`, in the unit that suits the larger of the two.
 [[nodiscard]] std::string distance_text(double metres, double beside = 0.0);
 
+/// "1 leg", "12 legs".
+[[nodiscard]] std::string counted_legs(std::size_t legs);
+
 /// A p-value for people: "0.004", "next to 0".
 [[nodiscard]] std::string chance_text(double p);
 

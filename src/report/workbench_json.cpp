@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "plot/fit_charts.hpp"
-#include "plot/time_strips.hpp"
 #include "recording/row_variables.hpp"
 #include "report/effect_parts.hpp"
 #include "report/page_words.hpp"
 #include "report/view_json.hpp"
-#include "statistics/median.hpp"
+#include "report/workbench_views.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/workbench.hpp"
@@ -23,7 +22,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostCards = 240;
-constexpr double kMapHeight = 320.0;  // so that the plot below is on the same screen
 
 std::string step_name(const WorkbenchStep& step) {
   Effect effect;
@@ -36,6 +34,10 @@ std::string step_name(const WorkbenchStep& step) {
       return "+ " + name_in_words(effect);
     case WorkbenchStep::Kind::remove:
       return "\u2212 " + step.effect;
+    case WorkbenchStep::Kind::exclude:
+      return "without " + counted_legs(step.excluded_legs);
+    case WorkbenchStep::Kind::include:
+      return "all legs again";
     case WorkbenchStep::Kind::given:
       break;
   }
@@ -68,31 +70,6 @@ Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
     ladder.push_back({step_name(step), step.arrival_rms, step.chi2, step.dof, step.predicted_rms});
   }
   return ladder_chart("staircase", ladder, log.steps[way.back()].expected_rms);
-}
-
-/// Held-out legs: how far off in all, the middle one, the worst.
-ordered_json figure_json(const TriedModel& now) {
-  const HeldOut& held_out = now.diagnosis().held_out;
-  if (held_out.legs.empty()) return nullptr;
-  std::vector<double> off;
-  const LegPrediction* worst = &held_out.legs.front();
-  for (const LegPrediction& leg : held_out.legs) {
-    off.push_back(leg.arrival_error.norm());
-    if (leg.arrival_error.norm() > worst->arrival_error.norm()) worst = &leg;
-  }
-  const double most = worst->arrival_error.norm();
-  ordered_json result = {{"now", distance_text(held_out.arrival_rms)},
-                         {"now_mm", 1e3 * held_out.arrival_rms},
-                         {"floor", distance_text(held_out.expected_rms)},
-                         {"floor_mm", 1e3 * held_out.expected_rms},
-                         {"median", distance_text(median(std::move(off)))},
-                         {"worst", distance_text(most)},
-                         {"legs", held_out.legs.size()}};
-  if (!worst->from.empty()) {
-    result["worst_leg"] =
-        fmt::format("{} \u2192 {} at t = {:.0f} s", worst->from, worst->to, worst->t);
-  }
-  return result;
 }
 
 ordered_json card_json(const TriedModel& now, std::size_t k) {
@@ -252,32 +229,23 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
   const std::vector<std::size_t> way = way_to(log, log.at);
   ordered_json steps = ordered_json::array();
   for (std::size_t k = 0; k < log.steps.size(); ++k) steps.push_back(step_json(log, k, way));
-  const std::vector<RouteError> routes = route_errors(now.comparison().worst, now.map());
-  const double worst = routes.empty() ? 0.0 : routes.front().rms;
-  ordered_json strips = ordered_json::array();
-  for (const Chart& strip : time_strips(now.recordings())) strips.push_back(chart_view(strip));
-  Chart map = routes.empty()
-                  ? truss_chart("map", "The map", now.map(), {}, 1.0)
-                  : route_chart("map", "The map, routes by what is left", now.map(), routes, worst);
-  map.height = kMapHeight;
-  return safe_text({{"subject", subject},
-                    {"provisional", provisional},
-                    {"at", log.at},
-                    {"steps", std::move(steps)},
-                    {"verdict", verdict_json(now)},
-                    {"figure", figure_json(now)},
-                    {"fit", fit_in_words(now.diagnosis().chi2, now.diagnosis().dof,
-                                         now.diagnosis().coefficients)},
-                    {"tried", now.diagnosis().tried},
-                    {"on", on_json(now)},
-                    {"cards", cards_json(now)},
-                    {"unseen", unseen_json(now.diagnosis())},
-                    {"noise", noise_json(now)},
-                    {"variables", shape_variables(now.recordings())},
-                    {"channels", channels_json()},
-                    {"map", chart_view(map)},
-                    {"staircase", chart_view(staircase(log, way))},
-                    {"strips", std::move(strips)}});
+  ordered_json result = {{"subject", subject},
+                         {"provisional", provisional},
+                         {"at", log.at},
+                         {"steps", std::move(steps)},
+                         {"verdict", verdict_json(now)},
+                         {"fit", fit_in_words(now.diagnosis().chi2, now.diagnosis().dof,
+                                              now.diagnosis().coefficients)},
+                         {"tried", now.diagnosis().tried},
+                         {"on", on_json(now)},
+                         {"cards", cards_json(now)},
+                         {"unseen", unseen_json(now.diagnosis())},
+                         {"noise", noise_json(now)},
+                         {"variables", shape_variables(now.recordings())},
+                         {"channels", channels_json()},
+                         {"staircase", chart_view(staircase(log, way))}};
+  result.update(views_json(now, std::nullopt));
+  return safe_text(result);
 }
 
 }  // namespace trussmap

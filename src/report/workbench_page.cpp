@@ -65,6 +65,20 @@ constexpr const char* kBody = R"html(<header id="head">
 <details class="read"><summary>How to read it</summary><p></p></details></figure>
 <figure class="chart" id="map"><h3></h3><div class="picture tall-320"></div>
 <details class="read"><summary>How to read it</summary><p></p></details></figure>
+<section id="legs" aria-labelledby="legs-title">
+<h3 id="legs-title">Legs</h3>
+<p id="legs-words" aria-live="polite"></p>
+<p class="acts"><button type="button" id="choose-area" aria-pressed="false">Choose on the map</button>
+<button type="button" id="all-legs" disabled>Show all</button>
+<button type="button" id="exclude" disabled>Exclude and refit</button>
+<button type="button" id="include" hidden>Take all back in</button></p>
+<form id="choose-time"><label>From <input id="time-from" type="number" min="0" step="any" required> s</label>
+<label>to <input id="time-to" type="number" min="0" step="any" required> s</label>
+<button type="submit">Choose in time</button></form>
+<p id="legs-fault" class="failed" role="status"></p>
+<p class="hint">Or drag across a strip of time, below. What is chosen is shown alone; a leg that is
+excluded counts in no fit.</p>
+</section>
 </section>
 <section id="error" aria-labelledby="error-title" tabindex="0">
 <h2 id="error-title">Dead reckoning is off by</h2>

@@ -3,6 +3,7 @@
 #include "validation/dead_reckoned_horizons.hpp"
 
 #include "fit/cleared_recording.hpp"
+#include "recording/time_spans.hpp"
 #include "validation/blocked_coefficients.hpp"
 
 #include <algorithm>
@@ -46,6 +47,8 @@ class Windows {
     for (double t = nodes.front(); t + horizon_ <= nodes.back(); t += 0.5 * horizon_) {
       if (blocks.at(static_cast<int>(session), t + 0.5 * horizon_) != block) continue;
       if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon_)) continue;
+      const auto& left_out = fit.used.left_out;
+      if (!left_out.empty() && overlaps_any({t, t + horizon_}, left_out[session])) continue;
       const Vector2 off = driven(drive, reckoned, t, t + horizon_) -
                           driven(drive, fit.paths[session], t, t + horizon_);
       sum_ += off.squaredNorm();

@@ -2,17 +2,70 @@
 // SPDX-License-Identifier: MIT
 #include "validation/held_out_legs.hpp"
 
+#include "fit/column_builder.hpp"
 #include "validation/training.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace trussmap {
 
+/// Columns over all measurements, where a fit leaves some out and legs drive through them.
+class HeldOutLegs::OwnColumns {
+ public:
+  OwnColumns(TrainedModel trained, const FitState& training, const FitState& fit)
+      : trained_(std::move(trained)),
+        paths_(training.paths),
+        context_(trained_.recordings, training.model.robot, paths_),
+        builder_(context_, trained_.problem, trained_.effects, trained_.offsets, trained_.state,
+                 std::vector<double>(trained_.problem.measurements.size(), 1.0)) {
+    trained_.problem.segments = {};
+    trained_.problem.gyro_weights = {};
+    const std::vector<std::string>& known = fit.problem.landmarks;
+    const auto row_of = [&](int landmark) {
+      const std::string& name = trained_.problem.landmarks[idx(landmark)];
+      return std::find(known.begin(), known.end(), name) - known.begin();
+    };
+    const auto count = static_cast<std::ptrdiff_t>(known.size());
+    for (int k = 0; k < trained_.problem.landmark_count(); ++k) {
+      const std::ptrdiff_t at = row_of(k);
+      rows_.push_back(at < count ? 2 * at : -1);
+      rows_.push_back(at < count ? 2 * at + 1 : -1);
+    }
+    const std::vector<int>& oriented = fit.problem.oriented;
+    for (const int landmark : trained_.problem.oriented) {
+      const auto at = std::find(oriented.begin(), oriented.end(), row_of(landmark));
+      rows_.push_back(at == oriented.end() ? -1 : 2 * count + (at - oriented.begin()));
+    }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd of(const Effect& effect) { return builder_.columns(effect); }
+
+  /// What moves the fit's landmarks, of the legs' landmarks: what the fit has not stays.
+  [[nodiscard]] Eigen::MatrixXd moved(const Eigen::MatrixXd& landmarks) const {
+    Eigen::MatrixXd result =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_.size()), landmarks.cols());
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (rows_[k] >= 0) result.row(static_cast<Eigen::Index>(k)) = landmarks.row(rows_[k]);
+    }
+    return result;
+  }
+
+ private:
+  TrainedModel trained_;
+  std::vector<SessionPath> paths_;
+  ShapeContext context_;
+  ColumnBuilder builder_;
+  std::vector<std::ptrdiff_t> rows_;  ///< of the fit's landmarks and orientations; -1: none
+};
+
 HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
                          const FitterOptions& options, const LegOptions& leg_options) {
-  const std::vector<LegSpan> legs = leg_spans(fit.recordings, fit.problem, leg_options);
+  const bool all = fit.used.left_out.empty();
+  const std::vector<LegSpan> legs =
+      leg_spans(fit.recordings, all ? fit.problem : whole_problem(fit), leg_options);
   if (std::none_of(legs.begin(), legs.end(), [](const LegSpan& leg) { return leg.held_out; })) {
     return;
   }
@@ -24,7 +77,14 @@ HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitStat
   predictor.run();
   steps_ = predictor.take_steps();
   legs_ = predictor.take_legs();
-  problem_ = std::move(trained.problem);
+  if (all) {
+    problem_ = std::move(trained.problem);
+    has_slopes_ = same_layout(fit.problem);
+  } else {
+    problem_ = trained.problem;
+    own_ = std::make_shared<OwnColumns>(std::move(trained), training, fit);
+    has_slopes_ = true;
+  }
   problem_.segments = {};
   problem_.gyro_weights = {};
   int rows = 0;
@@ -32,6 +92,11 @@ HeldOutLegs::HeldOutLegs(const std::vector<Recording>& recordings, const FitStat
     first_row_.push_back(rows);
     rows += one.rows;
   }
+}
+
+Eigen::MatrixXd HeldOutLegs::slopes(const Effect& effect, const Eigen::MatrixXd& columns,
+                                    const Eigen::MatrixXd& landmarks) const {
+  return own_ ? slopes(own_->of(effect), own_->moved(landmarks)) : slopes(columns, landmarks);
 }
 
 Eigen::MatrixXd HeldOutLegs::slopes(const Eigen::MatrixXd& columns,

@@ -8,6 +8,7 @@
 #include "trussmap/held_out.hpp"
 #include "validation/leg_predictor.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace trussmap {
@@ -23,21 +24,28 @@ class HeldOutLegs {
 
   [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }
 
-  /// What one unit of further coefficients does, to first order, from their whitened columns over
-  /// all measurements (ColumnBuilder) and what they move the landmarks by (two rows each, then one
-  /// for each orientation): per leg six rows, of the arrival error, the predicted chord and the
-  /// true one.
-  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
+  /// What one unit of an effect's coefficients does, to first order, from their whitened columns
+  /// over the fit's measurements (ColumnBuilder) and what they move its landmarks by (two rows
+  /// each, then one for each orientation): per leg six rows, of the arrival error, the predicted
+  /// chord and the true one.
+  [[nodiscard]] Eigen::MatrixXd slopes(const Effect& effect, const Eigen::MatrixXd& columns,
                                        const Eigen::MatrixXd& landmarks) const;
   /// Metrics with the legs' predictions moved by that much (empty: not at all).
   [[nodiscard]] HeldOut moved(const Eigen::VectorXd& change) const;
-  /// Whether columns of this problem are columns of the legs' problem too: not after a delay has
-  /// changed the order of sightings.
-  [[nodiscard]] bool same_layout(const RecordingProblem& problem) const;
+  /// Whether slopes can be told: not after a delay has changed the order of sightings.
+  [[nodiscard]] bool has_slopes() const { return has_slopes_; }
 
  private:
+  class OwnColumns;
+
+  [[nodiscard]] bool same_layout(const RecordingProblem& problem) const;
+  [[nodiscard]] Eigen::MatrixXd slopes(const Eigen::MatrixXd& columns,
+                                       const Eigen::MatrixXd& landmarks) const;
+
   RecordingProblem problem_;
-  std::vector<int> first_row_;  ///< of each measurement
+  bool has_slopes_ = false;
+  std::shared_ptr<OwnColumns> own_;  ///< where the fit has not all measurements that legs pass
+  std::vector<int> first_row_;       ///< of each measurement
   std::vector<FilterStep> steps_;
   std::vector<PredictedLeg> legs_;
 };

@@ -202,7 +202,7 @@ std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
   if (!begin || !end) return std::nullopt;
   leg.chord = target - true_place(from);
   leg.predicted = *end - *begin;
-  leg.prediction.leg = k;
+  leg.prediction.leg = legs_[k].number;
   leg.prediction.from = landmark_of(problem_, from);
   leg.prediction.to = landmark_of(problem_, to);
   leg.prediction.t = legs_[k].time.to;

@@ -3,9 +3,11 @@
 #include "validation/leg_spans.hpp"
 
 #include "recording/legs.hpp"
+#include "recording/time_spans.hpp"
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 namespace trussmap {
 namespace {
@@ -25,7 +27,8 @@ void add_sighted_legs(const Recording& recording, int session, const RecordingPr
   for (const Leg& leg : legs_of(recording, stops, options.min_drive)) {
     const Stop& from = stops[leg.from];
     const Stop& to = stops[leg.to];
-    legs.push_back({session,
+    legs.push_back({legs.size(),
+                    session,
                     {from.t, to.t},
                     measurement_of.at(from.reference),
                     measurement_of.at(to.reference),
@@ -57,7 +60,7 @@ void add_place_legs(const Recording& recording, int session, const RecordingProb
       leg.time.to = t;
       legs.push_back(leg);
     }
-    leg = {session, {t, t}, k, k, false};
+    leg = {legs.size(), session, {t, t}, k, k, false};
     begun = driven;
     any = true;
   }
@@ -76,7 +79,27 @@ std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
       add_sighted_legs(recordings[s], session, problem, options, legs);
     }
   }
-  for (std::size_t k = 0; k < legs.size(); ++k) legs[k].held_out = is_held_out(k, options.share);
+  for (LegSpan& leg : legs) leg.held_out = is_held_out(leg.number, options.share);
+  return legs;
+}
+
+std::vector<LegSpan> leg_spans(const FitState& fit, const LegOptions& options) {
+  if (fit.used.left_out.empty()) return leg_spans(fit.recordings, fit.problem, options);
+  const RecordingProblem whole = whole_problem(fit);
+  using Key = std::tuple<MeasurementKind, int, std::size_t>;
+  const auto key = [](const Measurement& one) { return Key(one.kind, one.session, one.source); };
+  std::map<Key, std::size_t> place;
+  for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
+    place.emplace(key(fit.problem.measurements[k]), k);
+  }
+  std::vector<LegSpan> legs = leg_spans(fit.recordings, whole, options);
+  std::erase_if(legs, [&fit](const LegSpan& leg) {
+    return overlaps_any(leg.time, fit.used.left_out[idx(leg.session)]);
+  });
+  for (LegSpan& leg : legs) {
+    leg.from = place.at(key(whole.measurements[leg.from]));
+    leg.to = place.at(key(whole.measurements[leg.to]));
+  }
   return legs;
 }
 

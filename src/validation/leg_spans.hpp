@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Legs of recordings as a problem has them: between two of its measurements.
+// Legs of recordings as a problem has them: between two of its measurements. They are numbered
+// through all that was recorded, whatever of it a fit leaves out.
 #pragma once
 
-#include "estimation/recording_problem.hpp"
+#include "fit/fit_state.hpp"
 #include "trussmap/held_out.hpp"
 
 #include <vector>
@@ -14,6 +15,7 @@ namespace trussmap {
 /// Between two measurements of the same session (sightings of the stops' references, or truth
 /// rows).
 struct LegSpan {
+  std::size_t number = 0;
   int session = 0;
   TimeSpan time;
   std::size_t from = 0;  ///< measurement
@@ -21,9 +23,12 @@ struct LegSpan {
   bool held_out = false;
 };
 
-/// Legs of a problem, in order.
+/// Legs of a problem that leaves nothing out, in order.
 [[nodiscard]] std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
                                              const RecordingProblem& problem,
                                              const LegOptions& options = {});
+
+/// Legs of all that was recorded that the fit has, between measurements of its problem.
+[[nodiscard]] std::vector<LegSpan> leg_spans(const FitState& fit, const LegOptions& options = {});
 
 }  // namespace trussmap

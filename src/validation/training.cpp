@@ -4,8 +4,10 @@
 
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_start.hpp"
+#include "recording/time_spans.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -14,19 +16,15 @@ namespace {
 
 constexpr double kForever = 1e300;  // s
 
-/// Held-out legs as spans of time, neighbours joined.
-std::vector<std::vector<TimeSpan>> spans_of(const std::vector<LegSpan>& legs,
-                                            std::size_t sessions) {
-  std::vector<std::vector<TimeSpan>> spans(sessions);
+/// Held-out legs, and what the fit leaves out anyway, as spans of time.
+std::vector<std::vector<TimeSpan>> spans_without(const std::vector<LegSpan>& legs,
+                                                 const FitState& fit) {
+  std::vector<std::vector<TimeSpan>> spans = fit.used.left_out;
+  spans.resize(fit.recordings.size());
   for (const LegSpan& leg : legs) {
-    if (!leg.held_out) continue;
-    std::vector<TimeSpan>& here = spans[idx(leg.session)];
-    if (!here.empty() && here.back().to >= leg.time.from) {
-      here.back().to = leg.time.to;
-    } else {
-      here.push_back(leg.time);
-    }
+    if (leg.held_out) spans[idx(leg.session)].push_back(leg.time);
   }
+  for (std::vector<TimeSpan>& one : spans) one = merged(std::move(one));
   return spans;
 }
 
@@ -88,10 +86,12 @@ void leave_unconnected_segments_out(const std::vector<Recording>& recordings, co
   }
 }
 
-/// Times of the fit's sightings and truth rows back to those recorded, before delays were taken
-/// out.
-void undo_delays(const std::vector<Recording>& recordings, const Model& model,
-                 std::vector<std::vector<TimeSpan>>& spans) {
+}  // namespace
+
+std::vector<std::vector<TimeSpan>> recorded_spans(std::vector<std::vector<TimeSpan>> spans,
+                                                  const std::vector<Recording>& recordings,
+                                                  const FitState& fit) {
+  const Model& model = fit.model;
   for (std::size_t s = 0; s < spans.size(); ++s) {
     std::vector<double> recorded;
     for (const Sighting& sighting : recordings[s].sightings) recorded.push_back(sighting.t);
@@ -118,9 +118,16 @@ void undo_delays(const std::vector<Recording>& recordings, const Model& model,
       if (span.to < kForever) span.to = recorded_at(span.to);
     }
   }
+  return spans;
 }
 
-}  // namespace
+std::vector<std::vector<TimeSpan>> with_unconnected(std::vector<std::vector<TimeSpan>> spans,
+                                                    const FitState& fit) {
+  ProblemOptions options = fit.used;
+  options.left_out = std::move(spans);
+  leave_unconnected_segments_out(fit.recordings, fit, options);
+  return std::move(options.left_out);
+}
 
 FitState fit_without(const std::vector<LegSpan>& legs, const std::vector<Recording>& recordings,
                      const FitState& fit, const FitterOptions& options) {
@@ -128,9 +135,14 @@ FitState fit_without(const std::vector<LegSpan>& legs, const std::vector<Recordi
   how.fit_effects = true;
   how.near = &fit;
   how.still = 1e-5;  // errors of legs are not read so finely
-  how.problem.left_out = spans_of(legs, recordings.size());
-  leave_unconnected_segments_out(fit.recordings, fit, how.problem);
-  undo_delays(recordings, fit.model, how.problem.left_out);
+  how.problem.left_out =
+      recorded_spans(with_unconnected(spans_without(legs, fit), fit), recordings, fit);
+  // What was excluded begins and ends anywhere, not at instants that a delay moves.
+  for (std::size_t s = 0; s < options.problem.left_out.size(); ++s) {
+    std::vector<TimeSpan>& spans = how.problem.left_out.at(s);
+    std::ranges::copy(options.problem.left_out[s], std::back_inserter(spans));
+    spans = merged(std::move(spans));
+  }
   return fit_recordings(recordings, fit.model, how);
 }
 

@@ -9,9 +9,10 @@
 #include "statistics/distributions.hpp"
 #include "trussmap/workbench.hpp"
 #include "validation/held_out_legs.hpp"
+#include "workbench/tried_legs.hpp"
 
 #include <algorithm>
-#include <map>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -20,11 +21,11 @@ namespace trussmap {
 namespace {
 
 /// Metrics of the held-out legs with an effect as its score has it.
-std::optional<HeldOutMetrics> predicted_by(const HeldOutLegs& legs, const FitState& fit,
+std::optional<HeldOutMetrics> predicted_by(const HeldOutLegs& legs, const Effect& effect,
                                            const Score& score) {
-  if (score.dof == 0 || !legs.same_layout(fit.problem)) return std::nullopt;
+  if (score.dof == 0 || !legs.has_slopes()) return std::nullopt;
   const Eigen::VectorXd moved =
-      legs.slopes(score.columns, score.landmarks) *
+      legs.slopes(effect, score.columns, score.landmarks) *
       Eigen::Map<const Eigen::VectorXd>(score.coefficients.data(),
                                         static_cast<Eigen::Index>(score.coefficients.size()));
   return legs.moved(moved);
@@ -41,6 +42,16 @@ void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
 }  // namespace
 
 struct TriedModel::Tried {
+  /// The model without one of its effects.
+  struct Without {
+    Without(std::size_t which, ModelFit lacking)
+        : effect(which), fit(std::move(lacking)), tests(*fit.state) {}
+
+    std::size_t effect;
+    ModelFit fit;
+    ScoreTest tests;
+  };
+
   Tried(std::shared_ptr<const std::vector<Recording>> recordings_given, const Model& model,
         const DiagnoseOptions& how, const std::function<void(TryingStage)>& progress)
       : recordings(std::move(recordings_given)), options(how) {
@@ -57,6 +68,8 @@ struct TriedModel::Tried {
     sizes = sizes_of(run.result, tests->context());
     map = fitted_map(fit);
     budget = noise_budget(*recordings, fit.model);
+    all_legs = tried_legs(*recordings, *fit.state, options.legs);
+    spans = leg_spans(*fit.state, options.legs);
   }
 
   [[nodiscard]] const Candidate& candidate(std::size_t finding) const {
@@ -71,11 +84,13 @@ struct TriedModel::Tried {
   std::vector<FindingSize> sizes;
   FittedMap map;
   std::vector<NoiseBudget> budget;
+  std::vector<TriedLeg> all_legs;
+  std::vector<LegSpan> spans;  ///< of those that the fit has
   // Score tests keep what they make.
   mutable std::mutex mutex;
   std::optional<ScoreTest> tests;
   std::optional<HeldOutLegs> legs;
-  mutable std::map<std::size_t, EffectEvidence> shown;
+  mutable std::unique_ptr<const Without> without;
 };
 
 TriedModel::TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
@@ -106,6 +121,9 @@ const FittedMap& TriedModel::map() const {
 }
 const std::vector<NoiseBudget>& TriedModel::budget() const {
   return tried_->budget;
+}
+const std::vector<TriedLeg>& TriedModel::legs() const {
+  return tried_->all_legs;
 }
 
 std::vector<EffectParameter> TriedModel::parameters(std::size_t finding) const {
@@ -141,7 +159,8 @@ std::vector<double> TriedModel::best_near(std::size_t finding,
   return result;
 }
 
-EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect>& rivals) const {
+EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect>& rivals,
+                                  const std::vector<std::size_t>& legs) const {
   const FitState& fit = *tried_->fit.state;
   const std::scoped_lock lock(tried_->mutex);
   std::vector<Effect> asked{effect};
@@ -153,12 +172,13 @@ EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect
   result.dof = score.dof;
   result.p_value = score.p_value;
   for (std::size_t k = 0; k < asked.size(); ++k) asked[k].coefficients = scores[k].coefficients;
-  result.predicted = predicted_by(*tried_->legs, fit, score);
+  result.predicted = predicted_by(*tried_->legs, asked.front(), score);
   for (std::size_t k = 1; k < scores.size(); ++k) {
-    result.rivals_predicted.push_back(predicted_by(*tried_->legs, fit, scores[k]));
+    result.rivals_predicted.push_back(predicted_by(*tried_->legs, asked[k], scores[k]));
   }
   const EffectEstimate estimate{asked.front(), score.sd, {}};
-  result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests);
+  result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests,
+                                rows_of_legs(legs, tried_->spans, fit, tried_->tests->system()));
   return result;
 }
 
@@ -173,19 +193,21 @@ double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double fact
   return std::clamp(p * static_cast<double>(diagnosis.tried), one.p_adjusted, 1.0);
 }
 
-EffectEvidence TriedModel::shown(std::size_t effect) const {
+EffectEvidence TriedModel::shown(std::size_t effect, const std::vector<std::size_t>& legs) const {
   const ModelFit& fit = tried_->fit;
   const EffectEstimate& estimate = fit.effects.at(effect);
   const std::scoped_lock lock(tried_->mutex);
-  if (const auto known = tried_->shown.find(effect); known != tried_->shown.end()) {
-    return known->second;
+  if (!tried_->without || tried_->without->effect != effect) {
+    Model model = fit.model;
+    model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
+    tried_->without =
+        std::make_unique<const Tried::Without>(effect, refit(*tried_->recordings, model, fit));
   }
-  Model model = fit.model;
-  model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-  const ModelFit without = refit(*tried_->recordings, model, fit);
-  return tried_->shown
-      .emplace(effect, seen_effect(estimate, {}, *without.state, ScoreTest(*without.state)))
-      .first->second;
+  const auto& [which, without, tests] = *tried_->without;
+  const std::vector<LegSpan> spans =
+      legs.empty() ? std::vector<LegSpan>() : leg_spans(*without.state, tried_->options.legs);
+  return seen_effect(estimate, {}, *without.state, tests,
+                     rows_of_legs(legs, spans, *without.state, tests.system()));
 }
 
 }  // namespace trussmap

@@ -2,7 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/workbench.hpp"
 
+#include "fit/fit_state.hpp"
+#include "geometry/index.hpp"
+#include "recording/time_spans.hpp"
+#include "validation/leg_spans.hpp"
+#include "validation/training.hpp"
+
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +37,16 @@ void put_figures(WorkbenchStep& step, const TriedModel& model) {
   step.expected_rms = held_out.expected_rms;
   step.chi2 = model.fit().chi2;
   step.dof = model.fit().dof;
+  step.excluded_legs = static_cast<std::size_t>(
+      std::ranges::count_if(model.legs(), [](const TriedLeg& leg) { return leg.excluded; }));
+}
+
+/// Where the drive of a recording is over, nothing can be excluded.
+void clamp_to(const Drive& drive, std::vector<TimeSpan>& spans) {
+  for (TimeSpan& span : spans) {
+    span.from = std::max(span.from, drive.start());
+    span.to = std::min(span.to, drive.t.back());
+  }
 }
 
 }  // namespace
@@ -48,6 +65,7 @@ Workbench::Workbench(std::vector<Recording> recordings, const Model& model,
   options_.fit.fit_effects = true;
   WorkbenchStep given;
   given.model = model;
+  given.excluded = options.fit.excluded;
   take(std::move(given), watch);
 }
 
@@ -66,8 +84,10 @@ Workbench::Workbench(std::vector<Recording> recordings, WorkbenchLog log,
 /// of the time is to estimate the noise, where there is more of it than stated.
 TriedModel Workbench::tried(const WorkbenchLog& log, const WorkbenchWatch& watch) const {
   const Model& model = log.steps[log.at].model;
-  if (watch.provisional && options_.estimate_noise) {
-    DiagnoseOptions as_stated = options_;
+  DiagnoseOptions options = options_;
+  options.fit.excluded = log.steps[log.at].excluded;
+  if (watch.provisional && options.estimate_noise) {
+    DiagnoseOptions as_stated = options;
     as_stated.estimate_noise = false;
     TriedModel first(recordings_, model, as_stated, watch.progress);
     const bool fits = first.fit().p_value > kSignificance;
@@ -76,7 +96,7 @@ TriedModel Workbench::tried(const WorkbenchLog& log, const WorkbenchWatch& watch
     put_figures(with.steps[with.at], first);
     watch.provisional(first, with);
   }
-  return {recordings_, model, options_, watch.progress};
+  return {recordings_, model, options, watch.progress};
 }
 
 /// Nothing is changed until the model has been tried.
@@ -93,12 +113,19 @@ void Workbench::take(WorkbenchStep step, const WorkbenchWatch& watch) {
   now_ = std::move(model);
 }
 
-void Workbench::add(const Effect& effect, const WorkbenchWatch& watch) {
+WorkbenchStep Workbench::from_here(WorkbenchStep::Kind kind) const {
+  const WorkbenchStep& here = log_.steps[log_.at];
   WorkbenchStep step;
-  step.kind = WorkbenchStep::Kind::add;
-  step.effect = effect.name;
+  step.kind = kind;
   step.from = log_.at;
-  step.model = log_.steps[log_.at].model;
+  step.model = here.model;
+  step.excluded = here.excluded;
+  return step;
+}
+
+void Workbench::add(const Effect& effect, const WorkbenchWatch& watch) {
+  WorkbenchStep step = from_here(WorkbenchStep::Kind::add);
+  step.effect = effect.name;
   for (const Effect& one : step.model.effects) {
     if (one.name == effect.name) {
       throw std::invalid_argument("the model has an effect \"" + effect.name +
@@ -113,10 +140,7 @@ void Workbench::add(const Effect& effect, const WorkbenchWatch& watch) {
 }
 
 void Workbench::remove(std::size_t effect, const WorkbenchWatch& watch) {
-  WorkbenchStep step;
-  step.kind = WorkbenchStep::Kind::remove;
-  step.from = log_.at;
-  step.model = log_.steps[log_.at].model;
+  WorkbenchStep step = from_here(WorkbenchStep::Kind::remove);
   step.effect = step.model.effects.at(effect).name;
   step.model.effects.erase(step.model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
   take(std::move(step), watch);
@@ -124,6 +148,39 @@ void Workbench::remove(std::size_t effect, const WorkbenchWatch& watch) {
 
 void Workbench::rename(std::size_t step, std::string label) {
   log_.steps.at(step).label = std::move(label);
+}
+
+void Workbench::exclude(const std::vector<std::size_t>& legs, const WorkbenchWatch& watch) {
+  const FitState& fit = *now().fit().state;
+  std::vector<std::vector<TimeSpan>> spans = fit.used.left_out;
+  spans.resize(recordings_->size());
+  bool any = false;
+  for (const LegSpan& leg : leg_spans(fit, options_.legs)) {
+    if (leg.held_out || std::ranges::find(legs, leg.number) == legs.end()) continue;
+    spans[idx(leg.session)].push_back(leg.time);
+    any = true;
+  }
+  if (!any) {
+    throw std::invalid_argument(
+        "none of these legs can be excluded: the model is judged by those that are held out, and "
+        "the others are out already");
+  }
+  for (std::vector<TimeSpan>& one : spans) one = merged(std::move(one));
+  spans = recorded_spans(with_unconnected(std::move(spans), fit), *recordings_, fit);
+  WorkbenchStep step = from_here(WorkbenchStep::Kind::exclude);
+  step.excluded.resize(spans.size());
+  for (std::size_t s = 0; s < spans.size(); ++s) {
+    clamp_to((*recordings_)[s].drive, spans[s]);
+    std::ranges::copy(step.excluded[s], std::back_inserter(spans[s]));
+    step.excluded[s] = merged(std::move(spans[s]));
+  }
+  take(std::move(step), watch);
+}
+
+void Workbench::include_all(const WorkbenchWatch& watch) {
+  WorkbenchStep step = from_here(WorkbenchStep::Kind::include);
+  step.excluded = log_.steps.front().excluded;
+  take(std::move(step), watch);
 }
 
 void Workbench::go_to(std::size_t step, const WorkbenchWatch& watch) {

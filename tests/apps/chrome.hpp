@@ -115,6 +115,24 @@ class Chrome {
     for (const char* what : {"mouseMoved", "mousePressed", "mouseReleased"}) mouse(what, at);
   }
 
+  /// From one part of an element to another: shares of its width and height.
+  void drag(const std::string& selector, const std::array<double, 2>& from,
+            const std::array<double, 2>& to) {
+    const Json box = eval("(() => { const one = document.querySelector(" + Json(selector).dump() +
+                          "); one.scrollIntoView({block: 'center'}); const box = "
+                          "one.getBoundingClientRect(); return [box.left, box.top, box.width, "
+                          "box.height]; })()");
+    const auto at = [&box](const std::array<double, 2>& share) {
+      return Place{box[0].get<double>() + share[0] * box[2].get<double>(),
+                   box[1].get<double>() + share[1] * box[3].get<double>()};
+    };
+    mouse("mouseMoved", at(from));
+    mouse("mousePressed", at(from));
+    mouse("mouseMoved", at({0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])}));
+    mouse("mouseMoved", at(to));
+    mouse("mouseReleased", at(to));
+  }
+
   void type(const std::string& text) { call("Input.insertText", {{"text", text}}); }
 
   /// Errors, warnings and violations of the policy that pages have reported.

@@ -105,6 +105,37 @@ TEST(CriticismCommands, ALoneLandmarksOffsetIsNotFittedAndSaysWhy) {
   EXPECT_TRUE(fitted["effects"][0]["sd"][0].is_null());
 }
 
+TEST(CriticismCommands, ExcludedTimesAreNotUsed) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string() + "/";
+  const std::string compare = "compare " + kRiddleFolder + " --model " + kNominal + " --json ";
+  ASSERT_EQ(run_trussmap(compare + at + "all.json").status, 1);
+  const Ran some = run_trussmap(compare + at + "some.json --exclude 20:50,1:60:70.5");
+  ASSERT_EQ(some.status, 1) << some.output;
+  EXPECT_LT(read_json(at + "some.json")["legs"].get<int>(),
+            read_json(at + "all.json")["legs"].get<int>());
+  struct {
+    const char* stretch;
+    const char* expected;
+  } const cases[] = {{"50:20", "is no stretch of time"},
+                     {"20", "is no stretch of time"},
+                     {"0:20:50", "is no stretch of time"},
+                     {"20:nan", "is no stretch of time"},
+                     {"2:20:50", "there is no recording 2, expected 1 to 1"},
+                     {"1e6:2e6", "expected a part of that"}};
+  for (const auto& one : cases) {
+    const Ran ran = run_trussmap(compare + at + "no.json --exclude " + one.stretch);
+    EXPECT_EQ(ran.status, 2) << one.stretch;
+    EXPECT_NE(ran.output.find(one.expected), std::string::npos) << ran.output;
+  }
+  const Ran two = run_trussmap("compare " + kRiddleFolder + " " + kRiddleFolder + " --model " +
+                               kNominal + " --exclude 20:50");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.output.find("does not say of which of 2 recordings"), std::string::npos)
+      << two.output;
+  EXPECT_FALSE(std::filesystem::exists(at + "no.json"));
+}
+
 struct BadModel {
   const char* name;
   const char* effect;    ///< lines after the eight of the robot and its noise

@@ -162,6 +162,12 @@ TEST(ServeCommand, AThousandMalformedRequestsLeaveItRunning) {
       "{\"version\":" + version + ",\"do\":\"go\",\"step\":77}",
       "{\"version\":" + version + ",\"do\":\"remove\",\"effect\":5}",
       "{\"finding\":0,\"values\":[1,2,3,4,5]}",
+      "{\"choice\":3}",
+      "{\"choice\":{\"time\":[1]}}",
+      "{\"finding\":0,\"choice\":{\"time\":[1e308,-1e308]}}",
+      "{\"choice\":{\"area\":[0,0,1,\"x\"]}}",
+      "{\"choice\":{\"area\":[1e300,1e300,2e300,2e300]}}",
+      "{\"version\":" + version + ",\"do\":\"exclude\",\"choice\":{\"time\":[-2,-1]}}",
       "{\"effect\":{}}",
       "{\"effect\":{\"name\":\"\",\"channel\":\"turn\",\"shape\":[\"1\"]}}",
       "{\"effect\":{\"name\":\"a\",\"channel\":\"no\",\"shape\":[\"1\"]}}",
@@ -169,7 +175,7 @@ TEST(ServeCommand, AThousandMalformedRequestsLeaveItRunning) {
       "{\"effect\":{\"name\":\"a\",\"channel\":\"turn\",\"shape\":[\"1/0\"]}}",
       "{\"effect\":{\"name\":\"a\",\"channel\":\"turn\",\"shape\":[\"system(1)\"]}}",
       "{\"effect\":{\"name\":\"a\\u0000b\",\"channel\":\"turn\",\"shape\":[\"speed\"]}}"};
-  const std::vector<std::string> names{"preview", "best", "shown", "step", "nothing"};
+  const std::vector<std::string> names{"preview", "best", "shown", "step", "legs", "nothing"};
   for (int k = 0; k < 1000; ++k) {
     if (k % 4 == 0) {  // no HTTP at all, or half of it
       std::string bytes = "GET " + bench.path() + "state HTTP/1.1\r\nHost: ";
@@ -274,6 +280,12 @@ TEST(ServeCommand, OtherWorkIsNotGoneOnWith) {
                                  " --work " + (scratch.path() / "work").string());
   EXPECT_EQ(other.status, 2) << other.output;
   EXPECT_NE(other.output.find("began with another model"), std::string::npos) << other.output;
+  const Ran without =
+      run_trussmap("serve " + kRiddle + " --no-browser --model " + kRiddle +
+                   "/model.toml --exclude 10:20 --work " + (scratch.path() / "work").string());
+  EXPECT_EQ(without.status, 2) << without.output;
+  EXPECT_NE(without.output.find("began with other times excluded"), std::string::npos)
+      << without.output;
   EXPECT_EQ(
       run_trussmap("serve " + kRiddle + " --no-browser --model " + model.string() + " --port 70000")
           .status,

@@ -181,6 +181,92 @@ TEST(WorkbenchInBrowser, WhereNothingIsMissingItSaysSo) {
   EXPECT_EQ(chrome.eval("document.getElementById('head').className"), "good");
 }
 
+TEST(WorkbenchInBrowser, LegsAreChosenExcludedAndTakenBackIn) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  Chrome chrome(scratch.path());
+  chrome.go(bench.address());
+  chrome.wait(at_step(0, 1));
+  const auto legs = [&chrome](const std::string& which) {
+    return chrome.eval("window.trussmap.state().legs." + which).get<int>();
+  };
+  const int all = legs("all");
+  EXPECT_EQ(legs("shown"), all);
+  EXPECT_TRUE(chrome.eval("document.getElementById('exclude').disabled").get<bool>());
+  const std::string worst = chrome.text("#figure-more");
+  // A stretch of time, by dragging.
+  chrome.drag("#strip-speed .picture svg", {0.4, 0.5}, {0.7, 0.5});
+  chrome.wait("document.documentElement.dataset.chosen > 0");
+  const int chosen = chrome.eval("Number(document.documentElement.dataset.chosen)").get<int>();
+  EXPECT_LT(chosen, all);
+  EXPECT_NE(chrome.text("#legs-words").find("chosen"), std::string::npos);
+  EXPECT_NE(chrome.text("#figure-more"), worst);  // every view shows these alone
+  chrome.wait(looked_at("hard iron"));
+  // An area of the map: nothing is dragged but a rectangle.
+  chrome.click("#choose-area");
+  chrome.drag("#map .picture svg", {0.1, 0.1}, {0.95, 0.95});
+  chrome.wait(fmt::format("document.documentElement.dataset.chosen !== '{}'", chosen));
+  chrome.click("#all-legs");
+  chrome.wait("document.documentElement.dataset.chosen === ''");
+  EXPECT_EQ(chrome.text("#figure-more"), worst);
+  // By keys.
+  chrome.click("#time-from");
+  chrome.type("0");
+  chrome.click("#time-to");
+  chrome.type("60");
+  chrome.click("#choose-time button");
+  chrome.wait("document.documentElement.dataset.chosen > 0");
+  EXPECT_NE(chrome.text("#exclude").find("and refit"), std::string::npos);
+  chrome.click("#exclude");
+  chrome.wait(at_step(1, 2));
+  EXPECT_GT(legs("excluded"), 0);
+  EXPECT_NE(chrome.text("#steps").find("without"), std::string::npos);
+  EXPECT_NE(chrome.text("#legs-words").find("excluded"), std::string::npos);
+  const std::string commands =
+      chrome.eval("fetch('export/commands.sh').then(reply => reply.text())").get<std::string>();
+  EXPECT_NE(commands.find("--exclude"), std::string::npos) << commands;
+  chrome.reload();
+  chrome.wait(at_step(1, 2));
+  EXPECT_GT(legs("excluded"), 0);
+  chrome.click("#undo");
+  chrome.wait(at_step(0, 2));
+  EXPECT_EQ(legs("excluded"), 0);
+  chrome.click("#redo");
+  chrome.wait(at_step(1, 2));
+  chrome.click("#include");
+  chrome.wait(at_step(2, 3));
+  EXPECT_EQ(legs("excluded"), 0);
+  EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
+}
+
+/// Held-out legs are locked: choosing them alone offers nothing to exclude.
+TEST(WorkbenchInBrowser, HeldOutLegsAreLocked) {
+  TRUSSMAP_NEEDS_BROWSER();
+  const ScratchFolder scratch;
+  const ServedBench bench(served(scratch, kRiddle, kRiddle + "/model.toml"));
+  const nlohmann::json status = bench.settled();
+  const auto post = [&](const std::string& what, double from, double to) {
+    return bench.post(
+        what, fmt::format(R"({{"do": "exclude", "version": {}, "choice": {{"time": [{}, {}]}}}})",
+                          status.at("version").get<int>(), from, to));
+  };
+  // The whole recording in steps of a second: where all that is found is held out.
+  bool found = false;
+  for (double t = 0.0; !found && t < 2000.0; t += 1.0) {
+    const testing::HttpAnswer answer = post("legs", t, t + 1.0);
+    if (answer.status != 200) continue;
+    const json legs = json::parse(answer.body).at("legs");
+    if (legs.at("held_out") == 0 || legs.at("free") != 0) continue;
+    found = true;
+    EXPECT_EQ(post("step", t, t + 1.0).status, 202);
+    EXPECT_NE(bench.settled().at("failed").get<std::string>().find("none of these legs"),
+              std::string::npos);
+    EXPECT_EQ(bench.state().at("steps").size(), 1U);
+  }
+  EXPECT_TRUE(found);
+}
+
 TEST(WorkbenchInBrowser, TwoTabsShowTheSame) {
   TRUSSMAP_NEEDS_BROWSER();
   const ScratchFolder scratch;

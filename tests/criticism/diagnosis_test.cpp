@@ -197,7 +197,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
   const testing::SimulatedRecording one = testing::simulate_recording({true, true, true}, 9);
   const FitState fit = fit_recordings({one.recording}, one.model);
   const HeldOutLegs legs({one.recording}, fit, {}, {});
-  ASSERT_TRUE(legs.same_layout(fit.problem));
+  ASSERT_TRUE(legs.has_slopes());
   const ScoreTest tests(fit);
   for (const Channel channel :
        {Channel::wheels, Channel::turn, Channel::compass, Channel::bearing, Channel::range}) {
@@ -206,7 +206,7 @@ TEST(HeldOutLegs, MoveAsTheSlopesSay) {
     effect.channel = channel;
     effect.shape = {"1"};
     const Score score = tests.test({effect}).front();
-    const HeldOut told = legs.moved(kSize * legs.slopes(score.columns, score.landmarks));
+    const HeldOut told = legs.moved(kSize * legs.slopes(effect, score.columns, score.landmarks));
     Recording changed = one.recording;
     for (std::size_t row = 0; row < changed.drive.rows(); ++row) {
       double& left = changed.drive.left[row];

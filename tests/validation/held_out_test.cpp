@@ -251,7 +251,7 @@ TEST(HeldOut, SlopesOfAYawEffectTakeItsErrorAway) {
     const ScoreTest test(fit);
     const Score score = test.test({open}).front();
     ASSERT_EQ(score.dof, 1);
-    const Eigen::VectorXd change = g * legs.slopes(score.columns, score.landmarks).col(0);
+    const Eigen::VectorXd change = g * legs.slopes(open, score.columns, score.landmarks).col(0);
     const double before = legs.metrics().arrival_rms;
     EXPECT_LT(legs.moved(change).arrival_rms, 0.5 * before) << shape;
     EXPECT_GT(legs.moved(-change).arrival_rms, 1.5 * before) << shape;

@@ -35,6 +35,8 @@ WorkbenchLog some_log() {
   log.steps[1].expected_rms = 1e-3;
   log.steps[1].chi2 = 118.25;
   log.steps[1].dof = 116;
+  log.steps[1].excluded = {{{1.0 / 3.0, 2.5}, {7.0, 9.0}}};
+  log.steps[1].excluded_legs = 4;
   log.steps[2].kind = WorkbenchStep::Kind::remove;
   log.steps[2].effect = "hard iron";
   log.steps[2].from = 1;
@@ -71,8 +73,11 @@ TEST(WorkbenchLog, ReadsBackExactly) {
     EXPECT_EQ(read.steps[k].predicted_rms, log.steps[k].predicted_rms);
     EXPECT_EQ(read.steps[k].chi2, log.steps[k].chi2);
     EXPECT_EQ(read.steps[k].dof, log.steps[k].dof);
+    EXPECT_EQ(read.steps[k].excluded_legs, log.steps[k].excluded_legs);
+    ASSERT_EQ(read.steps[k].excluded.size(), log.steps[k].excluded.size());
     EXPECT_EQ(format_model(read.steps[k].model), format_model(log.steps[k].model));
   }
+  EXPECT_EQ(read.steps[1].excluded[0][0].from, 1.0 / 3.0);
   EXPECT_EQ(format_workbench_log(read, recordings), text);
 }
 
@@ -99,7 +104,8 @@ TEST(WorkbenchLog, WhatIsNoLogIsRefusedInOneLine) {
         fault_of(scratch.write("steps.json", "[]"), recordings), with("/format", "another"),
         with("/at", 3), with("/at", -1), with("/steps/1/from", 1), with("/steps/1/kind", "sing"),
         with("/steps/2/model", "[robot"), with("/steps/0/dof", "many"), with("/steps/0/label", 5),
-        with("/steps", nlohmann::ordered_json::array())}) {
+        with("/steps/1/excluded", nlohmann::ordered_json::parse("[[], [[1, 2]]]")),
+        with("/steps/1/excluded", "all"), with("/steps", nlohmann::ordered_json::array())}) {
     EXPECT_NE(fault.find("steps.json"), std::string::npos) << fault;
     EXPECT_EQ(fault.find('\n'), std::string::npos) << fault;
   }

@@ -4,6 +4,7 @@
 // The workbench on maps/riddle, whose hidden effect is a compass with hard iron.
 #include "trussmap/workbench.hpp"
 
+#include "estimation/simulated_recordings.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -230,6 +232,132 @@ TEST(Workbench, RivalsAreForetoldBeside) {
             now.preview(catalogue_effect("cross-slope creep")).predicted->arrival_rms);
   ASSERT_EQ(duel.evidence.response.rivals.size(), 1U);
   EXPECT_FALSE(duel.evidence.response.rivals[0].empty());
+}
+
+std::vector<std::size_t> free_legs(const TriedModel& model, std::size_t most) {
+  std::vector<std::size_t> numbers;
+  for (const TriedLeg& leg : model.legs()) {
+    if (!leg.held_out && !leg.excluded && numbers.size() < most) numbers.push_back(leg.number);
+  }
+  return numbers;
+}
+
+TEST(Workbench, ItsLegsAreThoseOfTheComparison) {
+  const TriedModel& now = begun().now();
+  ASSERT_EQ(now.legs().size(), now.comparison().legs);
+  std::size_t held_out = 0;
+  for (std::size_t k = 0; k < now.legs().size(); ++k) {
+    const TriedLeg& leg = now.legs()[k];
+    EXPECT_EQ(leg.number, k);
+    EXPECT_FALSE(leg.excluded);
+    held_out += leg.held_out ? 1 : 0;
+    // Where it ends is where its landmark is: the robot stands on it.
+    for (const FittedLandmark& landmark : now.map().landmarks) {
+      if (landmark.name == leg.to) EXPECT_LT((landmark.position - leg.end).norm(), 0.1);
+    }
+  }
+  EXPECT_EQ(held_out, now.diagnosis().held_out.legs.size());
+}
+
+TEST(Workbench, ChoosesLegsByPlaceAndByTime) {
+  const TriedModel& now = begun().now();
+  const TriedLeg& leg = now.legs()[now.legs().size() / 2];
+  const Vector2 middle = 0.5 * (leg.begin + leg.end);
+  const Vector2 little(1e-3, 1e-3);
+  for (const std::size_t number : legs_in_area(now, middle - little, middle + little)) {
+    // The distance of the middle from its straight way, by brute force.
+    const TriedLeg& other = now.legs()[number];
+    double nearest = 1e300;
+    for (int k = 0; k <= 10'000; ++k) {
+      const double share = k / 10'000.0;
+      nearest =
+          std::min(nearest, (other.begin + share * (other.end - other.begin) - middle).norm());
+    }
+    EXPECT_LT(nearest, 3e-3);
+  }
+  const auto found = legs_in_area(now, middle + little, middle - little);
+  EXPECT_NE(std::find(found.begin(), found.end(), leg.number), found.end());
+  EXPECT_EQ(legs_in_area(now, {-1e3, -1e3}, {1e3, 1e3}).size(), now.legs().size());
+  EXPECT_TRUE(legs_in_area(now, {1e3, 1e3}, {2e3, 2e3}).empty());
+  const double start = now.recordings().front().drive.start();
+  EXPECT_EQ(legs_in_time(now, {leg.time.from - start, leg.time.to - start}),
+            std::vector<std::size_t>{leg.number});
+  EXPECT_EQ(legs_in_time(now, {0.0, 1e9}).size(), now.legs().size());
+}
+
+TEST(Workbench, ExcludesLegsAndTakesThemBackIn) {
+  Workbench bench = begun();
+  const HeldOut before = bench.now().diagnosis().held_out;
+  const int dof = bench.now().fit().dof;
+  const std::vector<std::size_t> chosen = free_legs(bench.now(), 3);
+  bench.exclude(chosen);
+  const WorkbenchStep& step = bench.log().steps.back();
+  EXPECT_EQ(step.kind, WorkbenchStep::Kind::exclude);
+  EXPECT_GE(step.excluded_legs, 3U);
+  EXPECT_LT(bench.now().fit().dof, dof);
+  for (const std::size_t number : chosen) EXPECT_TRUE(bench.now().legs().at(number).excluded);
+  for (const TriedLeg& leg : bench.now().legs()) EXPECT_FALSE(leg.held_out && leg.excluded);
+  // Nobody fits to the score: the same legs are held out.
+  const HeldOut& after = bench.now().diagnosis().held_out;
+  ASSERT_EQ(after.legs.size(), before.legs.size());
+  for (std::size_t k = 0; k < after.legs.size(); ++k) {
+    EXPECT_EQ(after.legs[k].leg, before.legs[k].leg);
+  }
+  // They can be taken out once.
+  EXPECT_THROW(bench.exclude(chosen), std::invalid_argument);
+  EXPECT_EQ(bench.log().steps.size(), 2U);
+  // Effects are added without them, and what is promised is what comes.
+  bench.add(catalogue_effect("hard iron"));
+  const WorkbenchStep& added = bench.log().steps.back();
+  ASSERT_TRUE(added.predicted_rms.has_value());
+  EXPECT_NEAR(added.arrival_rms, *added.predicted_rms, 0.02 * before.arrival_rms);
+  EXPECT_EQ(added.excluded_legs, step.excluded_legs);
+  bench.go_to(0);
+  EXPECT_EQ(bench.now().diagnosis().held_out.arrival_rms, before.arrival_rms);
+  bench.go_to(1);
+  bench.include_all();
+  EXPECT_EQ(bench.log().steps.back().excluded_legs, 0U);
+  EXPECT_EQ(bench.now().fit().dof, dof);
+  EXPECT_EQ(bench.now().diagnosis().held_out.arrival_rms, before.arrival_rms);
+}
+
+TEST(Workbench, HeldOutLegsCannotBeExcluded) {
+  Workbench bench = begun();
+  std::vector<std::size_t> held_out;
+  for (const TriedLeg& leg : bench.now().legs()) {
+    if (leg.held_out) held_out.push_back(leg.number);
+  }
+  ASSERT_FALSE(held_out.empty());
+  EXPECT_THROW(bench.exclude(held_out), std::invalid_argument);
+  EXPECT_THROW(bench.exclude({}), std::invalid_argument);
+  EXPECT_EQ(bench.log().steps.size(), 1U);
+}
+
+/// The first recording's compass is right, the second's has iron near it: its legs alone show that.
+TEST(Workbench, PointsAreOfTheLegsThatAreChosen) {
+  constexpr double kIron = 0.06;  // rad
+  const testing::SimulatedRecording right = testing::simulate_recording({true, true, false}, 81);
+  testing::SimulatedRecording wrong = testing::simulate_recording({true, true, false}, 82);
+  for (double& heading : wrong.recording.drive.heading) heading += kIron * std::sin(heading);
+  DiagnoseOptions options;
+  options.estimate_noise = false;
+  const TriedModel model(std::make_shared<const std::vector<Recording>>(
+                             std::vector<Recording>{right.recording, wrong.recording}),
+                         right.model, options);
+  for (const std::size_t recording : {0U, 1U}) {
+    std::vector<std::size_t> legs;
+    for (const TriedLeg& leg : model.legs()) {
+      if (leg.recording == recording) legs.push_back(leg.number);
+    }
+    const EffectPreview preview = model.preview(catalogue_effect("hard iron"), {}, legs);
+    double along = 0.0, squares = 0.0;
+    for (const ResponseBin& bin : preview.evidence.response.bins) {
+      along += bin.estimate * std::sin(bin.at);
+      squares += std::pow(std::sin(bin.at), 2);
+    }
+    ASSERT_GT(squares, 2.0);
+    EXPECT_NEAR(along / squares, recording == 0 ? 0.0 : kIron, 0.015) << recording;
+  }
 }
 
 }  // namespace

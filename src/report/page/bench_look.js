@@ -42,6 +42,8 @@ let pinned = null;   // what to go back to
 /** @type {Target | null} */
 let looked = null;   // what is shown
 let asked = 0;
+/** @type {object | null} */
+let choice = null;   // of legs; null: all
 /** @type {Map<string, Preview>} */
 const answers = new Map();  // of this state
 
@@ -80,10 +82,11 @@ function showWords(reply, target) {
 async function show(target) {
   const mine = ++asked;
   looked = target;
-  const key = JSON.stringify([target.on, target.ask]);
+  const ask = choice ? {...target.ask, choice} : target.ask;
+  const key = JSON.stringify([target.on, ask]);
   try {
     const known = answers.get(key);
-    const reply = known || await (target.on ? shown : preview)({version, ...target.ask});
+    const reply = known || await (target.on ? shown : preview)({version, ...ask});
     if (!reply || mine !== asked) return;
     answers.set(key, reply);
     showWords(reply, target);
@@ -180,6 +183,15 @@ export const pinOwn = (effect, fault) =>
 /// Back to what is pinned.
 export function leave() {
   if (pinned && looked !== pinned) show(pinned);
+}
+
+/**
+ * Points of these legs alone.
+ * @param {object | null} next choice
+ */
+export function choose(next) {
+  choice = next;
+  if (looked) show(looked);
 }
 
 export function begin() {

@@ -39,17 +39,17 @@ function showVerdict(state) {
   document.title = 'trussmap: ' + state.verdict.text;
 }
 
-/** @param {BenchState} state */
-function showError(state) {
-  const figure = state.figure;
+/** @param {BenchState | Selection} views */
+function showError({figure, legs}) {
+  const some = legs.shown < legs.all;
   by('figure-now').textContent = figure ? figure.now : '\u2013';
   by('figure-more').textContent = figure
-      ? `at the end of a leg that no fit has seen (root mean square of ${figure.legs}). ` +
+      ? `at the end of a leg that no fit has seen (root mean square of ${figure.legs}` +
+        (some ? ' among the chosen' : '') + '). ' +
         `The middle one ${figure.median}, the worst ${figure.worst}` +
         (figure.worst_leg ? ` (${figure.worst_leg})` : '') +
         `. Noise alone would leave ${figure.floor}.`
-      : 'There are no legs to be held out of the fit.';
-  showFigure('staircase', figure ? state.staircase : null);
+      : some ? 'None of the chosen legs is held out.' : 'There are no legs to be held out of the fit.';
 }
 
 /** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
@@ -77,15 +77,13 @@ function showNoise(state) {
       ...state.noise.lines.map(textContent => make('p', {textContent})));
 }
 
-/** @param {BenchState} state */
-function showStrips(state) {
-  const box = by('time');
-  if (box.dataset.shown === state.subject) return;  // recordings stay what they are
-  box.dataset.shown = state.subject;
-  for (const chart of state.strips) {
-    const figure = make('figure', {className: 'chart strip', id: chart.id},
-                        make('h3'), make('div', {className: 'picture'}));
-    box.append(figure);
+/** @param {BenchState | Selection} views */
+function showStrips({strips}) {
+  for (const chart of strips) {
+    if (!document.getElementById(chart.id)) {
+      by('time').append(make('figure', {className: 'chart strip', id: chart.id},
+                             make('h3'), make('div', {className: 'picture'})));
+    }
     showFigure(chart.id, chart);
   }
 }
@@ -100,10 +98,18 @@ function showUnseen(state) {
 /** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
 export function showState(state, busy, go) {
   showVerdict(state);
-  showFigure('map', state.map);
-  showError(state);
+  showFigure('staircase', state.figure ? state.staircase : null);
   showSteps(state, busy, go);
   showNoise(state);
   showUnseen(state);
-  showStrips(state);
+}
+
+/**
+ * What shows legs: all, or those chosen.
+ * @param {BenchState | Selection} views
+ */
+export function showViews(views) {
+  showFigure('map', views.map);
+  showError(views);
+  showStrips(views);
 }

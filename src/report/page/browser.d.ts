@@ -23,6 +23,7 @@ interface VegaView {
   origin(): [number, number];
   width(): number;
   height(): number;
+  scale(name: 'x' | 'y'): {invert(pixel: number): number};
   scenegraph(): {root: {items: {items: SceneMark[]}[]}};
 }
 

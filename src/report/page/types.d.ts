@@ -81,6 +81,15 @@ interface BenchFigure {
   worst_leg?: string;
 }
 
+interface BenchLegs {
+  shown: number;
+  all: number;
+  held_out: number;
+  excluded: number;
+  free: number;
+  words: string;
+}
+
 interface BenchParameter {
   name: string;
   value: number;
@@ -154,7 +163,6 @@ interface BenchState {
   at: number;
   steps: BenchStep[];
   verdict: BenchVerdict;
-  figure: BenchFigure | null;
   fit: string;
   tried: number;
   on: OnCard[];
@@ -163,8 +171,19 @@ interface BenchState {
   noise: BenchNoise;
   variables: string[];
   channels: BenchChannel[];
-  map: Chart;
   staircase: Chart;
+  legs: BenchLegs;
+  figure: BenchFigure | null;
+  map: Chart;
+  strips: Chart[];
+}
+
+// Of the legs that are chosen (report/workbench_views.cpp).
+
+interface Selection {
+  legs: BenchLegs;
+  figure: BenchFigure | null;
+  map: Chart;
   strips: Chart[];
 }
 

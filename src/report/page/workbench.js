@@ -7,6 +7,7 @@
 //   pointing, typing --> preview                 pressing --> step, of the version that is shown
 import {ask, follow, tell} from './bench_api.js';
 import {showCandidates, showOn} from './bench_cards.js';
+import * as legs from './bench_legs.js';
 import * as look from './bench_look.js';
 import * as noise from './bench_noise.js';
 import {beginOwn} from './bench_own.js';
@@ -64,6 +65,7 @@ function setBusy(now) {
   }
   buttonBy('undo').disabled = busy || !state || state.at === 0;
   buttonBy('redo').disabled = busy || !onward.length;
+  legs.setBusy(busy);
   document.documentElement.dataset.busy = String(busy);
 }
 
@@ -83,11 +85,12 @@ async function renew(to) {
   state = next;
   version = to;
   showAll(next);
+  const chosen = legs.renew(next, version);
   if (first) {
     beginOwn(next, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
-  await Promise.all([look.renew(next, version), noise.renew(next, version)]);
+  await Promise.all([chosen, look.renew(next, version), noise.renew(next, version)]);
   document.documentElement.dataset.at = String(next.at);
   document.documentElement.dataset.steps = String(next.steps.length);
 }
@@ -122,6 +125,7 @@ by('add').addEventListener('click', () => {
   step({do: 'add', ...(effect ? {effect} : {finding, ...(values ? {values} : {})})});
 });
 look.begin();
+legs.begin(look.choose, what => { onward = []; step(what); });
 noise.begin();
 followWidth();
 follow(onStatus, gone => {

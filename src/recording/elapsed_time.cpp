@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "recording/elapsed_time.hpp"
+
+namespace trussmap {
+
+std::vector<double> elapsed_shifts(const std::vector<Recording>& recordings) {
+  std::vector<double> shifts;
+  double before = 0.0;
+  for (const Recording& one : recordings) {
+    const Drive& drive = one.drive;
+    if (drive.rows() == 0) {
+      shifts.push_back(before);
+      continue;
+    }
+    shifts.push_back(before - drive.start());
+    before += drive.t.back() - drive.start();
+  }
+  return shifts;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What the workbench's page shows of legs, all or some that were chosen: how far off those held out
+// end, the map, time.
+#pragma once
+
+#include "trussmap/workbench.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace trussmap {
+
+/// Of legs by their numbers, ascending; of all without any given.
+[[nodiscard]] nlohmann::ordered_json views_json(
+    const TriedModel& now, const std::optional<std::vector<std::size_t>>& chosen);
+
+}  // namespace trussmap
