@@ -3,7 +3,8 @@
 //
 // The workbench's cards: the effects that the model has, and those that it could have, by part and
 // by what each would save. Look-alikes are stacked in one card.
-import {make} from './dom.js';
+import {explainButton} from './bench_explain.js';
+import {make, within} from './dom.js';
 
 const SHOWN = 4;  // of a part, before "more": of those that are more than chance
 /** @type {Set<string>} */
@@ -26,6 +27,7 @@ const open = new Set();  // parts whose cards are all shown
  * @property {() => void} leave
  * @property {(card: Card) => void} pin
  * @property {(one: OnCard) => void} pinOn
+ * @property {(asked: object) => Promise<ExplainReply>} explain
  * @property {(card: Card) => void} add
  * @property {(one: OnCard) => void} remove
  */
@@ -88,7 +90,8 @@ export function showOn(list, state, does) {
     const item = card(one.name, [act('Remove', `Remove ${one.name}`, does.busy(), () => does.remove(one))], {
       look: () => does.lookOn(one), leave: does.leave, pin: () => does.pinOn(one)});
     item.dataset.effect = one.id;
-    item.append(make('p', {textContent: one.words}),
+    within(item, '.line').append(explainButton(item, one, () => does.explain({effect: one.effect})));
+    item.append(make('p', {textContent: (state.provisional ? 'For now: ' : '') + one.words}),
                 ...one.not_fitted.map(why => make('p', {className: 'failed', textContent: why})));
     return item;
   }));
@@ -104,6 +107,7 @@ function candidate(one, does) {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
   item.dataset.finding = String(one.finding);
+  within(item, '.line').append(explainButton(item, one, () => does.explain({finding: one.finding})));
   item.append(make('p', {}, tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
     item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),

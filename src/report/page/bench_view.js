@@ -52,25 +52,6 @@ function showError({figure, legs}) {
       : some ? 'None of the chosen legs is held out.' : 'There are no legs to be held out of the fit.';
 }
 
-/** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
-function showSteps(state, busy, go) {
-  const now = state.steps[state.at];
-  by('steps').replaceChildren(...state.steps.map(step => {
-    const here = step.step === state.at;
-    const less = step.mm - now.mm;
-    const button = make('button', {
-      type: 'button', disabled: busy || here, className: 'step' + (step.on_way ? ' way' : ''),
-      textContent: step.name});
-    button.dataset.step = String(step.step);
-    button.addEventListener('click', () => go(step.step));
-    const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
-    const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
-    const item = make('li', {}, button, ` ${step.mm.toFixed(1)} mm${foretold}${beside}`);
-    if (here) item.setAttribute('aria-current', 'step');
-    return item;
-  }));
-}
-
 /** @param {BenchState} state */
 function showNoise(state) {
   by('noise').replaceChildren(
@@ -95,11 +76,11 @@ function showUnseen(state) {
       make('li', {textContent: `${one.name}: ${one.why}; ${one.drive}`})));
 }
 
-/** @param {BenchState} state @param {boolean} busy @param {(step: number) => void} go */
-export function showState(state, busy, go) {
+/** @param {BenchState} state */
+export function showState(state) {
   showVerdict(state);
+  by('provisional').hidden = !state.provisional;
   showFigure('staircase', state.figure ? state.staircase : null);
-  showSteps(state, busy, go);
   showNoise(state);
   showUnseen(state);
 }

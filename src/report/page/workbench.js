@@ -7,6 +7,7 @@
 //   pointing, typing --> preview                 pressing --> step, of the version that is shown
 import {ask, follow, tell} from './bench_api.js';
 import {showCandidates, showOn} from './bench_cards.js';
+import {showHistory} from './bench_history.js';
 import * as legs from './bench_legs.js';
 import * as look from './bench_look.js';
 import * as noise from './bench_noise.js';
@@ -46,6 +47,7 @@ const does = {
   busy: () => busy,
   look: look.look, lookOn: look.lookOn, leave: look.leave, pin: look.pinCard, pinOn: look.pinOn,
   add: card => { onward = []; step({do: 'add', finding: card.finding}); },
+  explain: asked => tell('explain', {version, ...asked}),
   remove: one => { onward = []; step({do: 'remove', effect: one.effect}); }
 };
 
@@ -55,13 +57,16 @@ function go(to) {
   step({do: 'go', step: to});
 }
 
+/** @type {import('./bench_history.js').HistoryActs} */
+const past = {busy: () => busy, go, name: (at, label) => { step({do: 'name', step: at, label}); }};
+
 /** @param {boolean} now */
 function setBusy(now) {
   busy = now;
   /** @type {NodeListOf<HTMLButtonElement>} */
   const buttons = document.querySelectorAll('.act, .step, #add, #own-add');
   for (const button of buttons) {
-    button.disabled = busy || button.parentElement?.getAttribute('aria-current') === 'step';
+    button.disabled = busy || button.dataset.here === 'true';
   }
   buttonBy('undo').disabled = busy || !state || state.at === 0;
   buttonBy('redo').disabled = busy || !onward.length;
@@ -71,7 +76,8 @@ function setBusy(now) {
 
 /** @param {BenchState} state */
 function showAll(state) {
-  showState(state, busy, go);
+  showState(state);
+  showHistory(state, past);
   showOn(by('on'), state, does);
   showCandidates(by('parts'), state, does);
   setBusy(busy);
@@ -98,12 +104,15 @@ async function renew(to) {
 let renewing = Promise.resolve();
 /** @param {BenchStatus} status */
 function onStatus(status) {
-  by('doing').hidden = !status.busy;
-  within(by('doing'), 'span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
+  if (status.busy) {
+    within(by('doing'), 'span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
+    by('doing').hidden = false;
+  }
   if (status.failed) fail(status.failed);
   renewing = renewing.then(async () => {
     if (status.version !== version && status.version > 0) await renew(status.version);
     setBusy(status.busy);
+    by('doing').hidden = !status.busy;  // not before the whole screen is that of the state
   }).catch(error => fail(messageOf(error)));
 }
 
