@@ -126,9 +126,12 @@ function tableOf(layer) {
   const head = make('tr', {}, ...layer.columns.map(column =>
       make('th', {scope: 'col', textContent: column.name})));
   const body = rows.slice(0, MOST_TABLE_ROWS).map(row =>
-      make('tr', {}, ...layer.columns.map((_, c) => make('td', {
-        textContent: shown(row['c' + c]),
-        className: typeof row['c' + c] === 'number' ? 'number' : ''}))));
+      make('tr', {}, ...layer.columns.map((column, c) => {
+        const cell = make('td', {textContent: shown(row['c' + c]),
+                                 className: typeof row['c' + c] === 'number' ? 'number' : ''});
+        cell.dataset.heading = column.name;
+        return cell;
+      })));
   const table = make('table', {}, make('caption', {
     textContent: layer.name + (rows.length > MOST_TABLE_ROWS
         ? ` (first ${MOST_TABLE_ROWS} of ${rows.length}; the CSV file has all)` : '')}),

@@ -5,6 +5,7 @@
 import {within} from './dom.js';
 import {addTableTools, charts, csvOf, drawAnew, followWidth, showChart, svgOf} from './figure.js';
 import {notice} from './notice.js';
+import {printOnOneSheet} from './sheet.js';
 
 /// The first chart at once, the others when the browser has painted it.
 function beginAll() {
@@ -46,4 +47,5 @@ for (const more of document.querySelectorAll('details.more')) {
   more.addEventListener('toggle', drawAnew);
 }
 addTableTools();
+printOnOneSheet();
 beginAll();

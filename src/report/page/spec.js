@@ -26,6 +26,7 @@ export function rowsOf(layer) {
     if (layer.shade) {
       const shade = Math.max(-1, Math.min(1, layer.shade[k] ?? 0));
       row.strength = Math.abs(shade);
+      row.below = shade < 0 ? 1 : 0;
       row.colour = shadeColour(Math.round((shade + 1) / 2 * (SHADES - 1)));
     }
     rows[k] = row;
@@ -115,6 +116,31 @@ function scale(name, axis, domain) {
 }
 
 /**
+ * How a layer's marks differ from those of other layers where colours cannot be told apart: lines by
+ * their dash, dots by their shape.
+ * @typedef {{dash: number[], shape: string}} Looks
+ */
+const SOLID = [1, 0];
+const DASHES = [SOLID, [10, 3], [2, 3], [10, 3, 2, 3]];
+const SHAPES = ['circle', 'square', 'diamond', 'triangle-up', 'cross', 'triangle-down'];
+/** @type {LayerKind[]} */
+const LINES = ['line', 'net', 'segments', 'ellipses', 'level', 'upright'];
+
+/** @param {Chart} chart @returns {(layer: ChartLayer) => Looks} */
+function looksIn(chart) {
+  const named = chart.layers.filter(layer => layer.name && !layer.key);
+  const colours = (/** @type {boolean} */ lines) => [...new Set(named
+      .filter(layer => LINES.includes(layer.kind) === lines && !(lines && layer.dashed))
+      .map(layer => layer.colour))];
+  const strokes = colours(true), dots = colours(false);
+  const at = (/** @type {string[]} */ all, /** @type {string} */ colour, /** @type {number} */ count) =>
+      Math.max(0, all.indexOf(colour)) % count;
+  return layer => ({
+    dash: layer.dashed ? [6, 4] : layer.name ? DASHES[at(strokes, layer.colour, DASHES.length)] : SOLID,
+    shape: SHAPES[at(dots, layer.colour, SHAPES.length)]});
+}
+
+/**
  * @param {ChartLayer} layer
  * @param {number} index
  * @param {Chart} chart
@@ -129,7 +155,10 @@ function marksOf(layer, index, chart) {
       : {scale: name, field: 'c' + column};
   const x = across('x', chart.x), y = across('y', chart.y);
   const colour = layer.shade ? {field: 'colour'} : {value: colourOf(layer.colour)};
-  const dash = layer.dashed ? {strokeDash: {value: [6, 4]}} : {};
+  const looks = looksIn(chart)(layer);
+  const dash = layer.key ? {strokeDash: {signal: 'datum.below ? [7, 3] : [1, 0]'}}
+                         : {strokeDash: {value: looks.dash}};
+  const shape = {shape: {value: looks.shape}};
   const line = (/** @type {number} */ width) => ({stroke: colour, strokeWidth: {value: layer.size || width}, ...dash});
   const said = {tooltip: {signal: 'datum'}, cursor: {value: 'default'}};
   /** @type {(type: string, update: object, more?: object) => object} */
@@ -145,7 +174,7 @@ function marksOf(layer, index, chart) {
   switch (layer.kind) {
     case 'dots': {
       const radius = layer.size || 4;
-      return [lively('symbol', {x: x(0), y: y(1), fill: colour, fillOpacity: {value: 0.8},
+      return [lively('symbol', {x: x(0), y: y(1), fill: colour, ...shape, fillOpacity: {value: 0.8},
                                 stroke: {value: 'var(--paper)'}, strokeWidth: {value: 0.5},
                                 size: {value: Math.PI * radius * radius}},
                      {stroke: {value: 'var(--ink)'}, strokeWidth: {value: 2}})];
@@ -178,7 +207,7 @@ function marksOf(layer, index, chart) {
       const radius = layer.size || 4;
       return [{...mark('rule', {...ends, stroke: colour, strokeWidth: {value: 2}},
                        {interactive: false}), name: 'reach' + index},
-              lively('symbol', {...middle, fill: colour,
+              lively('symbol', {...middle, fill: colour, ...shape,
                                 size: {value: Math.PI * radius * radius}},
                      {stroke: {value: 'var(--ink)'}, strokeWidth: {value: 2}})];
     }
@@ -211,19 +240,37 @@ function marksOf(layer, index, chart) {
 }
 
 /**
- * Names in the legend with their colours, each once.
+ * What is in the legend, each name once.
+ * @typedef {Looks & {name: string, colour: string, width: number}} Key
  * @param {Chart} chart
+ * @returns {Key[]}
  */
 function legendOf(chart) {
+  /** @type {Map<string, Key>} */
   const entries = new Map();
+  const looks = looksIn(chart);
   for (const layer of chart.layers) {
     if (layer.name && !layer.key && !entries.has(layer.name)) {
-      entries.set(layer.name, colourOf(layer.colour));
+      const line = LINES.includes(layer.kind);
+      const {dash, shape} = looks(layer);
+      const area = layer.kind === 'band' || layer.kind === 'bars';
+      entries.set(layer.name, {name: layer.name, colour: colourOf(layer.colour), dash: line ? dash : SOLID,
+                               shape: line ? 'stroke' : area ? 'square' : shape, width: line ? 2.5 : 0});
     }
-    (layer.key || []).forEach((name, k) => entries.set(name, shadeColour(k * 3)));
+    (layer.key || []).forEach((name, k) => entries.set(name, {
+      name, colour: shadeColour(k * 3), dash: k === 0 ? [7, 3] : SOLID, shape: 'stroke', width: k === 1 ? 2.5 : 6}));
   }
-  return [...entries];
+  return [...entries.values()];
 }
+
+/**
+ * A scale from names in the legend to how they look.
+ * @param {string} name
+ * @param {Key[]} legend
+ * @param {(key: Key) => unknown} look
+ */
+const keyScale = (name, legend, look) =>
+    ({name, type: 'ordinal', domain: legend.map(key => key.name), range: legend.map(look)});
 
 const text = {font: 'system-ui, Liberation Sans, sans-serif'};
 
@@ -250,19 +297,20 @@ export function specOf(chart, width) {
              titleFontWeight: 'normal', labelColor: 'var(--muted)', titleColor: 'var(--ink)',
              gridColor: 'var(--grid)', titlePadding: 8},
       legend: {labelFont: text.font, labelFontSize: 12, labelColor: 'var(--ink)',
-               labelLimit: 260, symbolStrokeWidth: 0, columnPadding: 16}},
+               labelLimit: 260, columnPadding: 16}},
     // A map's part that is shown: page.js moves it.
     signals: chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [],
     data: chart.layers.map((layer, k) => ({name: 'd' + k, values: rowsOf(layer)})),
     scales: [scale('x', chart.x, chart.equal ? {signal: 'xs'} : domains[0]),
              scale('y', chart.y, chart.equal ? {signal: 'ys'} : domains[1]),
-             {name: 'legend', type: 'ordinal', domain: legend.map(e => e[0]),
-              range: legend.map(e => e[1])}],
+             keyScale('colour', legend, key => key.colour), keyScale('shape', legend, key => key.shape),
+             keyScale('dash', legend, key => key.dash), keyScale('width', legend, key => key.width)],
     axes: [axis('bottom', chart.x, 'x'), axis('left', chart.y, 'y')],
     legends: legend.length
-        ? [{fill: 'legend', orient: 'top', direction: 'horizontal', symbolType: 'square', aria: false,
+        ? [{fill: 'colour', stroke: 'colour', shape: 'shape', strokeDash: 'dash', strokeWidth: 'width',
+            orient: 'top', direction: 'horizontal', symbolSize: 160, aria: false,
             columns: Math.max(1, Math.floor((width - 60) /
-                (36 + 7 * Math.max(...legend.map(e => Math.min(37, e[0].length))))))}]
+                (36 + 7 * Math.max(...legend.map(key => Math.min(37, key.name.length))))))}]
         : [],
     marks: chart.layers.flatMap((layer, k) => marksOf(layer, k, chart))};
 }
