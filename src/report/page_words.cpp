@@ -33,6 +33,7 @@ std::string channel_unit(const Effect& effect) {
 std::string typeset(std::string text) {
   replace_all(text, "+-", "\u00b1");
   replace_all(text, "chi^2", "chi\u00b2");
+  replace_all(text, "chi2", "chi\u00b2");
   const std::string degrees = " deg";
   for (std::size_t at = text.find(degrees); at != std::string::npos; at = text.find(degrees, at)) {
     const std::size_t end = at + degrees.size();

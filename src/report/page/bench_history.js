@@ -85,7 +85,7 @@ function comparisonOf(one, other) {
                     make('th', {scope: 'col', textContent: titleOf(other)}));
   return make('table', {}, make('thead', {}, head), make('tbody', {},
       rowOf('off by', one.mm.toFixed(1) + ' mm', other.mm.toFixed(1) + ' mm'),
-      rowOf('\u03c7\u00b2 per degree of freedom', one.chi2_per_dof.toFixed(2), other.chi2_per_dof.toFixed(2)),
+      rowOf('chi\u00b2 per degree of freedom', one.chi2_per_dof.toFixed(2), other.chi2_per_dof.toFixed(2)),
       rowOf('effects it alone has', only(one, other), only(other, one)),
       rowOf('effects of both', list(both), list(both))));
 }

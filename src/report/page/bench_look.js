@@ -56,7 +56,7 @@ function saves(reply, target) {
     return 'How much it saves shows when it is fitted: what the model has already changes with it.';
   }
   return `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
-         `\u03c7\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
+         `chi\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
 }
 
 /** @param {Preview} reply @param {Target} target */
