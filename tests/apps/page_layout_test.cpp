@@ -119,6 +119,12 @@ void expect_well_laid_out(const std::string& command) {
                 "cell.dataset.heading !== undefined))")
           .get<bool>())
       << command;
+  // Names are wrapped, not cut.
+  EXPECT_EQ(
+      chrome.eval("[...document.querySelectorAll('.picture svg text')]"
+                  ".filter(one => one.textContent.includes('\u2026')).map(one => one.textContent)"),
+      json::array())
+      << command;
   EXPECT_EQ(chrome.complaints(), std::vector<std::string>());
 }
 

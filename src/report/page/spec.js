@@ -122,6 +122,7 @@ function scale(name, axis, domain) {
  */
 const SOLID = [1, 0];
 const DASHES = [SOLID, [10, 3], [2, 3], [10, 3, 2, 3]];
+const RIVALS = [[6, 4], [2, 2.5], [8, 2, 2, 2]];  // of lines that are dashed anyhow
 const SHAPES = ['circle', 'square', 'diamond', 'triangle-up', 'cross', 'triangle-down'];
 /** @type {LayerKind[]} */
 const LINES = ['line', 'net', 'segments', 'ellipses', 'level', 'upright'];
@@ -129,14 +130,17 @@ const LINES = ['line', 'net', 'segments', 'ellipses', 'level', 'upright'];
 /** @param {Chart} chart @returns {(layer: ChartLayer) => Looks} */
 function looksIn(chart) {
   const named = chart.layers.filter(layer => layer.name && !layer.key);
-  const colours = (/** @type {boolean} */ lines) => [...new Set(named
-      .filter(layer => LINES.includes(layer.kind) === lines && !(lines && layer.dashed))
-      .map(layer => layer.colour))];
-  const strokes = colours(true), dots = colours(false);
+  const colours = (/** @type {(layer: ChartLayer) => boolean} */ which) =>
+      [...new Set(named.filter(which).map(layer => layer.colour))];
+  const isLine = (/** @type {ChartLayer} */ layer) => LINES.includes(layer.kind);
+  const strokes = colours(layer => isLine(layer) && !layer.dashed);
+  const rivals = colours(layer => layer.kind === 'line' && Boolean(layer.dashed));
+  const dots = colours(layer => !isLine(layer));
   const at = (/** @type {string[]} */ all, /** @type {string} */ colour, /** @type {number} */ count) =>
       Math.max(0, all.indexOf(colour)) % count;
   return layer => ({
-    dash: layer.dashed ? [6, 4] : layer.name ? DASHES[at(strokes, layer.colour, DASHES.length)] : SOLID,
+    dash: layer.dashed ? RIVALS[at(rivals, layer.colour, RIVALS.length)]
+        : layer.name ? DASHES[at(strokes, layer.colour, DASHES.length)] : SOLID,
     shape: SHAPES[at(dots, layer.colour, SHAPES.length)]});
 }
 
@@ -257,8 +261,11 @@ function legendOf(chart) {
       entries.set(layer.name, {name: layer.name, colour: colourOf(layer.colour), dash: line ? dash : SOLID,
                                shape: line ? 'stroke' : area ? 'square' : shape, width: line ? 2.5 : 0});
     }
-    (layer.key || []).forEach((name, k) => entries.set(name, {
-      name, colour: shadeColour(k * 3), dash: k === 0 ? [7, 3] : SOLID, shape: 'stroke', width: k === 1 ? 2.5 : 6}));
+    (layer.key || []).forEach((name, k) => {
+      if (!name) return;
+      entries.set(name, {name, colour: shadeColour(k * 3), dash: k === 0 ? [7, 3] : SOLID,
+                         shape: 'stroke', width: k === 1 ? 2 : 6});
+    });
   }
   return [...entries.values()];
 }
@@ -272,6 +279,27 @@ function legendOf(chart) {
 const keyScale = (name, legend, look) =>
     ({name, type: 'ordinal', domain: legend.map(key => key.name), range: legend.map(look)});
 
+const LETTER = 6.4;       // pixels, about
+const LINE = 13;
+const MOST_LINES = 3;
+
+/**
+ * A name over several lines, each of so many letters at most; what does not fit is cut.
+ * @param {string} name
+ * @param {number} most
+ */
+export function wrapped(name, most) {
+  /** @type {string[]} */
+  const lines = [];
+  for (const word of name.split(' ')) {
+    const last = lines[lines.length - 1];
+    if (last !== undefined && last.length + 1 + word.length <= most) lines[lines.length - 1] = last + ' ' + word;
+    else lines.push(word);
+  }
+  if (lines.length > MOST_LINES) lines.splice(MOST_LINES - 1, lines.length, lines.slice(MOST_LINES - 1).join(' '));
+  return lines.map(line => line.length > most + 1 ? line.slice(0, most - 1) + '\u2026' : line);
+}
+
 const text = {font: 'system-ui, Liberation Sans, sans-serif'};
 
 /** @param {Chart} chart @param {number} width */
@@ -280,11 +308,18 @@ export function specOf(chart, width) {
   let domains = [extent(chart, 0), extent(chart, 1)];
   // Room for the axes, near enough for a map's proportions.
   if (chart.equal) domains = equalised(domains, width - 65, chart.height);
+  const limit = {x: 110, y: Math.min(220, width * 0.4)};
+  // Names of categories, over several lines, by name.
+  const names = (/** @type {'x' | 'y'} */ name) => Object.fromEntries((chart[name].categories || [])
+      .map(one => [one, wrapped(one, Math.floor(limit[name] / LETTER))]));
+  const categories = (/** @type {'x' | 'y'} */ name) => ({encode: {labels: {update: {
+    text: {signal: `${name}Names[datum.value]`},
+    ...(name === 'y' ? {dy: {signal: `-${LINE / 2} * (length(yNames[datum.value]) - 1)`}} : {})}}}});
   const axis = (/** @type {string} */ orient, /** @type {ChartAxis} */ of,
                 /** @type {'x' | 'y'} */ name) => ({
     orient, scale: name, title: of.title, grid: !isCategory(of), ticks: false, labelPadding: 6,
     domain: false, tickCount: {signal: `ceil(${name === 'x' ? 'width / 90' : 'height / 45'})`},
-    labelLimit: name === 'y' ? Math.min(220, width * 0.4) : 110,
+    labelLimit: limit[name] + 20, labelLineHeight: LINE, ...(isCategory(of) ? categories(name) : {}),
     ...(of.log ? {tickCount: 4, formatType: 'number', format: '~g'} : {}),
     aria: false});
   return {
@@ -299,16 +334,18 @@ export function specOf(chart, width) {
       legend: {labelFont: text.font, labelFontSize: 12, labelColor: 'var(--ink)',
                labelLimit: 260, columnPadding: 16}},
     // A map's part that is shown: page.js moves it.
-    signals: chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [],
+    signals: [{name: 'xNames', value: names('x')}, {name: 'yNames', value: names('y')},
+              ...(chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [])],
     data: chart.layers.map((layer, k) => ({name: 'd' + k, values: rowsOf(layer)})),
     scales: [scale('x', chart.x, chart.equal ? {signal: 'xs'} : domains[0]),
              scale('y', chart.y, chart.equal ? {signal: 'ys'} : domains[1]),
              keyScale('colour', legend, key => key.colour), keyScale('shape', legend, key => key.shape),
-             keyScale('dash', legend, key => key.dash), keyScale('width', legend, key => key.width)],
+             keyScale('dash', legend, key => key.dash), keyScale('width', legend, key => key.width),
+             keyScale('size', legend, key => key.shape === 'stroke' ? 500 : 120)],
     axes: [axis('bottom', chart.x, 'x'), axis('left', chart.y, 'y')],
     legends: legend.length
-        ? [{fill: 'colour', stroke: 'colour', shape: 'shape', strokeDash: 'dash', strokeWidth: 'width',
-            orient: 'top', direction: 'horizontal', symbolSize: 160, aria: false,
+        ? [{fill: 'colour', stroke: 'colour', shape: 'shape', strokeDash: 'dash', strokeWidth: 'width', size: 'size',
+            orient: 'top', direction: 'horizontal', aria: false,
             columns: Math.max(1, Math.floor((width - 60) /
                 (36 + 7 * Math.max(...legend.map(key => Math.min(37, key.name.length))))))}]
         : [],
