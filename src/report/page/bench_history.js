@@ -108,7 +108,7 @@ function showComparison(state, does) {
     const button = make('button', {type: 'button', className: 'act', textContent: 'Go to it',
                                    disabled: does.busy() || k === state.at});
     button.dataset.here = String(k === state.at);
-    button.setAttribute('aria-label', `Go to ${titleOf(state.steps[k])}`);
+    button.setAttribute('aria-label', `Go to it: ${titleOf(state.steps[k])}`);
     button.addEventListener('click', () => does.go(k));
     return button;
   });

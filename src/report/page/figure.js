@@ -221,7 +221,7 @@ export function addTableTools() {
     const cells = [...box.querySelectorAll('tr')].map(row =>
         [...row.cells].map(cell => quoted(cell.textContent || '')).join(',') + '\r\n').join('');
     const csv = make('button', {type: 'button', textContent: 'Save CSV'});
-    csv.setAttribute('aria-label', `Save the table "${box.getAttribute('aria-label')}" as CSV`);
+    csv.setAttribute('aria-label', `Save CSV of the table "${box.getAttribute('aria-label')}"`);
     csv.addEventListener('click', () => save(`table-${k + 1}.csv`, 'text/csv', cells));
     box.after(make('p', {className: 'tools'}, csv));
   });
