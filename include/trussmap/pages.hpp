@@ -121,15 +121,6 @@ struct TruthCalibration {
 /// [m]. Of one that the model has, without figures of what it would save.
 [[nodiscard]] std::string preview_json(const EffectPreview& preview, double arrival_rms);
 
-/// What an effect does to a robot, drawn (SVG, 320 x 170): dashed as the robot believes it to be,
-/// blue as it is, orange the cause. Each effect of the catalogue has a drawing of its own; any
-/// other has that of the catalogue's plainest effect of its channel, or none (empty) where there is
-/// none. In a page colours follow the page's.
-[[nodiscard]] std::string effect_drawing(const Effect& effect);
-
-/// An effect explained, as JSON for that page: its text (wording.hpp) and its drawing.
-[[nodiscard]] std::string explanation_json(const Effect& effect);
-
 /// Pictures as SVG files: the map before and after, over its survey where there is one; where runs
 /// round a square of this side [m] ended, a cluster per direction and round; end errors with the
 /// 95 % ellipses of the runs and of the estimate.

@@ -44,15 +44,6 @@ struct FleetReport;
 /// "hard iron (cos(heading)): not fitted, no measurement tells it from the map ...".
 [[nodiscard]] std::string in_words(const EffectEstimate& estimate, const UnfittedCoefficient& one);
 
-/// An effect explained to a robot's owner, in whole sentences: one of the catalogue by its own
-/// text, any other by its channel and what it goes with.
-struct Explanation {
-  std::string does;   ///< what it does to the robot
-  std::string look;   ///< what to look at on the robot
-  std::string drive;  ///< what to drive to be sure
-};
-[[nodiscard]] Explanation explanation_of(const Effect& effect);
-
 // Advice.
 
 struct Advice {

@@ -61,10 +61,9 @@ struct ChartLayer {
   std::string colour = "1";
   double size = 0.0;  ///< pixels: radius of a dot, width of a line (shaded: a factor); 0: own
   bool dashed = false;
-  double offset = 0.0;             ///< pixels along an axis of categories, to lie side by side
-  std::vector<double> shade = {};  ///< one per mark, -1 to 1; empty: all in `colour`
-  std::vector<std::string> key =
-      {};  ///< of the shades -1, 0 and 1, in the legend; empty: not there
+  double offset = 0.0;                ///< pixels along an axis of categories, to lie side by side
+  std::vector<double> shade = {};     ///< one per mark, -1 to 1; empty: all in `colour`
+  std::vector<std::string> key = {};  ///< of the shades -1, 0 and 1, in the legend
 };
 
 struct ChartAxis {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/effect_drawings.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/pages.hpp"
+#include "trussmap/explanation.hpp"
 
 namespace trussmap {
 namespace {
