@@ -114,8 +114,15 @@ void print_verdict(const Diagnosis& result) {
     const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
     fmt::print("{}\n", verdict_text(mood, in_words(one)));
     for (const LookAlike& rival : one.look_alikes) {
-      fmt::print("  looks the same here: {} ({}), cosine {:.3f}\n", rival.effect.name,
-                 formula_of(rival.effect), rival.cosine);
+      if (rival.told_apart()) {
+        fmt::print(
+            "  looks much like it: {} ({}), cosine {:.3f}; all measurements tell it apart (chi^2 "
+            "{:.0f} behind)\n",
+            rival.effect.name, formula_of(rival.effect), rival.cosine, rival.behind);
+      } else {
+        fmt::print("  looks the same here: {} ({}), cosine {:.3f}\n", rival.effect.name,
+                   formula_of(rival.effect), rival.cosine);
+      }
     }
   }
   if (!result.missing.empty() && !result.held_out.legs.empty()) {

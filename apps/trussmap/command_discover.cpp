@@ -118,6 +118,7 @@ void print(const Discovery& result, bool noise_found) {
   print_steps(result, noise_found);
   for (const DiscoveryStep& step : result.steps) {
     for (const LookAlike& rival : step.look_alikes) {
+      if (rival.told_apart()) continue;
       fmt::print("  instead of {} it could be: {} ({}), cosine {:.3f}\n", step.added->name,
                  rival.effect.name, formula_of(rival.effect), rival.cosine);
     }

@@ -31,6 +31,7 @@ ordered_json look_alikes_json(const std::vector<LookAlike>& look_alikes) {
   for (const LookAlike& one : look_alikes) {
     list.push_back(effect_json(one.effect));
     list.back()["cosine"] = one.cosine;
+    list.back()["chi2_behind"] = one.behind;
   }
   return list;
 }

@@ -38,10 +38,22 @@ namespace trussmap {
 
 enum class Status { missing, absent, negligible, cannot_tell };
 
+/// chi^2 behind another from which on measurements tell two effects apart: odds of 400 to 1.
+inline constexpr double kToldApart = 12.0;
+
+/// An effect that would leave nearly the same trace.
 struct LookAlike {
   Effect effect;
   double cosine = 0.0;
+  /// chi^2 by which it explains less than what it looks like, in units of the errors that that
+  /// leaves: a trace may be much alike, and the measurements many.
+  double behind = 0.0;
+
+  [[nodiscard]] bool told_apart() const { return behind >= kToldApart; }
 };
+
+/// The most alike of those that are not told apart; nullptr where all are.
+[[nodiscard]] const LookAlike* closest_rival(const std::vector<LookAlike>& alike);
 
 struct Finding {
   Effect effect;          ///< with the estimated coefficients

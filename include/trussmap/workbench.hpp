@@ -43,6 +43,8 @@ struct EffectPreview {
   std::optional<HeldOutMetrics> predicted;
   /// The same of each rival that was asked for.
   std::vector<std::optional<HeldOutMetrics>> rivals_predicted;
+  /// And chi^2 by which it explains less than the effect (LookAlike::behind); below 0: more.
+  std::vector<double> rivals_behind;
 };
 
 /// A number within an effect that no fit estimates, and how far a search may move it.

@@ -52,8 +52,11 @@ class Diagnostician {
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);
     search_.run();
     result_.tried = static_cast<std::size_t>(search_.tried());
-    for (const MissingEffect& one : search_.missing()) {
-      look_alikes_.push_back(look_alikes_of(one.tested, search_.tested(), tests_));
+    std::vector<std::size_t> missing;
+    for (const MissingEffect& one : search_.missing()) missing.push_back(one.tested);
+    for (const std::size_t one : missing) {
+      look_alikes_.push_back(
+          look_alikes_of(one, search_.tested(), missing, tests_, state_.adjustment.dof));
     }
     for (TestedEvent& one : test_events(state_, tests_, search_.nuisance())) {
       result_.events.push_back(std::move(one));
@@ -252,9 +255,8 @@ class Diagnostician {
       result_.verdict = Diagnosis::Verdict::missing;
       result_.missing = first.effect.name;
       result_.p_value = first.p_adjusted;
-      if (!first.look_alikes.empty()) {
-        result_.next_drive = {first.effect, first.look_alikes.front().effect,
-                              slow_covariates(state_.recordings)};
+      if (const LookAlike* rival = closest_rival(first.look_alikes)) {
+        result_.next_drive = {first.effect, rival->effect, slow_covariates(state_.recordings)};
       }
       return;
     }

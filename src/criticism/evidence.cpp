@@ -212,8 +212,9 @@ DiscoveryEvidence evidence_of(const std::vector<Recording>& recordings, const Di
   for (const Seen& one : added) {
     evidence.look_alikes.push_back(one.rivals);
     evidence.next_drives.emplace_back();
-    if (one.rivals.empty()) continue;
-    evidence.next_drives.back() = {one.estimate.effect, one.rivals.front().effect, slow};
+    if (const LookAlike* rival = closest_rival(one.rivals)) {
+      evidence.next_drives.back() = {one.estimate.effect, rival->effect, slow};
+    }
   }
   evidence.trends = trend_evidence(evidence.found.comparison, *discovery.found.state, found);
   evidence.sizes = sizes_of(discovery.last, found.context());

@@ -21,7 +21,8 @@ bool is_rival(const Candidate& one, const Candidate& winner) {
 }  // namespace
 
 std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>& tested,
-                                      const ScoreTest& tests) {
+                                      const std::vector<std::size_t>& others,
+                                      const ScoreTest& tests, int dof) {
   std::vector<LookAlike> alike;
   const Score winner = tests.test({tested[at].candidate.effect}).front();
   Eigen::VectorXd trace = Eigen::VectorXd::Zero(winner.projected.rows());
@@ -44,7 +45,36 @@ std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>&
   std::stable_sort(alike.begin(), alike.end(),
                    [](const LookAlike& a, const LookAlike& b) { return a.cosine > b.cosine; });
   if (alike.size() > kMost) alike.resize(kMost);
+  std::vector<Effect> effects;
+  for (const LookAlike& one : alike) effects.push_back(one.effect);
+  ScoreTest beside = tests;
+  for (const std::size_t k : others) {
+    if (k != at) beside.condition_on(tests.columns(tested[k].candidate.effect));
+  }
+  const std::vector<double> behind = chi2_behind(tested[at].candidate.effect, effects, beside, dof);
+  for (std::size_t k = 0; k < alike.size(); ++k) alike[k].behind = behind[k];
   return alike;
+}
+
+std::vector<double> chi2_behind(const Effect& effect, const std::vector<Effect>& rivals,
+                                const ScoreTest& tests, int dof) {
+  std::vector<Effect> asked{effect};
+  asked.insert(asked.end(), rivals.begin(), rivals.end());
+  std::vector<double> scores;
+  for (const Score& one : tests.test(asked)) scores.push_back(one.score);
+  const double left = tests.residuals().squaredNorm() - scores.front();
+  const double noise = std::max(1.0, left / std::max(1, dof));
+  std::vector<double> behind;
+  for (std::size_t k = 1; k < scores.size(); ++k) {
+    behind.push_back((scores.front() - scores[k]) / noise);
+  }
+  return behind;
+}
+
+const LookAlike* closest_rival(const std::vector<LookAlike>& alike) {
+  const auto found = std::find_if(alike.begin(), alike.end(),
+                                  [](const LookAlike& one) { return !one.told_apart(); });
+  return found == alike.end() ? nullptr : &*found;
 }
 
 bool is_among(const Effect& effect, const std::vector<LookAlike>& rivals) {

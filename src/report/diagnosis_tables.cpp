@@ -40,7 +40,7 @@ std::string seen_from(const Finding& finding, const FindingSize& size) {
 
 bool looks_like_one_of(const Effect& effect, const std::vector<LookAlike>& rivals) {
   return std::any_of(rivals.begin(), rivals.end(), [&](const LookAlike& one) {
-    return one.effect.name == effect.name && one.effect.shape == effect.shape;
+    return !one.told_apart() && one.effect.name == effect.name && one.effect.shape == effect.shape;
   });
 }
 
@@ -280,7 +280,10 @@ PageTable parts_table(const SizedDiagnosis& sized, const std::vector<EffectEvide
 PageTable rivals_table(const SizedDiagnosis& sized) {
   const Diagnosis& diagnosis = sized.diagnosis;
   PageTable table;
-  if (diagnosis.missing.empty() || diagnosis.findings.front().look_alikes.empty()) return table;
+  if (diagnosis.missing.empty() ||
+      closest_rival(diagnosis.findings.front().look_alikes) == nullptr) {
+    return table;
+  }
   const Finding& first = diagnosis.findings.front();
   table.caption = "What these recordings cannot tell apart";
   table.headings = {"it could be", "part",      "what it would be",

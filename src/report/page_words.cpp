@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -229,14 +230,29 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
     return fmt::format("Nothing else in the catalogue looks like {} in these recordings.",
                        short_name(effect));
   }
-  std::vector<std::string> names;
+  std::vector<std::string> names, apart;
+  double nearest = std::numeric_limits<double>::infinity();
   for (const LookAlike& rival : rivals) {
+    if (rival.told_apart()) {
+      apart.push_back(name_in_words(rival.effect));
+      nearest = std::min(nearest, rival.behind);
+      continue;
+    }
     const CatalogueEntry* entry = find_entry(rival.effect.name);
     names.push_back(name_in_words(rival.effect) +
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }
-  return fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
-                     short_name(effect), listed(names, "or"));
+  const std::string open =
+      names.empty() ? std::string()
+                    : fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
+                                  short_name(effect), listed(names, "or"));
+  if (apart.empty()) return open;
+  const std::string told = fmt::format(
+      "{} look{} much like it, but all measurements together tell {} apart (χ² {}{:.0f} "
+      "behind).",
+      capitalised(listed(apart)), apart.size() == 1 ? "s" : "", apart.size() == 1 ? "it" : "them",
+      apart.size() == 1 ? "" : "at least ", nearest);
+  return open.empty() ? told : open + " " + told;
 }
 
 std::vector<std::string> others_notes(const Diagnosis& diagnosis) {

@@ -9,6 +9,9 @@
 #include "trussmap/wording.hpp"
 #include "trussmap/workbench.hpp"
 
+#include <cmath>
+#include <string>
+
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -30,6 +33,17 @@ Chart chart_of(const EffectPreview& preview) {
                         evidence.response, name, rivals);
 }
 
+/// How a duel ends.
+std::string duel_verdict(const Effect& effect, const Effect& rival, double behind) {
+  if (std::abs(behind) >= kToldApart) {
+    return fmt::format("All measurements together speak for {} (chi\u00b2 better by {:.0f}).",
+                       name_in_words(behind > 0.0 ? effect : rival), std::abs(behind));
+  }
+  const std::string drive = separating_drive(effect, rival, {});
+  return "These recordings cannot tell the two apart." +
+         (drive.empty() ? std::string() : " To tell them apart: " + drive + ".");
+}
+
 ordered_json rivals_json(const EffectPreview& preview) {
   ordered_json list = ordered_json::array();
   const std::vector<Effect>& rivals = preview.evidence.rivals;
@@ -38,7 +52,8 @@ ordered_json rivals_json(const EffectPreview& preview) {
         k < preview.rivals_predicted.size() ? preview.rivals_predicted[k] : std::nullopt;
     list.push_back({{"name", name_in_words(rivals[k])},
                     {"leaves_mm", millimetres(predicted)},
-                    {"apart", separating_drive(preview.evidence.estimate.effect, rivals[k], {})}});
+                    {"verdict", duel_verdict(preview.evidence.estimate.effect, rivals[k],
+                                             preview.rivals_behind.at(k))}});
   }
   return list;
 }

@@ -88,8 +88,8 @@ std::vector<std::string> rival_sentences(const Effect& effect, const std::vector
 
 std::string named_with_rivals(const std::vector<EffectEvidence>& effects,
                               const std::vector<std::vector<LookAlike>>& alike) {
-  const bool rivals =
-      std::any_of(alike.begin(), alike.end(), [](const auto& one) { return !one.empty(); });
+  const bool rivals = std::any_of(alike.begin(), alike.end(),
+                                  [](const auto& one) { return closest_rival(one) != nullptr; });
   if (!rivals) return named_with_sizes(effects);
   std::string text;
   std::size_t hardly = 0;
@@ -102,6 +102,7 @@ std::string named_with_rivals(const std::vector<EffectEvidence>& effects,
     text += named_with_size(effects[k]);
     std::vector<std::string> names{name_in_words(effects[k].estimate.effect)};
     for (std::size_t i = 0; k < alike.size() && i < alike[k].size(); ++i) {
+      if (alike[k][i].told_apart()) continue;
       const std::string name = name_in_words(alike[k][i].effect);
       if (std::find(names.begin(), names.end(), name) != names.end()) continue;
       names.push_back(name);

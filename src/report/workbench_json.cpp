@@ -86,7 +86,9 @@ ordered_json card_json(const TriedModel& now, std::size_t k) {
   card["p"] = chance_text(one.p_adjusted);
   card["significant"] = one.p_adjusted < kSignificance;
   ordered_json looks_like = ordered_json::array();
-  for (const LookAlike& rival : one.look_alikes) looks_like.push_back(rival.effect.name);
+  for (const LookAlike& rival : one.look_alikes) {
+    if (!rival.told_apart()) looks_like.push_back(rival.effect.name);
+  }
   card["looks_like"] = std::move(looks_like);
   ordered_json parameters = ordered_json::array();
   for (const EffectParameter& parameter : now.parameters(k)) {

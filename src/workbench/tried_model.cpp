@@ -4,6 +4,7 @@
 #include "criticism/comparison.hpp"
 #include "criticism/diagnosis.hpp"
 #include "criticism/effect_evidence.hpp"
+#include "criticism/look_alikes.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 #include "statistics/distributions.hpp"
@@ -175,6 +176,9 @@ EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect
   result.predicted = predicted_by(*tried_->legs, asked.front(), score);
   for (std::size_t k = 1; k < scores.size(); ++k) {
     result.rivals_predicted.push_back(predicted_by(*tried_->legs, asked[k], scores[k]));
+  }
+  if (!rivals.empty()) {
+    result.rivals_behind = chi2_behind(effect, rivals, *tried_->tests, tried_->fit.dof);
   }
   const EffectEstimate estimate{asked.front(), score.sd, {}};
   result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests,

@@ -7,6 +7,7 @@
 #include "shared_data.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -109,9 +110,9 @@ TEST(CriticismCommands, ExcludedTimesAreNotUsed) {
   const ScratchFolder scratch;
   const std::string at = scratch.path().string() + "/";
   const std::string compare = "compare " + kRiddleFolder + " --model " + kNominal + " --json ";
-  ASSERT_EQ(run_trussmap(compare + at + "all.json").status, 1);
+  ASSERT_EQ(run_trussmap(compare + at + "all.json").status, 0);
   const Ran some = run_trussmap(compare + at + "some.json --exclude 20:50,1:60:70.5");
-  ASSERT_EQ(some.status, 1) << some.output;
+  ASSERT_EQ(some.status, 0) << some.output;
   EXPECT_LT(read_json(at + "some.json")["legs"].get<int>(),
             read_json(at + "all.json")["legs"].get<int>());
   struct {

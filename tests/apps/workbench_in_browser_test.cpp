@@ -69,7 +69,8 @@ TEST(WorkbenchInBrowser, FromMisfitToModel) {
   chrome.eval(
       "(() => { const duel = document.getElementById('duel'); duel.selectedIndex = 1; "
       "duel.dispatchEvent(new Event('change')); })()");
-  chrome.wait("document.getElementById('duel-words').textContent.includes('To tell them apart')");
+  chrome.wait(
+      "document.getElementById('duel-words').textContent.includes('cannot tell the two apart')");
   // The noise by its handle.
   chrome.eval(
       "(() => { const handle = document.getElementById('handle'); handle.value = '3'; "

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -77,6 +78,46 @@ TEST_P(HiddenEffect, IsNamedFirst) {
       [&](const std::vector<Answer>& answers) { return is_any(first.effect, answers); }))
       << result.missing;
   EXPECT_LT(first.held_out.arrival_rms, result.held_out.arrival_rms);
+}
+
+/// What really is there is never said to be told apart from what was named.
+TEST_P(HiddenEffect, IsNeverToldApartFromWhatIsNamed) {
+  TRUSSMAP_NEEDS_SHARED("data/hidden");
+  read();
+  const Diagnosis result = diagnose(recordings_, model_);
+  if (result.verdict != Diagnosis::Verdict::missing) return;
+  for (const LookAlike& rival : result.findings.front().look_alikes) {
+    for (const std::vector<Answer>& answers : GetParam().effects) {
+      const bool named = is_any(result.findings.front().effect, answers);
+      if (!named && is_any(rival.effect, answers)) EXPECT_FALSE(rival.told_apart());
+    }
+  }
+}
+
+/// A compass with hard iron on many legs: a body's tilt leaves the same trace, and a creep across
+/// the slope one that is much alike, which many measurements tell apart and few do not.
+TEST(Diagnosis, LookAlikesAreToldApartByManyMeasurementsOnly) {
+  const auto creep_behind = [](int tours, double size) {
+    testing::SimulatedRecording one = testing::simulate_recording({true, true, false, tours}, 61);
+    for (double& heading : one.recording.drive.heading) heading += size * std::sin(heading);
+    DiagnoseOptions options;
+    options.estimate_noise = false;
+    const Diagnosis result = diagnose({one.recording}, one.model, options);
+    EXPECT_EQ(result.verdict, Diagnosis::Verdict::missing);
+    const Finding& first = result.findings.front();
+    EXPECT_EQ(first.effect.channel, Channel::compass) << first.effect.name;
+    double behind = std::numeric_limits<double>::quiet_NaN();
+    for (const LookAlike& rival : first.look_alikes) {
+      if (rival.effect.name == "body tilt") EXPECT_NEAR(rival.behind, 0.0, 1e-6);
+      if (rival.effect.name == "cross-slope creep") behind = rival.behind;
+    }
+    EXPECT_TRUE(result.next_drive.has_value());  // tilt and iron are one in any recording
+    return behind;
+  };
+  const double few = creep_behind(1, 0.05);
+  const double many = creep_behind(6, 0.05);
+  EXPECT_GT(many, 2.0 * few);
+  EXPECT_GE(many, kToldApart);
 }
 
 class SlowHiddenEffect : public HiddenEffect {};

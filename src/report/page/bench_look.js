@@ -75,7 +75,7 @@ function showWords(reply, target) {
   const rival = reply.rivals[0];
   by('duel-words').textContent = !rival ? ''
       : (rival.leaves_mm === null ? '' : `${rival.name} would leave ${rival.leaves_mm.toFixed(1)} mm. `) +
-        (rival.apart ? `To tell them apart: ${rival.apart}.` : '');
+        rival.verdict;
 }
 
 /** @param {Target} target */

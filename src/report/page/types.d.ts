@@ -192,7 +192,7 @@ interface Selection {
 interface PreviewRival {
   name: string;
   leaves_mm: number | null;
-  apart: string;
+  verdict: string;
 }
 
 interface Preview {
