@@ -97,7 +97,7 @@ TEST(PageScripts, GetWhatTheirTypesSay) {
   types.hold(answer(bench, "noise", {{"factor", 2.0}}), "NoiseReply", "noise");
   types.hold(answer(bench, "noise", {{"factor", -2.0}}), "Refusal", "refusal");
   answer(bench, "step", {{"version", status.at("version")}, {"do", "add"}, {"finding", 0}});
-  bench.settled();
+  static_cast<void>(bench.settled());
   types.hold(bench.state(), "BenchState", "state with an effect");
   types.hold(answer(bench, "shown", {{"effect", 0}}), "Preview", "an effect of the model");
 

@@ -51,7 +51,9 @@ export function explainButton(item, one, ask) {
     try {
       const reply = known.get(one.id) || await ask();
       known.set(one.id, reply);
-      if (open.has(one.id) && !item.querySelector(':scope > .explanation')) item.append(explanationOf(reply));
+      if (!open.has(one.id) || item.querySelector(':scope > .explanation')) return;
+      const alike = item.querySelector(':scope > .or');  // comes last
+      item.insertBefore(explanationOf(reply), alike);
     } catch (error) {
       item.append(make('p', {className: 'explanation failed', textContent: messageOf(error)}));
     }
