@@ -89,7 +89,9 @@ TEST_P(HiddenEffect, IsNeverToldApartFromWhatIsNamed) {
   for (const LookAlike& rival : result.findings.front().look_alikes) {
     for (const std::vector<Answer>& answers : GetParam().effects) {
       const bool named = is_any(result.findings.front().effect, answers);
-      if (!named && is_any(rival.effect, answers)) EXPECT_FALSE(rival.told_apart());
+      if (!named && is_any(rival.effect, answers)) {
+        EXPECT_FALSE(rival.told_apart());
+      }
     }
   }
 }
@@ -108,7 +110,9 @@ TEST(Diagnosis, LookAlikesAreToldApartByManyMeasurementsOnly) {
     EXPECT_EQ(first.effect.channel, Channel::compass) << first.effect.name;
     double behind = std::numeric_limits<double>::quiet_NaN();
     for (const LookAlike& rival : first.look_alikes) {
-      if (rival.effect.name == "body tilt") EXPECT_NEAR(rival.behind, 0.0, 1e-6);
+      if (rival.effect.name == "body tilt") {
+        EXPECT_NEAR(rival.behind, 0.0, 1e-6);
+      }
       if (rival.effect.name == "cross-slope creep") behind = rival.behind;
     }
     EXPECT_TRUE(result.next_drive.has_value());  // tilt and iron are one in any recording

@@ -42,8 +42,8 @@ inline ModelEvidence large_model(int legs) {
     map.paths.front().emplace_back(0.02 * k, 50.0 + 40.0 * std::sin(0.02 * k));
   }
   for (int k = 0; k < legs; ++k) {
-    result.worst.push_back({name(k % 97), name(k % 89), 10.0 * k, 100.0 * (legs - k) / legs, 4,
-                            0.02 * std::sin(k), 0.03 * std::cos(k)});
+    result.worst.push_back({static_cast<std::size_t>(k), name(k % 97), name(k % 89), 10.0 * k,
+                            100.0 * (legs - k) / legs, 4, 0.02 * std::sin(k), 0.03 * std::cos(k)});
     LegPrediction leg;
     leg.arrival_error = {0.02 * std::sin(k), 0.02 * std::cos(0.7 * k)};
     if (k % 3 == 0) result.held_out.legs.push_back(leg);

@@ -271,7 +271,9 @@ TEST(Workbench, ItsLegsAreThoseOfTheComparison) {
     held_out += leg.held_out ? 1 : 0;
     // Where it ends is where its landmark is: the robot stands on it.
     for (const FittedLandmark& landmark : now.map().landmarks) {
-      if (landmark.name == leg.to) EXPECT_LT((landmark.position - leg.end).norm(), 0.1);
+      if (landmark.name == leg.to) {
+        EXPECT_LT((landmark.position - leg.end).norm(), 0.1);
+      }
     }
   }
   EXPECT_EQ(held_out, now.diagnosis().held_out.legs.size());
