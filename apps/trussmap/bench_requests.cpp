@@ -6,7 +6,6 @@
 #include "formula_limits.hpp"
 #include "page_runtime.hpp"
 #include "trussmap/error.hpp"
-#include "trussmap/explanation.hpp"
 #include "trussmap/pages.hpp"
 
 #include <algorithm>

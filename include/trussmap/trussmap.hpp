@@ -30,7 +30,6 @@
 #include "trussmap/distributed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/evidence.hpp"
-#include "trussmap/explanation.hpp"
 #include "trussmap/fit_model.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/gate.hpp"

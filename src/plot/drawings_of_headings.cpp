@@ -28,11 +28,12 @@ void error_over_turn(Sketch& s, double times) {
 }
 
 void compass_offset(Sketch& s) {
-  s.robot({60, 120}, 0).robot({180, 120}, 90).robot({276, 120}, 180);
-  misled(s, {60, 60}, 22);
-  misled(s, {172, 60}, 22);
-  misled(s, {276, 60}, 22);
-  s.text({160, 22}, "off by the same angle on every heading", Ink::real);
+  for (const Spot at : {Spot{60, 64}, Spot{172, 64}, Spot{276, 64}}) {
+    misled(s, at, 22);
+    s.arc(at, 33, 68, 90, Ink::cause);
+  }
+  s.robot({60, 124}, 0).robot({180, 124}, 90).robot({276, 124}, 180);
+  s.text({160, 18}, "off by the same angle on every heading", Ink::cause);
 }
 
 void hard_iron(Sketch& s) {

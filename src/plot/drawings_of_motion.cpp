@@ -22,7 +22,7 @@ void constant_creep(Sketch& s) {
       .arrow({84, 121}, {246, 66}, Ink::real);
   s.robot({274, 56}, 0, {.left_ink = Ink::real, .right_ink = Ink::real, .body = Ink::real});
   s.arrow({165, 122}, {165, 100}, Ink::cause).text({172, 115}, "sideways", Ink::cause, "start");
-  s.text({110, 44}, "it points ahead, and arrives beside");
+  s.text({112, 44}, "it points ahead, arrives beside");
 }
 
 void cross_slope(Sketch& s) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/effect_drawings.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/explanation.hpp"
+#include "trussmap/workbench.hpp"
 
 namespace trussmap {
 namespace {

@@ -4,7 +4,6 @@
 #include "report/page_words.hpp"
 #include "report/view_json.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/explanation.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/wording.hpp"
 #include "trussmap/workbench.hpp"

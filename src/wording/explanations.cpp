@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "effects/channel_physics.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/explanation.hpp"
+#include "trussmap/workbench.hpp"
 #include "wording/channel_words.hpp"
 #include "wording/explanation_texts.hpp"
 

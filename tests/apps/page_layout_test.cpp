@@ -29,7 +29,7 @@ constexpr const char* kTooWide = R"js((() => {
   if (document.documentElement.scrollWidth > innerWidth) found.push('page ' + document.documentElement.scrollWidth);
   for (const one of document.querySelectorAll('body *')) {
     const box = one.getBoundingClientRect();
-    if (!box.width || one.closest('.unseen, svg, [hidden]')) continue;
+    if (!box.width || one.closest('.unseen, thead, svg, [hidden]')) continue;
     const name = one.tagName + '.' + one.className + ' ' + one.textContent.trim().slice(0, 30);
     if (box.right > innerWidth + 1) found.push('sticks out: ' + name);
     if (one.scrollWidth > one.clientWidth + 1 && ['auto', 'scroll'].includes(getComputedStyle(one).overflowX)) {

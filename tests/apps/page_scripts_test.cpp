@@ -94,12 +94,21 @@ TEST(PageScripts, GetWhatTheirTypesSay) {
     types.hold(answer(bench, "best", {{"finding", card.at("finding")}, {"values", values}}),
                "BestReply", "best");
   }
+  types.hold(answer(bench, "legs", {{"choice", {{"time", {0.0, 100.0}}}}}), "Selection", "legs");
   types.hold(answer(bench, "noise", {{"factor", 2.0}}), "NoiseReply", "noise");
   types.hold(answer(bench, "noise", {{"factor", -2.0}}), "Refusal", "refusal");
   answer(bench, "step", {{"version", status.at("version")}, {"do", "add"}, {"finding", 0}});
   static_cast<void>(bench.settled());
   types.hold(bench.state(), "BenchState", "state with an effect");
   types.hold(answer(bench, "shown", {{"effect", 0}}), "Preview", "an effect of the model");
+
+  // Without a survey not all can be seen.
+  const auto drive = scratch.write("bare/drive.csv", testing::text_of("maps/riddle/drive.csv"));
+  scratch.write("bare/sightings.csv", testing::text_of("maps/riddle/sightings.csv"));
+  const ServedBench bare({drive.parent_path().string(), "--model", kTop + "/maps/riddle/model.toml",
+                          "--work", (scratch.path() / "bare_work").string()});
+  static_cast<void>(bare.settled());
+  types.hold(bare.state(), "BenchState", "state without a survey");
 
   EXPECT_EQ(types.lapses, std::vector<std::string>());
   EXPECT_EQ(types.never_sent(), std::set<std::string>());

@@ -3,7 +3,7 @@
 #include "io/xml_element.hpp"
 #include "plot/sketch.hpp"
 #include "trussmap/catalogue.hpp"
-#include "trussmap/explanation.hpp"
+#include "trussmap/workbench.hpp"
 
 #include <map>
 #include <regex>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
-#include "trussmap/explanation.hpp"
+#include "trussmap/workbench.hpp"
 
 #include <set>
 #include <string>
