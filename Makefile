@@ -8,7 +8,8 @@
 #   make check         install what is missing (Debian), build everything, run the fast tests: those
 #                      of pages in a browser and the slow ones are left to make test
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
-#                      installed too
+#                      installed too, as are, where there is npm, what checks their scripts' types
+#                      and their accessibility
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
@@ -70,6 +71,7 @@ install-deps:
 
 test-deps:
 	@.ci/install-deps chromium
+	@.ci/page-tools build/page-tools
 
 site-deps:
 	@.ci/install-deps python3-sphinx python3-myst-parser furo python3-breathe doxygen libjs-katex nodejs \

@@ -121,11 +121,22 @@ LocalReply best(const json& asked, const BenchView& view) {
   return {.body = body.dump()};
 }
 
-LocalReply shown_effect(const json& asked, const BenchView& view) {
+std::size_t place_of_effect(const json& asked, const BenchView& view) {
   const auto effect = asked.at("effect").get<std::size_t>();
   if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
+  return effect;
+}
+
+LocalReply explain(const json& asked, const BenchView& view) {
+  const Effect& effect = asked.contains("effect")
+                             ? view.now.fit().effects[place_of_effect(asked, view)].effect
+                             : view.now.diagnosis().findings[finding_of(asked, view)].effect;
+  return {.body = explanation_json(effect)};
+}
+
+LocalReply shown_effect(const json& asked, const BenchView& view) {
   EffectPreview preview;
-  preview.evidence = view.now.shown(effect, legs_of(asked, view));
+  preview.evidence = view.now.shown(place_of_effect(asked, view), legs_of(asked, view));
   preview.dof = 1;
   return {.body = preview_json(preview, view.now.diagnosis().held_out.arrival_rms)};
 }
@@ -144,6 +155,12 @@ LocalReply with_noise(const json& asked, const BenchView& view) {
   return {.body = json{{"level", kSignificance}, {"p", std::move(p)}}.dump()};
 }
 
+std::size_t place_of_step(const json& asked, const BenchView& view) {
+  const auto step = asked.at("step").get<std::size_t>();
+  if (step >= view.log.steps.size()) throw Refusal{400, "there is no such step"};
+  return step;
+}
+
 BenchWork::Step step_of(const json& asked, const BenchView& view) {
   const auto what = asked.at("do").get<std::string>();
   if (what == "add") {
@@ -152,9 +169,16 @@ BenchWork::Step step_of(const json& asked, const BenchView& view) {
     };
   }
   if (what == "remove") {
-    const auto effect = asked.at("effect").get<std::size_t>();
-    if (effect >= view.now.fit().effects.size()) throw Refusal{400, "the model has no such effect"};
+    const std::size_t effect = place_of_effect(asked, view);
     return [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.remove(effect, watch); };
+  }
+  if (what == "name") {
+    auto label = asked.at("label").get<std::string>();
+    if (label.size() > kLongestName) {
+      throw Refusal{400, fmt::format("a step's name has up to {} bytes", kLongestName)};
+    }
+    return [step = place_of_step(asked, view), label = std::move(label)](
+               Workbench& bench, const WorkbenchWatch&) { bench.rename(step, label); };
   }
   if (what == "exclude") {
     return [legs = legs_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
@@ -165,13 +189,12 @@ BenchWork::Step step_of(const json& asked, const BenchView& view) {
     return [](Workbench& bench, const WorkbenchWatch& watch) { bench.include_all(watch); };
   }
   if (what == "go") {
-    const auto step = asked.at("step").get<std::size_t>();
-    if (step >= view.log.steps.size()) throw Refusal{400, "there is no such step"};
+    const std::size_t step = place_of_step(asked, view);
     return [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); };
   }
-  throw Refusal{
-      400,
-      fmt::format("a step does not do \"{}\", expected add, remove, exclude, include or go", what)};
+  throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove, exclude, "
+                                 "include, go or name",
+                                 what)};
 }
 
 LocalReply step(const json& asked, BenchWork& work, const BenchView& view) {
@@ -212,6 +235,7 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   }
   if (request.path == "preview") return preview(asked, *view);
   if (request.path == "best") return best(asked, *view);
+  if (request.path == "explain") return explain(asked, *view);
   if (request.path == "shown") return shown_effect(asked, *view);
   if (request.path == "legs") return {.body = selection_json(view->now, legs_of(asked, *view))};
   if (request.path == "noise") return with_noise(asked, *view);

@@ -8,7 +8,8 @@
 //   POST preview {"finding", "values", "rivals"} or {"effect": {"name", "channel", "shape"}, ...}
 //   POST best    {"finding", "values"}            POST shown {"effect"}
 //   POST noise   {"factor"}
-//   POST step    {"version", "do": "add" | "remove" | "go", ...}
+//   POST explain {"finding"} or {"effect": its place in the model}
+//   POST step    {"version", "do": "add" | "remove" | "go" | "name", ...}
 //
 // A "version" that is not the present one is refused, in any of them. Every answer that is none is
 // {"error": one line}. Formulas are evaluated by the library's parser alone, and only where they

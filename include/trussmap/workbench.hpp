@@ -32,6 +32,24 @@
 
 namespace trussmap {
 
+/// An effect explained to a robot's owner, in whole sentences: one of the catalogue by a text of
+/// its own, any other by its channel and what it goes with.
+struct Explanation {
+  std::string does;   ///< what it does to the robot
+  std::string look;   ///< what to look at on the robot
+  std::string drive;  ///< what to drive to be sure
+};
+[[nodiscard]] Explanation explanation_of(const Effect& effect);
+
+/// What an effect does to a robot, as SVG of 320 x 170: dashed as the robot believes it to be, blue
+/// as it is, orange the cause. Each effect of the catalogue has a drawing of its own; any other has
+/// that of the catalogue's plainest effect of its channel, or none (empty) where there is none. In
+/// a page its colours are the page's.
+[[nodiscard]] std::string effect_drawing(const Effect& effect);
+
+/// Both, with cause and remedy, as JSON for the workbench's page.
+[[nodiscard]] std::string explanation_json(const Effect& effect);
+
 /// An effect that a model does not have, as it would be.
 struct EffectPreview {
   EffectEvidence evidence;  ///< coefficients as a score test estimates them
@@ -136,9 +154,10 @@ class TriedModel {
 struct WorkbenchStep {
   enum class Kind { given, add, remove, exclude, include };
   Kind kind = Kind::given;
-  std::string effect;    ///< that was added or removed
-  std::size_t from = 0;  ///< the step that it began at; of the first its own
-  Model model;           ///< what was added has no coefficients
+  std::string effect;      ///< that was added or removed
+  std::size_t from = 0;    ///< the step that it began at; of the first its own
+  std::string label = {};  ///< what its maker calls it; empty: nothing
+  Model model;             ///< what was added has no coefficients
   /// FitOptions::excluded here.
   std::vector<std::vector<TimeSpan>> excluded = {};
   std::size_t excluded_legs = 0;
@@ -190,6 +209,8 @@ class Workbench {
   void exclude(const std::vector<std::size_t>& legs, const WorkbenchWatch& watch = {});
   /// Takes back in what has been excluded here.
   void include_all(const WorkbenchWatch& watch = {});
+  /// What a step is called from now on; empty: nothing. Throws std::out_of_range.
+  void rename(std::size_t step, std::string label);
   /// Back, or on, to a step that was made.
   void go_to(std::size_t step, const WorkbenchWatch& watch = {});
 

@@ -55,6 +55,7 @@ ordered_json json(const WorkbenchStep& step) {
                          {"dof", step.dof},
                          {"model", format_model(step.model)}};
   if (step.predicted_rms) result["predicted_rms"] = *step.predicted_rms;
+  if (!step.label.empty()) result["label"] = step.label;
   if (!step.excluded.empty()) {
     ordered_json& recordings = result["excluded"] = ordered_json::array();
     for (const std::vector<TimeSpan>& spans : step.excluded) {
@@ -94,6 +95,7 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t 
   step.chi2 = json.at("chi2").get<double>();
   step.dof = json.at("dof").get<int>();
   if (json.contains("predicted_rms")) step.predicted_rms = json.at("predicted_rms").get<double>();
+  step.label = json.value("label", "");
   if (json.contains("excluded")) {
     step.excluded = excluded_of(json.at("excluded"), recordings, file);
     step.excluded_legs = json.at("excluded_legs").get<std::size_t>();

@@ -196,6 +196,7 @@ std::string legend(const Chart& chart, double& top) {
   for (const ChartLayer& layer : chart.layers) {
     if (!layer.name.empty() && layer.key.empty()) add(layer.name, paper(layer.colour));
     for (std::size_t k = 0; k < layer.key.size(); ++k) {
+      if (layer.key[k].empty()) continue;
       add(layer.key[k], shade_colour(static_cast<double>(k) - 1.0));
     }
   }

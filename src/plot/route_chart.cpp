@@ -51,8 +51,8 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
   Chart chart =
       map_chart(id, title, map,
                 "Routes are coloured by how far off their legs end (root mean square), reckoned by "
-                "the wheels alone from where the fit has them start: blue is nothing, red the "
-                "most. With its other sensors the robot ends nearer.");
+                "the wheels alone from where the fit has them start: thin and grey is nothing, "
+                "thick and red the most. With its other sensors the robot ends nearer.");
   const Places places = places_of(map);
   ChartLayer bars{LayerKind::segments,
                   "",
@@ -66,8 +66,7 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
                    {"off by [mm]"},
                    {"too long by [mm]"},
                    {"to the left by [mm]"}}};
-  bars.key = {"0 mm", fmt::format("{:.3g} mm", 500.0 * worst),
-              fmt::format("{:.3g} mm", 1e3 * worst)};
+  bars.key = {"", "0 mm", fmt::format("{:.3g} mm", 1e3 * worst)};
   std::vector<Vector2> net;
   const std::size_t drawn = std::min(kMostBars, routes.size());
   for (std::size_t k = drawn; k < routes.size(); ++k) {
@@ -86,7 +85,7 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
     bars.columns[7].numbers.push_back(1e3 * route.rms);
     bars.columns[8].numbers.push_back(1e3 * route.along);
     bars.columns[9].numbers.push_back(1e3 * route.left);
-    bars.shade.push_back(worst > 0.0 ? std::min(1.0, 2.0 * route.rms / worst - 1.0) : -1.0);
+    bars.shade.push_back(worst > 0.0 ? std::min(1.0, route.rms / worst) : 0.0);
   }
   if (bars.shade.size() > 150) bars.size = 0.5;
   if (!net.empty()) chart.layers.push_back(net_layer("further routes", net));

@@ -87,7 +87,9 @@ Page fit_page(const FitEvidence& evidence, const std::string& subject) {
   page.tone = after.consistent() ? Tone::good : Tone::bad;
   page.verdict = page_verdict(before, after, effects);
   page.answers = answers_of(rows_on(evidence));
-  page.notes = after.warnings;
+  for (const std::string& line : after.warnings) {
+    page.notes.push_back(capitalised(typeset(line)) + ".");
+  }
   const NamedModel given{kBefore, evidence.without};
   const NamedModel fitted{kAfter, evidence.with};
   page.sections.push_back(maps_section("The map, before and after", {given, fitted}, effects));

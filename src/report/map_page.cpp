@@ -300,6 +300,7 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   page.facts.push_back({std::to_string(built.refinements), "known routes driven again"});
   page.facts.push_back({std::to_string(built.rejected.size()), "sightings left out"});
   if (!built.good()) page.notes.assign(built.warnings.begin() + 1, built.warnings.end());
+  std::transform(page.notes.begin(), page.notes.end(), page.notes.begin(), typeset);
   page.notes.insert(page.notes.end(), built.notes.begin(), built.notes.end());
   if (built.on_survey) {
     for (const std::string& name : built.on_survey->comparison.contradicting) {

@@ -65,6 +65,10 @@ std::string html(const PageTable& table) {
   const auto cell = [&table](std::size_t column) {
     return column < table.texts ? "" : " class=\"number\"";
   };
+  // On a narrow screen a row is a card, with the headings beside its cells.
+  const auto heading = [&table](std::size_t column) {
+    return column < table.headings.size() ? xml_escaped(table.headings[column]) : "";
+  };
   text += "<thead><tr>";
   for (std::size_t k = 0; k < table.headings.size(); ++k) {
     text += fmt::format("<th scope=\"col\"{}>{}</th>", cell(k), xml_escaped(table.headings[k]));
@@ -74,8 +78,8 @@ std::string html(const PageTable& table) {
     const Tone tone = row < table.tones.size() ? table.tones[row] : Tone::neutral;
     text += fmt::format("<tr class=\"{}\">", class_of(tone));
     for (std::size_t k = 0; k < table.rows[row].size(); ++k) {
-      text += fmt::format("<td{}>{}{}</td>", cell(k), k == 0 ? sign_of(tone) : "",
-                          xml_escaped(table.rows[row][k]));
+      text += fmt::format("<td{} data-heading=\"{}\">{}{}</td>", cell(k), heading(k),
+                          k == 0 ? sign_of(tone) : "", xml_escaped(table.rows[row][k]));
     }
     text += "</tr>\n";
   }

@@ -34,6 +34,7 @@ std::string channel_unit(const Effect& effect) {
 std::string typeset(std::string text) {
   replace_all(text, "+-", "\u00b1");
   replace_all(text, "chi^2", "chi\u00b2");
+  replace_all(text, "chi2", "chi\u00b2");
   const std::string degrees = " deg";
   for (std::size_t at = text.find(degrees); at != std::string::npos; at = text.find(degrees, at)) {
     const std::size_t end = at + degrees.size();
@@ -247,7 +248,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
                                   short_name(effect), listed(names, "or"));
   if (apart.empty()) return open;
   const std::string told = fmt::format(
-      "{} look{} much like it, but all measurements together tell {} apart (χ² {}{:.0f} "
+      "{} look{} much like it, but all measurements together tell {} apart (chi\u00b2 {}{:.0f} "
       "behind).",
       capitalised(listed(apart)), apart.size() == 1 ? "s" : "", apart.size() == 1 ? "it" : "them",
       apart.size() == 1 ? "" : "at least ", nearest);

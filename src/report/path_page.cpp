@@ -82,6 +82,7 @@ Page path_page(const BuiltMap& built, const std::string& subject) {
   page.tone = built.good() ? Tone::good : Tone::bad;
   add_facts(page, built);
   if (!built.good()) page.notes.assign(built.warnings.begin() + 1, built.warnings.end());
+  std::transform(page.notes.begin(), page.notes.end(), page.notes.begin(), typeset);
   page.notes.insert(page.notes.end(), built.notes.begin(), built.notes.end());
   page.sections.push_back({"The path", {ChartRow{path_chart(built.paths)}}});
   PageTable table = left_out_table(built.paths);

@@ -5,6 +5,7 @@
 #include "report/view_json.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/workbench.hpp"
 
 #include <cmath>
@@ -34,7 +35,7 @@ Chart chart_of(const EffectPreview& preview) {
 /// How a duel ends.
 std::string duel_verdict(const Effect& effect, const Effect& rival, double behind) {
   if (std::abs(behind) >= kToldApart) {
-    return fmt::format("All measurements together speak for {} (\u03c7\u00b2 better by {:.0f}).",
+    return fmt::format("All measurements together speak for {} (chi\u00b2 better by {:.0f}).",
                        name_in_words(behind > 0.0 ? effect : rival), std::abs(behind));
   }
   const std::string drive = separating_drive(effect, rival, {});
@@ -76,6 +77,15 @@ std::string preview_json(const EffectPreview& preview, double arrival_rms) {
   result["chart"] = evidence.response.bins.empty() && evidence.response.curve.empty()
                         ? ordered_json(nullptr)
                         : chart_view(chart_of(preview));
+  return safe_text(result);
+}
+
+std::string explanation_json(const Effect& effect) {
+  const Explanation explanation = explanation_of(effect);
+  ordered_json result = effect_view(effect);
+  result["explanation"] = {
+      {"does", explanation.does}, {"look", explanation.look}, {"drive", explanation.drive}};
+  result["drawing"] = effect_drawing(effect);
   return safe_text(result);
 }
 

@@ -13,6 +13,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -47,12 +50,15 @@ std::string step_name(const WorkbenchStep& step) {
 ordered_json step_json(const WorkbenchLog& log, std::size_t k,
                        const std::vector<std::size_t>& way) {
   const WorkbenchStep& step = log.steps[k];
+  ordered_json has = ordered_json::array();
+  for (const Effect& one : step.model.effects) has.push_back(name_in_words(one));
   const bool on_way = std::find(way.begin(), way.end(), k) != way.end();
   return {{"step", k},
           {"from", step.from},
           {"name", step_name(step)},
+          {"label", step.label},
           {"on_way", on_way},
-          {"effects", step.model.effects.size()},
+          {"has", std::move(has)},
           {"mm", 1e3 * step.arrival_rms},
           {"predicted_mm",
            step.predicted_rms ? ordered_json(1e3 * *step.predicted_rms) : ordered_json(nullptr)},
@@ -204,21 +210,43 @@ ordered_json verdict_json(const TriedModel& now) {
                     : !diagnosis.lacks.empty() ? advised_drive(advice_on(diagnosis.lacks.front()))
                                                : "";
   result["others"] = others_notes(diagnosis);
-  result["warnings"] = diagnosis.warnings;
+  ordered_json warnings = ordered_json::array();
+  for (const std::string& one : diagnosis.warnings) {
+    warnings.push_back(capitalised(typeset(one)) + ".");
+  }
+  result["warnings"] = std::move(warnings);
   return result;
 }
 
+/// "At a leg's end and after 10 s 98 % is what ...": horizons of which the same is to be said are
+/// said together.
+std::vector<std::string> noise_lines(const std::vector<NoiseBudget>& budget) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> said;  // what, of which horizons
+  for (const NoiseBudget& one : budget) {
+    if (one.shares.empty()) continue;
+    const std::string words = typeset(in_words(one));
+    const std::size_t at =
+        words.find(fmt::format(" {:.0f} % is ", 100.0 * one.shares.front().share));
+    if (at == std::string::npos) continue;
+    const std::string what = words.substr(at);
+    if (said.empty() || said.back().first != what)
+      said.emplace_back(what, std::vector<std::string>());
+    said.back().second.push_back(words.substr(0, at));
+  }
+  std::vector<std::string> lines;
+  for (const auto& [what, when] : said)
+    lines.push_back(capitalised(listed(when, "and") + what) + ".");
+  return lines;
+}
+
 ordered_json noise_json(const TriedModel& now) {
-  ordered_json lines = ordered_json::array();
-  for (const NoiseBudget& one : now.budget())
-    lines.push_back(capitalised(typeset(in_words(one))) + ".");
   ordered_json shares = ordered_json::array();
   if (!now.budget().empty()) {
     for (const NoiseShare& one : now.budget().front().shares) {
       shares.push_back({{"source", one.source}, {"share", one.share}});
     }
   }
-  return {{"lines", std::move(lines)}, {"shares", std::move(shares)}};
+  return {{"lines", noise_lines(now.budget())}, {"shares", std::move(shares)}};
 }
 
 }  // namespace

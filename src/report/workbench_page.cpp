@@ -82,12 +82,16 @@ excluded counts in no fit.</p>
 </section>
 <section id="error" aria-labelledby="error-title" tabindex="0">
 <h2 id="error-title">Dead reckoning is off by</h2>
-<p id="figure"><span id="figure-now">&#8211;</span></p>
+<p id="figure"><span id="figure-now">&#8211;</span> <span id="provisional" class="tag plain" hidden>provisional: the noise is still being estimated</span></p>
 <p id="figure-more"></p>
 <figure class="chart" id="staircase"><h3></h3><div class="picture"></div>
 <details class="read"><summary>How to read it</summary><p></p></details></figure>
 <h3>Steps</h3>
 <ol id="steps"></ol>
+<details id="compare" hidden><summary>Set two steps side by side</summary>
+<p class="pair"><label>One <select id="compare-one"></select></label>
+<label>Other <select id="compare-other"></select></label></p>
+<div id="compared" class="table" aria-live="polite"></div></details>
 <h3>Noise</h3>
 <div id="noise"></div>
 <label id="handle-line">If the noise were <input type="range" id="handle" min="0" max="3" step="0.05" value="0"> <output id="handle-factor">1</output> times as large as believed:</label>

@@ -146,6 +146,10 @@ void Workbench::remove(std::size_t effect, const WorkbenchWatch& watch) {
   take(std::move(step), watch);
 }
 
+void Workbench::rename(std::size_t step, std::string label) {
+  log_.steps.at(step).label = std::move(label);
+}
+
 void Workbench::exclude(const std::vector<std::size_t>& legs, const WorkbenchWatch& watch) {
   const FitState& fit = *now().fit().state;
   std::vector<std::vector<TimeSpan>> spans = fit.used.left_out;

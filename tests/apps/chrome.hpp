@@ -80,6 +80,22 @@ class Chrome {
   void go(const std::string& url) { call("Page.navigate", {{"url", url}}); }
   void reload() { call("Page.reload"); }
 
+  /// The window's size from now on, and whether the screen is a dark one.
+  void look_as(int width, int height, bool dark) {
+    call("Emulation.setDeviceMetricsOverride",
+         {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
+    const char* scheme = dark ? "dark" : "light";
+    call("Emulation.setEmulatedMedia",
+         {{"features", Json::array({{{"name", "prefers-color-scheme"}, {"value", scheme}}})}});
+  }
+
+  /// The page as it is printed: a PDF, in base 64.
+  std::string print() {
+    return call("Page.printToPDF", {{"preferCSSPageSize", true}, {"printBackground", true}})
+        .at("data")
+        .get<std::string>();
+  }
+
   /// What a script comes to.
   Json eval(const std::string& script) {
     const Json result =

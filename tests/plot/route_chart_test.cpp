@@ -58,8 +58,8 @@ TEST(RouteChart, ColoursFromNothingToTheWorst) {
     if (layer.kind == LayerKind::segments) bars = &layer;
   }
   ASSERT_NE(bars, nullptr);
-  EXPECT_EQ(bars->shade, (std::vector<double>{-1.0, 1.0}));  // the worst is drawn last
-  EXPECT_EQ(bars->key, (std::vector<std::string>{"0 mm", "50 mm", "100 mm"}));
+  EXPECT_EQ(bars->shade, (std::vector<double>{0.0, 1.0}));  // the worst is drawn last
+  EXPECT_EQ(bars->key, (std::vector<std::string>{"", "0 mm", "100 mm"}));
   EXPECT_NO_THROW(static_cast<void>(chart_json(chart)));
 }
 

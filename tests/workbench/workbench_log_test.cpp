@@ -40,6 +40,7 @@ WorkbenchLog some_log() {
   log.steps[2].kind = WorkbenchStep::Kind::remove;
   log.steps[2].effect = "hard iron";
   log.steps[2].from = 1;
+  log.steps[2].label = "without \"it\"";
   log.steps[2].model = log.steps[0].model;
   log.at = 2;
   return log;
@@ -66,6 +67,7 @@ TEST(WorkbenchLog, ReadsBackExactly) {
     EXPECT_EQ(read.steps[k].kind, log.steps[k].kind);
     EXPECT_EQ(read.steps[k].effect, log.steps[k].effect);
     EXPECT_EQ(read.steps[k].from, log.steps[k].from);
+    EXPECT_EQ(read.steps[k].label, log.steps[k].label);
     EXPECT_EQ(read.steps[k].arrival_rms, log.steps[k].arrival_rms);
     EXPECT_EQ(read.steps[k].expected_rms, log.steps[k].expected_rms);
     EXPECT_EQ(read.steps[k].predicted_rms, log.steps[k].predicted_rms);
@@ -101,7 +103,7 @@ TEST(WorkbenchLog, WhatIsNoLogIsRefusedInOneLine) {
        {fault_of(scratch.write("steps.json", "{"), recordings),
         fault_of(scratch.write("steps.json", "[]"), recordings), with("/format", "another"),
         with("/at", 3), with("/at", -1), with("/steps/1/from", 1), with("/steps/1/kind", "sing"),
-        with("/steps/2/model", "[robot"), with("/steps/0/dof", "many"),
+        with("/steps/2/model", "[robot"), with("/steps/0/dof", "many"), with("/steps/0/label", 5),
         with("/steps/1/excluded", nlohmann::ordered_json::parse("[[], [[1, 2]]]")),
         with("/steps/1/excluded", "all"), with("/steps", nlohmann::ordered_json::array())}) {
     EXPECT_NE(fault.find("steps.json"), std::string::npos) << fault;

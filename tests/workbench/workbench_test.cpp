@@ -137,6 +137,24 @@ TEST(Workbench, TheWayToAStepLeavesOutWhatWasUndone) {
   EXPECT_THROW(way_to(log, 5), std::out_of_range);
 }
 
+TEST(Workbench, ANameIsOfItsStepAloneAndChangesNothingElse) {
+  Workbench bench = begun();
+  bench.add(catalogue_effect("hard iron"));
+  const WorkbenchLog before = bench.log();
+  bench.rename(1, "with iron");
+  EXPECT_EQ(bench.log().steps[1].label, "with iron");
+  EXPECT_EQ(bench.log().steps[0].label, "");
+  EXPECT_EQ(bench.log().at, before.at);
+  EXPECT_EQ(bench.log().steps[1].arrival_rms, before.steps[1].arrival_rms);
+  bench.go_to(0);
+  EXPECT_EQ(bench.log().steps[1].label, "with iron");
+  // What begins there has no name yet.
+  bench.go_to(1);
+  bench.remove(0);
+  EXPECT_EQ(bench.log().steps[2].label, "");
+  EXPECT_THROW(bench.rename(3, "x"), std::out_of_range);
+}
+
 TEST(Workbench, AStepThatFailsLeavesAllAsItWas) {
   Workbench bench = begun();
   bench.add(catalogue_effect("hard iron"));

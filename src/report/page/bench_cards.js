@@ -3,17 +3,42 @@
 //
 // The workbench's cards: the effects that the model has, and those that it could have, by part and
 // by what each would save. Look-alikes are stacked in one card.
-import {make} from './figure.js';
+import {explainButton} from './bench_explain.js';
+import {make, within} from './dom.js';
 
 const SHOWN = 4;  // of a part, before "more": of those that are more than chance
+/** @type {Set<string>} */
 const open = new Set();  // parts whose cards are all shown
 
+/** @typedef {Card & {stack?: Card[]}} Stacked a card with those that look like it */
+/**
+ * What pointing, focusing and pressing do to a card.
+ * @typedef {object} CardActs
+ * @property {() => void} look
+ * @property {() => void} leave
+ * @property {() => void} pin
+ */
+/**
+ * The same for all cards.
+ * @typedef {object} Acts
+ * @property {() => boolean} busy
+ * @property {(card: Card) => void} look
+ * @property {(one: OnCard) => void} lookOn
+ * @property {() => void} leave
+ * @property {(card: Card) => void} pin
+ * @property {(one: OnCard) => void} pinOn
+ * @property {(asked: object) => Promise<ExplainReply>} explain
+ * @property {(card: Card) => void} add
+ * @property {(one: OnCard) => void} remove
+ */
+
+/** @param {number} mm */
 function saving(mm) {
   const size = Math.abs(mm).toFixed(Math.abs(mm) < 10 ? 1 : 0);
   return (Number(size) === 0 ? '' : mm > 0 ? '\u2212' : '+') + size + ' mm';
 }
 
-/// What pointing, focusing and pressing do; the same for each card.
+/** @param {string} name @param {HTMLElement[]} more @param {CardActs} does */
 function card(name, more, does) {
   const title = make('button', {type: 'button', className: 'name', textContent: name});
   const item = make('li', {className: 'card'}, make('div', {className: 'line'}, title, ...more));
@@ -24,6 +49,7 @@ function card(name, more, does) {
   return item;
 }
 
+/** @param {string} text @param {string} label @param {boolean} busy @param {() => void} run */
 function act(text, label, busy, run) {
   const button = make('button', {type: 'button', className: 'act', textContent: text, disabled: busy});
   button.setAttribute('aria-label', label);
@@ -31,8 +57,10 @@ function act(text, label, busy, run) {
   return button;
 }
 
-const tag = (text, kind) => make('span', {className: 'tag ' + kind, textContent: text});
+const tag = (/** @type {string} */ text, /** @type {string} */ kind) =>
+    make('span', {className: 'tag ' + kind, textContent: text});
 
+/** @param {Card} one */
 function tagOf(one) {
   if (one.status === 'missing') return tag('missing', 'bad');
   if (one.implausible) return tag('implausibly large', 'plain');
@@ -40,7 +68,11 @@ function tagOf(one) {
   return one.significant ? tag('goes with it', 'plain') : tag('as chance', 'plain');
 }
 
-/// Cards with those that look like them inside, each in one place.
+/**
+ * Cards with those that look like them inside, each in one place.
+ * @param {Card[]} cards
+ * @returns {Stacked[]}
+ */
 function stacked(cards) {
   const inner = new Map();
   for (const one of cards) {
@@ -49,21 +81,24 @@ function stacked(cards) {
   const byName = new Map(cards.map(one => [one.id, one]));
   return cards.filter(one => !inner.has(one.id) || one.looks_like.length)
       .map(one => ({...one, stack: one.looks_like.filter(name => inner.get(name) === one.id)
-                                      .map(name => byName.get(name)).filter(Boolean)}));
+                                      .flatMap(name => byName.get(name) || [])}));
 }
 
+/** @param {HTMLElement} list @param {BenchState} state @param {Acts} does */
 export function showOn(list, state, does) {
   list.replaceChildren(...state.on.map(one => {
     const item = card(one.name, [act('Remove', `Remove ${one.name}`, does.busy(), () => does.remove(one))], {
       look: () => does.lookOn(one), leave: does.leave, pin: () => does.pinOn(one)});
     item.dataset.effect = one.id;
-    item.append(make('p', {textContent: one.words}),
+    within(item, '.line').append(explainButton(item, one, () => does.explain({effect: one.effect})));
+    item.append(make('p', {textContent: (state.provisional ? 'For now: ' : '') + one.words}),
                 ...one.not_fitted.map(why => make('p', {className: 'failed', textContent: why})));
     return item;
   }));
   if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
 }
 
+/** @param {Stacked} one @param {Acts} does @returns {HTMLElement} */
 function candidate(one, does) {
   const item = card(one.name, [
     make('span', {className: 'save', textContent:
@@ -71,7 +106,8 @@ function candidate(one, does) {
     act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
-  item.dataset.finding = one.finding;
+  item.dataset.finding = String(one.finding);
+  within(item, '.line').append(explainButton(item, one, () => does.explain({finding: one.finding})));
   item.append(make('p', {}, tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
     item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
@@ -80,13 +116,12 @@ function candidate(one, does) {
   return item;
 }
 
+/** @param {HTMLElement} box @param {BenchState} state @param {Acts} does */
 export function showCandidates(box, state, does) {
   const cards = stacked(state.cards.filter(one => one.saves_mm > 0 || one.status === 'missing'));
+  /** @type {Map<string, Stacked[]>} */
   const parts = new Map();
-  for (const one of cards) {
-    if (!parts.has(one.part)) parts.set(one.part, []);
-    parts.get(one.part).push(one);
-  }
+  for (const one of cards) parts.set(one.part, [...(parts.get(one.part) || []), one]);
   const again = () => showCandidates(box, state, does);
   box.replaceChildren(...[...parts].map(([part, all]) => {
     const telling = all.filter(one => one.significant || one.status === 'missing');

@@ -3,20 +3,28 @@
 //
 // Legs that are chosen, on the map or in time: every view shows them alone, and a fit can be made
 // without them.
-import {lastOnly} from './bench_api.js';
+import {lastOnly, Refused} from './bench_api.js';
 import {showViews} from './bench_view.js';
 import {addBrush} from './brush.js';
+import {buttonBy, by, inputBy, messageOf} from './dom.js';
 import {charts} from './figure.js';
 
-const by = id => document.getElementById(id);
+/** @typedef {{area: number[]} | {time: number[]}} Choice of legs: x, y, x, y on the map; from, to */
+
+/** @type {(body: object) => Promise<Selection | null>} */
 const legs = lastOnly('legs');
 
-let state = null;
+/** @type {BenchState} */
+let state;
 let version = 0;
-let choice = null;   // {area} or {time}; null: all
+/** @type {Choice | null} */
+let choice = null;   // null: all
+/** @type {Selection | null} */
 let views = null;    // of the choice
 let busy = true;
+/** @type {(choice: Choice | null) => void} */
 let chosenElse = () => {};
+/** @type {Set<HTMLElement>} */
 const listening = new Set();  // figures
 
 const onMap = () => by('choose-area').getAttribute('aria-pressed') === 'true';
@@ -24,11 +32,11 @@ const onMap = () => by('choose-area').getAttribute('aria-pressed') === 'true';
 function showButtons() {
   const now = views || state;
   by('legs-words').textContent = now.legs.words;
-  by('exclude').disabled = busy || !choice || now.legs.free === 0;
+  buttonBy('exclude').disabled = busy || !choice || now.legs.free === 0;
   by('exclude').textContent = choice && now.legs.free ? `Exclude ${now.legs.free} and refit` : 'Exclude and refit';
-  by('all-legs').disabled = !choice;
+  buttonBy('all-legs').disabled = !choice;
   by('include').hidden = state.legs.excluded === 0;
-  by('include').disabled = busy;
+  buttonBy('include').disabled = busy;
 }
 
 function showAll() {
@@ -37,7 +45,10 @@ function showAll() {
   showButtons();
 }
 
-/// A choice, of what the program has now; null: of all.
+/**
+ * A choice, of what the program has now; null: of all.
+ * @param {Choice | null} next
+ */
 async function choose(next) {
   by('legs-fault').textContent = '';
   try {
@@ -45,8 +56,9 @@ async function choose(next) {
     if (next && !reply) return;  // another came meanwhile
     [choice, views] = [next, reply];
   } catch (error) {
-    if (error.status === 409) return;  // another state is on its way
-    by('legs-fault').textContent = error.message[0].toUpperCase() + error.message.slice(1) + '.';
+    if (error instanceof Refused && error.status === 409) return;  // another state is on its way
+    const why = messageOf(error);
+    by('legs-fault').textContent = why.slice(0, 1).toUpperCase() + why.slice(1) + '.';
     [choice, views] = [null, null];
   }
   showAll();
@@ -65,7 +77,10 @@ function listen() {
   }
 }
 
-/// `changed` is told of every choice; `step` makes one.
+/**
+ * @param {(choice: Choice | null) => void} changed is told of every choice
+ * @param {(what: object) => void} step makes one
+ */
 export function begin(changed, step) {
   chosenElse = changed;
   by('choose-area').addEventListener('click', () => {
@@ -75,7 +90,7 @@ export function begin(changed, step) {
   });
   by('choose-time').addEventListener('submit', event => {
     event.preventDefault();
-    choose({time: [Number(by('time-from').value), Number(by('time-to').value)]});
+    choose({time: [Number(inputBy('time-from').value), Number(inputBy('time-to').value)]});
   });
   by('all-legs').addEventListener('click', () => choose(null));
   by('exclude').addEventListener('click', () => {
@@ -86,12 +101,17 @@ export function begin(changed, step) {
   by('include').addEventListener('click', () => step({do: 'include'}));
 }
 
+/** @param {boolean} now */
 export function setBusy(now) {
   busy = now;
   if (state) showButtons();
 }
 
-/// Another model: the same choice of it.
+/**
+ * Another model: the same choice of it.
+ * @param {BenchState} next
+ * @param {number} its version
+ */
 export function renew(next, its) {
   state = next;
   version = its;

@@ -4,44 +4,72 @@
 // The effect that is looked at: its curve and what it would leave, before any fit. Pointing looks
 // for a while, pressing pins; sliders move its place, radius, threshold, and let go they snap to the
 // best value near; a duel sets it against another.
-import {lastOnly} from './bench_api.js';
+import {lastOnly, Refused} from './bench_api.js';
 import {showFigure} from './bench_view.js';
-import {make} from './figure.js';
+import {by, make, messageOf, selectBy} from './dom.js';
 
-const by = id => document.getElementById(id);
+/**
+ * What is asked of the program about an effect: a finding (with values of its own), an effect of
+ * one's own, or, of the model's, its place there.
+ * @typedef {object} Question
+ * @property {number} [finding]
+ * @property {number[]} [values]
+ * @property {number[]} [rivals]
+ * @property {number | import('./bench_own.js').OwnEffect} [effect]
+ */
+/**
+ * An effect that is looked at.
+ * @typedef {object} Target
+ * @property {string} name
+ * @property {boolean} on the model has it
+ * @property {Question} ask
+ * @property {Card} [card]
+ * @property {(text: string) => void} [fault] where to say that it cannot be read
+ */
+
+/** @type {(body: object) => Promise<Preview | null>} */
 const preview = lastOnly('preview');
+/** @type {(body: object) => Promise<Preview | null>} */
 const shown = lastOnly('shown');
+/** @type {(body: object) => Promise<BestReply | null>} */
 const best = lastOnly('best');
 
-let state = null;
+/** @type {BenchState} */
+let state;
 let version = 0;     // of the state
+/** @type {Target | null} */
 let pinned = null;   // what to go back to
+/** @type {Target | null} */
 let looked = null;   // what is shown
 let asked = 0;
+/** @type {object | null} */
 let choice = null;   // of legs; null: all
+/** @type {Map<string, Preview>} */
 const answers = new Map();  // of this state
 
 export const request = () => looked && {...looked.ask};
 
-function saves(reply) {
+/** @param {Preview} reply @param {Target} target */
+function saves(reply, target) {
   if (reply.leaves_mm === null) return '';
-  if (state.on.length && looked.card?.status === 'missing' && reply.leaves_mm > reply.now_mm) {
+  if (state.on.length && target.card?.status === 'missing' && reply.leaves_mm > reply.now_mm) {
     return 'How much it saves shows when it is fitted: what the model has already changes with it.';
   }
   return `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
-         `\u03c7\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
+         `chi\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
 }
 
-function showWords(reply) {
+/** @param {Preview} reply @param {Target} target */
+function showWords(reply, target) {
   by('looked-name').textContent = reply.name;
   by('looked-words').textContent = reply.words;
-  by('looked-saves').textContent = looked.on ? '' : saves(reply);
+  by('looked-saves').textContent = target.on ? '' : saves(reply, target);
   by('looked-why').textContent = [
     reply.formula, reply.does && `Acts on ${reply.does}.`, reply.cause && `Comes from ${reply.cause}.`,
     reply.remedy && `What helps for good: ${reply.remedy}.`].filter(Boolean).join(' \u00b7 ');
-  by('add').hidden = looked.on;
+  by('add').hidden = target.on;
   // Sliders and the duel are of what is pinned.
-  const passing = looked.name !== pinned?.name;
+  const passing = target.name !== pinned?.name;
   by('sliders').hidden = passing;
   by('duel-line').classList.toggle('passing', passing);
   const rival = reply.rivals[0];
@@ -50,6 +78,7 @@ function showWords(reply) {
         rival.verdict;
 }
 
+/** @param {Target} target */
 async function show(target) {
   const mine = ++asked;
   looked = target;
@@ -60,72 +89,94 @@ async function show(target) {
     const reply = known || await (target.on ? shown : preview)({version, ...ask});
     if (!reply || mine !== asked) return;
     answers.set(key, reply);
-    showWords(reply);
+    showWords(reply, target);
     showFigure('plot', reply.chart);
     target.fault?.('');
     document.documentElement.dataset.looked = target.name;
   } catch (error) {
-    if (mine !== asked || error.status === 409) return;  // another state is on its way
-    if (target.fault) target.fault(error.message);
-    else by('looked-words').textContent = error.message;
+    if (mine !== asked || (error instanceof Refused && error.status === 409)) return;  // another state is on its way
+    if (target.fault) target.fault(messageOf(error));
+    else by('looked-words').textContent = messageOf(error);
   }
 }
 
+/** @param {Target} target */
 function showPinned(target) {
   pinned = target;
   return show(target);
 }
 
-function sliderOf(one, k, values) {
-  const input = make('input', {type: 'range', min: one.least, max: one.most, step: one.step / 20,
-                               value: values[k]});
+/**
+ * @param {Target} target
+ * @param {BenchParameter} one
+ * @param {number} k of its parameters
+ * @param {number[]} values
+ */
+function sliderOf(target, one, k, values) {
+  const input = make('input', {type: 'range', min: String(one.least), max: String(one.most),
+                               step: String(one.step / 20), value: String(values[k])});
   const value = make('output', {textContent: String(+values[k].toPrecision(4))});
+  /// With the rival that it was set against meanwhile.
+  const withValues = () => {
+    const {ask, ...rest} = pinned || target;
+    return {...rest, ask: {...ask, values: values.slice()}};
+  };
   input.addEventListener('input', () => {
     values[k] = Number(input.value);
     value.textContent = String(+values[k].toPrecision(4));
-    showPinned({...looked, ask: {...looked.ask, values: values.slice()}});
+    showPinned(withValues());
   });
   input.addEventListener('change', async () => {
-    const reply = await best({version, finding: looked.ask.finding, values}).catch(() => null);
+    const reply = await best({version, finding: target.ask.finding, values}).catch(() => null);
     if (!reply) return;
     reply.values.forEach((at, j) => { values[j] = at; });
-    showSliders(looked.card, values);
-    showPinned({...looked, ask: {...looked.ask, values: values.slice()}});
+    showSliders(target, values);
+    showPinned(withValues());
   });
   return make('label', {}, one.name + ' ', input, ' ', value);
 }
 
-function showSliders(card, values) {
-  by('sliders').replaceChildren(...(card?.parameters || []).map((one, k) => sliderOf(one, k, values)));
+/** @param {Target} target @param {number[]} values */
+function showSliders(target, values) {
+  by('sliders').replaceChildren(
+      ...(target.card?.parameters || []).map((one, k) => sliderOf(target, one, k, values)));
 }
 
+/** @param {Card} [card] */
 function showDuel(card) {
   const rivals = card ? state.cards.filter(one => one.id !== card.id) : [];
-  const first = rivals.filter(one => card.looks_like.includes(one.id));
-  const rest = rivals.filter(one => !card.looks_like.includes(one.id)).slice(0, 40);
+  const alike = card?.looks_like || [];
+  const first = rivals.filter(one => alike.includes(one.id));
+  const rest = rivals.filter(one => !alike.includes(one.id)).slice(0, 40);
   by('duel').replaceChildren(
       make('option', {value: '', textContent: 'nothing'}),
-      ...[...first, ...rest].map(one => make('option', {value: one.finding, textContent: one.name})));
+      ...[...first, ...rest].map(one => make('option', {value: String(one.finding), textContent: one.name})));
   by('duel-line').hidden = !rivals.length;
 }
 
+/** @type {(card: Card) => Target} */
 const ofCard = card => ({name: card.id, card, on: false, ask: {finding: card.finding}});
+/** @type {(one: OnCard) => Target} */
 const ofOn = one => ({name: one.id, on: true, ask: {effect: one.effect}});
 
+/** @param {Target} target */
 function pin(target) {
   pinned = target;
-  showSliders(target.card, (target.card?.parameters || []).map(one => one.value));
+  showSliders(target, (target.card?.parameters || []).map(one => one.value));
   showDuel(target.card);
-  for (const item of document.querySelectorAll('.card')) {
+  /** @type {NodeListOf<HTMLElement>} */
+  const items = document.querySelectorAll('.card');
+  for (const item of items) {
     item.classList.toggle('pinned', item.dataset.effect === target.name);
   }
   return show(target);
 }
 
-export const look = card => show(ofCard(card));
-export const lookOn = one => show(ofOn(one));
-export const pinCard = card => pin(ofCard(card));
-export const pinOn = one => pin(ofOn(one));
+export const look = (/** @type {Card} */ card) => show(ofCard(card));
+export const lookOn = (/** @type {OnCard} */ one) => show(ofOn(one));
+export const pinCard = (/** @type {Card} */ card) => pin(ofCard(card));
+export const pinOn = (/** @type {OnCard} */ one) => pin(ofOn(one));
+/** @type {(effect: import('./bench_own.js').OwnEffect, fault: (text: string) => void) => Promise<void>} */
 export const pinOwn = (effect, fault) =>
     pin({name: effect.name, on: false, ask: {effect}, fault});
 
@@ -134,7 +185,10 @@ export function leave() {
   if (pinned && looked !== pinned) show(pinned);
 }
 
-/// Points of these legs alone.
+/**
+ * Points of these legs alone.
+ * @param {object | null} next choice
+ */
 export function choose(next) {
   choice = next;
   if (looked) show(looked);
@@ -142,18 +196,24 @@ export function choose(next) {
 
 export function begin() {
   by('duel').addEventListener('change', () => {
-    const rivals = by('duel').value === '' ? [] : [Number(by('duel').value)];
-    showPinned({...looked, ask: {...looked.ask, rivals}});
+    if (!pinned) return;
+    const rival = selectBy('duel').value;
+    showPinned({...pinned, ask: {...pinned.ask, rivals: rival === '' ? [] : [Number(rival)]}});
   });
 }
 
-/// Another model: what was looked at is pinned again where it still is there, else the best.
+/**
+ * Another model: what was looked at is pinned again where it still is there, else the best.
+ * @param {BenchState} next
+ * @param {number} its version
+ */
 export function renew(next, its) {
   state = next;
   version = its;
   answers.clear();
-  const on = state.on.find(one => pinned && one.id === pinned.name);
-  const card = state.cards.find(one => pinned && one.id === pinned.name && !pinned.on);
+  const before = pinned;
+  const on = state.on.find(one => one.id === before?.name);
+  const card = state.cards.find(one => one.id === before?.name && !before.on);
   if (on) return pinOn(on);
   if (card) return pinCard(card);
   if (state.cards.length) return pinCard(state.cards.find(one => one.status === 'missing') || state.cards[0]);

@@ -3,17 +3,22 @@
 //
 // The noise by a handle: which alarms would stay were it larger than it is believed to be.
 import {lastOnly} from './bench_api.js';
+import {by, inputBy} from './dom.js';
 
-const by = id => document.getElementById(id);
+/** @type {(body: object) => Promise<NoiseReply | null>} */
 const noise = lastOnly('noise');
-let state = null;
+/** @type {BenchState} */
+let state;
 let version = 0;
 
+/** @param {number} factor @param {NoiseReply} reply */
 function words(factor, reply) {
   const alarms = state.cards.filter(one => one.significant);
   const lost = alarms.filter(one => reply.p[one.finding] >= reply.level);
-  for (const item of document.querySelectorAll('#parts .card')) {
-    item.classList.toggle('swallowed', reply.p[item.dataset.finding] >= reply.level && factor > 1);
+  /** @type {NodeListOf<HTMLElement>} */
+  const items = document.querySelectorAll('#parts .card');
+  for (const item of items) {
+    item.classList.toggle('swallowed', reply.p[Number(item.dataset.finding)] >= reply.level && factor > 1);
   }
   const missing = alarms.filter(one => one.status === 'missing');
   const gone = missing.filter(one => lost.includes(one)).map(one => one.name);
@@ -24,7 +29,7 @@ function words(factor, reply) {
 }
 
 async function moved() {
-  const factor = 2 ** Number(by('handle').value);
+  const factor = 2 ** Number(inputBy('handle').value);
   by('handle-factor').textContent = factor.toPrecision(2);
   const reply = await noise({version, factor}).catch(() => null);  // another state is on its way
   if (reply) by('handle-words').textContent = words(factor, reply);
@@ -34,9 +39,10 @@ export function begin() {
   by('handle').addEventListener('input', moved);
 }
 
+/** @param {BenchState} next @param {number} its version */
 export function renew(next, its) {
   state = next;
   version = its;
-  by('handle').value = '0';
+  inputBy('handle').value = '0';
   return moved();
 }

@@ -2,26 +2,31 @@
 // SPDX-License-Identifier: MIT
 //
 // The workbench's verdict, map, error, steps and strips of time, as a state has them.
-import {make, showChart} from './figure.js';
+import {by, make, within} from './dom.js';
+import {showChart} from './figure.js';
 
-const by = id => document.getElementById(id);
-
+/** @param {string} id @param {string} [text] */
 function say(id, text) {
   by(id).textContent = text || '';
   by(id).hidden = !text;
 }
 
-/// A chart in its figure.
+/**
+ * A chart in its figure.
+ * @param {string} id
+ * @param {Chart | null} chart
+ */
 export function showFigure(id, chart) {
   const figure = by(id);
   figure.hidden = !chart;
   if (!chart) return;
-  figure.querySelector('h3').textContent = chart.title;
+  within(figure, 'h3').textContent = chart.title;
   const caption = figure.querySelector('.read p');
   if (caption) caption.textContent = chart.caption;
   showChart(figure, chart);
 }
 
+/** @param {BenchState} state */
 function showVerdict(state) {
   by('subject').textContent = state.subject;
   by('verdict').textContent = state.verdict.text;
@@ -34,6 +39,7 @@ function showVerdict(state) {
   document.title = 'trussmap: ' + state.verdict.text;
 }
 
+/** @param {BenchState | Selection} views */
 function showError({figure, legs}) {
   const some = legs.shown < legs.all;
   by('figure-now').textContent = figure ? figure.now : '\u2013';
@@ -46,32 +52,16 @@ function showError({figure, legs}) {
       : some ? 'None of the chosen legs is held out.' : 'There are no legs to be held out of the fit.';
 }
 
-function showSteps(state, busy, go) {
-  const now = state.steps[state.at];
-  by('steps').replaceChildren(...state.steps.map(step => {
-    const here = step.step === state.at;
-    const less = step.mm - now.mm;
-    const button = make('button', {
-      type: 'button', disabled: busy || here, className: 'step' + (step.on_way ? ' way' : ''),
-      textContent: step.name});
-    button.dataset.step = step.step;
-    button.addEventListener('click', () => go(step.step));
-    const beside = here ? ' (here)' : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
-    const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
-    const item = make('li', {}, button, ` ${step.mm.toFixed(1)} mm${foretold}${beside}`);
-    if (here) item.setAttribute('aria-current', 'step');
-    return item;
-  }));
-}
-
+/** @param {BenchState} state */
 function showNoise(state) {
   by('noise').replaceChildren(
       ...state.noise.lines.map(textContent => make('p', {textContent})));
 }
 
+/** @param {BenchState | Selection} views */
 function showStrips({strips}) {
   for (const chart of strips) {
-    if (!by(chart.id)) {
+    if (!document.getElementById(chart.id)) {
       by('time').append(make('figure', {className: 'chart strip', id: chart.id},
                              make('h3'), make('div', {className: 'picture'})));
     }
@@ -79,21 +69,26 @@ function showStrips({strips}) {
   }
 }
 
+/** @param {BenchState} state */
 function showUnseen(state) {
   by('unseen').hidden = !state.unseen.length;
-  by('unseen').querySelector('ul').replaceChildren(...state.unseen.map(one =>
+  within(by('unseen'), 'ul').replaceChildren(...state.unseen.map(one =>
       make('li', {textContent: `${one.name}: ${one.why}; ${one.drive}`})));
 }
 
-export function showState(state, busy, go) {
+/** @param {BenchState} state */
+export function showState(state) {
   showVerdict(state);
+  by('provisional').hidden = !state.provisional;
   showFigure('staircase', state.figure ? state.staircase : null);
-  showSteps(state, busy, go);
   showNoise(state);
   showUnseen(state);
 }
 
-/// What shows legs: all, or those chosen.
+/**
+ * What shows legs: all, or those chosen.
+ * @param {BenchState | Selection} views
+ */
 export function showViews(views) {
   showFigure('map', views.map);
   showError(views);

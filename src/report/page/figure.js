@@ -2,26 +2,28 @@
 // SPDX-License-Identifier: MIT
 //
 // A chart in its place on a page: drawn, and made to answer: hover, arrow keys, saving.
+import {by, make, messageOf, within} from './dom.js';
 import {rowsOf, specOf} from './spec.js';
 import {viewOf} from './vega.js';
 import {addZoom} from './zoom.js';
 
 const MOST_TABLE_ROWS = 500;
-export const tip = document.getElementById('tip');
-const said = document.getElementById('said');
-/// All that are drawn.
+const tip = by('tip');
+const said = by('said');
+/**
+ * All that are drawn.
+ * @type {ChartEntry[]}
+ */
 export const charts = [];
 
-export function make(name, properties = {}, ...children) {
-  const element = document.createElement(name);
-  Object.assign(element, properties);
-  element.append(...children);
-  return element;
-}
-
+/** @param {number | string | null} value */
 const shown = value => typeof value === 'number' ? String(+value.toPrecision(4)) : value ?? '';
 
-/// "name: value" for all that a mark knows; coordinates come last.
+/**
+ * "name: value" for all that a mark knows; coordinates come last.
+ * @param {ChartLayer} layer
+ * @param {Row} row
+ */
 function linesOf(layer, row) {
   const order = layer.columns.map((_, c) => c);
   const named = [...order.slice(layer.places), ...order.slice(0, layer.places)];
@@ -29,6 +31,7 @@ function linesOf(layer, row) {
       .map(c => `${layer.columns[c].name}: ${shown(row['c' + c])}`);
 }
 
+/** @param {string[]} lines @param {string} title @param {number} x @param {number} y */
 function showTip(lines, title, x, y) {
   tip.replaceChildren(...(title ? [make('b', {textContent: title})] : []),
                       ...lines.map(line => make('span', {textContent: line})));
@@ -38,8 +41,15 @@ function showTip(lines, title, x, y) {
   tip.style.top = Math.max(4, Math.min(y + 14, innerHeight - box.height - 8)) + 'px';
 }
 
-const layerOf = (chart, item) => chart.layers[Number(item.mark.name.slice(5))];
+/** @type {(chart: Chart, item: SceneItem) => ChartLayer} */
+const layerOf = (chart, item) => chart.layers[Number(item.mark.name?.slice('layer'.length))];
 
+/**
+ * @param {Chart} chart
+ * @param {MouseEvent} event
+ * @param {SceneItem | null} item
+ * @param {Row | null} value
+ */
 function onTooltip(chart, event, item, value) {
   if (!value || !item?.mark?.name) {
     tip.hidden = true;
@@ -49,11 +59,17 @@ function onTooltip(chart, event, item, value) {
   showTip(linesOf(layer, value), layer.key ? '' : layer.name, event.clientX, event.clientY);
 }
 
-/// Arrow keys go from mark to mark; what it says is read out.
+const STEPS = new Map([['ArrowRight', 1], ['ArrowDown', 1], ['ArrowLeft', -1], ['ArrowUp', -1]]);
+
+/**
+ * Arrow keys go from mark to mark; what it says is read out.
+ * @param {ChartEntry} entry
+ * @param {KeyboardEvent} event
+ */
 function walkMarks(entry, event) {
-  const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
+  const step = STEPS.get(event.key);
   if (event.key === 'Escape') tip.hidden = true;
-  if (!step) return;
+  if (!step || !entry.view) return;
   event.preventDefault();
   const frame = entry.view.scenegraph().root.items[0];
   const items = frame.items.filter(mark => /^layer/.test(mark.name || ''))
@@ -65,14 +81,16 @@ function walkMarks(entry, event) {
   const layer = layerOf(entry.chart, item);
   const origin = entry.view.origin();
   const box = entry.picture.getBoundingClientRect();
-  const lines = linesOf(layer, item.tooltip);
+  const lines = linesOf(layer, item.tooltip || {});
   showTip(lines, layer.name, box.left + origin[0] + (item.bounds.x1 + item.bounds.x2) / 2,
           box.top + origin[1] + (item.bounds.y1 + item.bounds.y2) / 2);
   said.textContent = [layer.name, ...lines].join(', ');
 }
 
+/** @param {string} cell */
 const quoted = cell => /[",\r\n]/.test(cell) ? '"' + cell.replaceAll('"', '""') + '"' : cell;
 
+/** @param {Chart} chart */
 export function csvOf(chart) {
   return chart.layers.map(layer => [
     ['layer', ...layer.columns.map(column => column.name)],
@@ -81,10 +99,13 @@ export function csvOf(chart) {
   ]).flat().map(row => row.map(quoted).join(',') + '\r\n').join('');
 }
 
-/// The picture by itself, in the colours for paper.
+/**
+ * The picture by itself, in the colours for paper.
+ * @param {ChartEntry} entry
+ */
 export async function svgOf({chart, view}) {
-  const paper = getComputedStyle(document.querySelector('.paper'));
-  const plain = (await view.toSVG())
+  const paper = getComputedStyle(within(document, '.paper'));
+  const plain = (await /** @type {VegaView} */ (view).toSVG())
       .replaceAll(/var\((--[\w-]+)\)/g, (_, name) => paper.getPropertyValue(name).trim());
   const title = new XMLSerializer().serializeToString(make('span', {textContent: chart.title}))
       .replace(/^<[^>]*>|<\/[^>]*>$/g, '');
@@ -92,20 +113,25 @@ export async function svgOf({chart, view}) {
                        '<rect width="100%" height="100%" fill="#ffffff"/>');
 }
 
+/** @param {string} name @param {string} type @param {string} content */
 function save(name, type, content) {
   const url = URL.createObjectURL(new Blob([content], {type}));
   make('a', {href: url, download: name}).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
+/** @param {ChartLayer} layer */
 function tableOf(layer) {
   const rows = rowsOf(layer);
   const head = make('tr', {}, ...layer.columns.map(column =>
       make('th', {scope: 'col', textContent: column.name})));
   const body = rows.slice(0, MOST_TABLE_ROWS).map(row =>
-      make('tr', {}, ...layer.columns.map((_, c) => make('td', {
-        textContent: shown(row['c' + c]),
-        className: typeof row['c' + c] === 'number' ? 'number' : ''}))));
+      make('tr', {}, ...layer.columns.map((column, c) => {
+        const cell = make('td', {textContent: shown(row['c' + c]),
+                                 className: typeof row['c' + c] === 'number' ? 'number' : ''});
+        cell.dataset.heading = column.name;
+        return cell;
+      })));
   const table = make('table', {}, make('caption', {
     textContent: layer.name + (rows.length > MOST_TABLE_ROWS
         ? ` (first ${MOST_TABLE_ROWS} of ${rows.length}; the CSV file has all)` : '')}),
@@ -113,6 +139,7 @@ function tableOf(layer) {
   return make('div', {className: 'table', tabIndex: 0}, table);
 }
 
+/** @param {HTMLElement} figure @param {ChartEntry} entry */
 function addTools(figure, entry) {
   const {chart} = entry;
   figure.querySelector('.tools')?.remove();
@@ -129,10 +156,11 @@ function addTools(figure, entry) {
       details.append(...chart.layers.filter(layer => layer.kind !== 'labels').map(tableOf));
     }
   });
-  entry.zoom ??= chart.equal ? addZoom(entry, make) : [];
+  entry.zoom ??= chart.equal ? addZoom(entry) : [];
   figure.append(make('div', {className: 'tools'}, ...entry.zoom, svg, csv, details));
 }
 
+/** @param {ChartEntry} entry */
 export function draw(entry) {
   const width = Math.max(240, entry.picture.clientWidth);
   entry.width = width;
@@ -151,22 +179,26 @@ export function draw(entry) {
                     (entry.chart.equal ? ' Plus, minus and 0 zoom.' : ''));
 }
 
-/// Draws a chart in a figure that has a place for its picture; again, with another chart, in the
-/// same place.
+/**
+ * Draws a chart in a figure that has a place for its picture; again, with another chart, in the
+ * same place.
+ * @param {HTMLElement} figure
+ * @param {Chart} chart
+ */
 export function showChart(figure, chart) {
-  let entry = charts.find(one => one.figure === figure);
-  const fresh = !entry;
-  if (fresh) charts.push(entry = {figure, picture: figure.querySelector('.picture')});
+  const known = charts.find(one => one.figure === figure);
+  const entry = known || {figure, picture: within(figure, '.picture'), chart};
+  if (!known) charts.push(entry);
   entry.chart = chart;
   try {
     draw(entry);
   } catch (error) {
     entry.picture.replaceChildren(make('p', {
-      className: 'failed', textContent: 'This chart could not be drawn: ' + error.message}));
+      className: 'failed', textContent: 'This chart could not be drawn: ' + messageOf(error)}));
     console.error(error);
     return entry;
   }
-  if (fresh) {
+  if (!known) {
     entry.picture.addEventListener('keydown', event => walkMarks(entry, event));
     entry.picture.addEventListener('blur', () => { tip.hidden = true; });
   }
@@ -178,7 +210,7 @@ export function showChart(figure, chart) {
 export function drawAnew() {
   for (const entry of charts) {
     const width = entry.picture.clientWidth;
-    if (entry.view && width && Math.abs(width - entry.width) > 1) draw(entry);
+    if (entry.view && width && Math.abs(width - (entry.width || 0)) > 1) draw(entry);
   }
 }
 
@@ -187,9 +219,9 @@ export function addTableTools() {
   document.querySelectorAll('section .table').forEach((box, k) => {
     if (box.closest('.chart')) return;
     const cells = [...box.querySelectorAll('tr')].map(row =>
-        [...row.cells].map(cell => quoted(cell.textContent)).join(',') + '\r\n').join('');
+        [...row.cells].map(cell => quoted(cell.textContent || '')).join(',') + '\r\n').join('');
     const csv = make('button', {type: 'button', textContent: 'Save CSV'});
-    csv.setAttribute('aria-label', `Save the table "${box.getAttribute('aria-label')}" as CSV`);
+    csv.setAttribute('aria-label', `Save CSV of the table "${box.getAttribute('aria-label')}"`);
     csv.addEventListener('click', () => save(`table-${k + 1}.csv`, 'text/csv', cells));
     box.after(make('p', {className: 'tools'}, csv));
   });
@@ -197,7 +229,8 @@ export function addTableTools() {
 
 /// Charts follow the width of the window.
 export function followWidth() {
-  let waiting = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let waiting;
   addEventListener('resize', () => {
     clearTimeout(waiting);
     waiting = setTimeout(drawAnew, 150);

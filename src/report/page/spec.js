@@ -6,20 +6,27 @@
 const UNIT_CIRCLE = 'M-1,0A1,1,0,1,0,1,0A1,1,0,1,0,-1,0Z';
 const SHADES = 7;
 
+/** @param {string} role */
 export const colourOf = role => /^\d+$/.test(role) ? `var(--c${role})` : `var(--${role})`;
-const shadeColour = k => `var(--d${k})`;
-const isCategory = axis => Boolean(axis.categories);
+const shadeColour = (/** @type {number} */ k) => `var(--d${k})`;
+const isCategory = (/** @type {ChartAxis} */ axis) => Boolean(axis.categories);
 
-/// Rows of a layer, a mark each.
+/**
+ * Rows of a layer, a mark each.
+ * @param {ChartLayer} layer
+ */
 export function rowsOf(layer) {
   const count = layer.columns.length ? layer.columns[0].values.length : 0;
+  /** @type {Row[]} */
   const rows = new Array(count);
   for (let k = 0; k < count; ++k) {
+    /** @type {Row} */
     const row = {};
     layer.columns.forEach((column, c) => { row['c' + c] = column.values[k]; });
     if (layer.shade) {
       const shade = Math.max(-1, Math.min(1, layer.shade[k] ?? 0));
       row.strength = Math.abs(shade);
+      row.below = shade < 0 ? 1 : 0;
       row.colour = shadeColour(Math.round((shade + 1) / 2 * (SHADES - 1)));
     }
     rows[k] = row;
@@ -27,7 +34,11 @@ export function rowsOf(layer) {
   return rows;
 }
 
-/// Columns of a layer that lie on the x axis, and on the y axis.
+/**
+ * Columns of a layer that lie on the x axis, and on the y axis.
+ * @param {ChartLayer} layer
+ * @param {Chart} chart
+ */
 function placesOf(layer, chart) {
   const sideways = isCategory(chart.y);
   switch (layer.kind) {
@@ -41,11 +52,15 @@ function placesOf(layer, chart) {
   }
 }
 
+/**
+ * @param {Chart} chart
+ * @param {0 | 1} which axis: x, y
+ */
 function extent(chart, which) {
   const axis = which ? chart.y : chart.x;
   if (axis.range) return axis.range.slice();
   let low = Infinity, high = -Infinity;
-  const take = value => {
+  const take = (/** @type {number | string | null} */ value) => {
     if (typeof value !== 'number' || (axis.log && !(value > 0))) return;
     if (value < low) low = value;
     if (value > high) high = value;
@@ -54,8 +69,10 @@ function extent(chart, which) {
     for (const c of placesOf(layer, chart)[which]) layer.columns[c].values.forEach(take);
     if (layer.kind === 'bars' && placesOf(layer, chart)[which][0] === 1) take(0);
     if (layer.kind === 'ellipses') {
-      layer.columns[which].values.forEach((at, k) => {
-        const reach = Math.max(layer.columns[2].values[k], layer.columns[3].values[k]) || 0;
+      const numbers = (/** @type {number} */ c) => layer.columns[c].values.map(Number);
+      const a = numbers(2), b = numbers(3);
+      numbers(which).forEach((at, k) => {
+        const reach = Math.max(a[k], b[k]) || 0;
         take(at - reach);
         take(at + reach);
       });
@@ -69,16 +86,26 @@ function extent(chart, which) {
   return [axis.zero && low === 0 ? 0 : low - margin, axis.zero && high === 0 ? 0 : high + margin];
 }
 
-/// Both ranges stretched about their middles until a unit is as long on both.
+/**
+ * Both ranges stretched about their middles until a unit is as long on both.
+ * @param {number[][]} ranges
+ * @param {number} width
+ * @param {number} height
+ */
 function equalised([x, y], width, height) {
   const unit = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
-  const about = (range, pixels) => {
+  const about = (/** @type {number[]} */ range, /** @type {number} */ pixels) => {
     const middle = (range[0] + range[1]) / 2;
     return [middle - unit * pixels / 2, middle + unit * pixels / 2];
   };
   return [about(x, width), about(y, height)];
 }
 
+/**
+ * @param {'x' | 'y'} name
+ * @param {ChartAxis} axis
+ * @param {object} domain
+ */
 function scale(name, axis, domain) {
   const range = name === 'x' ? 'width' : 'height';
   if (isCategory(axis)) {
@@ -88,29 +115,70 @@ function scale(name, axis, domain) {
   return {name, type: axis.log ? 'log' : 'linear', domain, range, zero: false};
 }
 
+/**
+ * How a layer's marks differ from those of other layers where colours cannot be told apart: lines by
+ * their dash, dots by their shape.
+ * @typedef {{dash: number[], shape: string}} Looks
+ */
+const SOLID = [1, 0];
+const DASHES = [SOLID, [10, 3], [2, 3], [10, 3, 2, 3]];
+const RIVALS = [[6, 4], [2, 2.5], [8, 2, 2, 2]];  // of lines that are dashed anyhow
+const SHAPES = ['circle', 'square', 'diamond', 'triangle-up', 'cross', 'triangle-down'];
+/** @type {LayerKind[]} */
+const LINES = ['line', 'net', 'segments', 'ellipses', 'level', 'upright'];
+
+/** @param {Chart} chart @returns {(layer: ChartLayer) => Looks} */
+function looksIn(chart) {
+  const named = chart.layers.filter(layer => layer.name && !layer.key);
+  const colours = (/** @type {(layer: ChartLayer) => boolean} */ which) =>
+      [...new Set(named.filter(which).map(layer => layer.colour))];
+  const isLine = (/** @type {ChartLayer} */ layer) => LINES.includes(layer.kind);
+  const strokes = colours(layer => isLine(layer) && !layer.dashed);
+  const rivals = colours(layer => layer.kind === 'line' && Boolean(layer.dashed));
+  const dots = colours(layer => !isLine(layer));
+  const at = (/** @type {string[]} */ all, /** @type {string} */ colour, /** @type {number} */ count) =>
+      Math.max(0, all.indexOf(colour)) % count;
+  return layer => ({
+    dash: layer.dashed ? RIVALS[at(rivals, layer.colour, RIVALS.length)]
+        : layer.name ? DASHES[at(strokes, layer.colour, DASHES.length)] : SOLID,
+    shape: SHAPES[at(dots, layer.colour, SHAPES.length)]});
+}
+
+/**
+ * @param {ChartLayer} layer
+ * @param {number} index
+ * @param {Chart} chart
+ * @returns {object[]}
+ */
 function marksOf(layer, index, chart) {
   const from = {data: 'd' + index};
   const vertical = isCategory(chart.y);
+  /** @type {(name: 'x' | 'y', axis: ChartAxis) => (column: number) => object} */
   const across = (name, axis) => column => isCategory(axis)
       ? {scale: name, field: 'c' + column, band: 0.5, offset: layer.offset || 0}
       : {scale: name, field: 'c' + column};
   const x = across('x', chart.x), y = across('y', chart.y);
   const colour = layer.shade ? {field: 'colour'} : {value: colourOf(layer.colour)};
-  const dash = layer.dashed ? {strokeDash: {value: [6, 4]}} : {};
-  const line = width => ({stroke: colour, strokeWidth: {value: layer.size || width}, ...dash});
+  const looks = looksIn(chart)(layer);
+  const dash = layer.key ? {strokeDash: {signal: 'datum.below ? [7, 3] : [1, 0]'}}
+                         : {strokeDash: {value: looks.dash}};
+  const shape = {shape: {value: looks.shape}};
+  const line = (/** @type {number} */ width) => ({stroke: colour, strokeWidth: {value: layer.size || width}, ...dash});
   const said = {tooltip: {signal: 'datum'}, cursor: {value: 'default'}};
+  /** @type {(type: string, update: object, more?: object) => object} */
   const mark = (type, update, more = {}) =>
       ({type, name: 'layer' + index, from, aria: false, encode: {update}, clip: true, ...more});
   // What has nothing to say does not answer.
+  /** @type {(type: string, update: object, hover: object) => object} */
   const lively = (type, update, hover) => layer.columns.some(column => column.name)
       ? mark(type, {}, {encode: {update: {...update, ...said}, hover}})
       : mark(type, update, {interactive: false});
-  const defined = (...columns) =>
+  const defined = (/** @type {number[]} */ ...columns) =>
       ({signal: columns.map(c => `isValid(datum.c${c})`).join(' && ')});
   switch (layer.kind) {
     case 'dots': {
       const radius = layer.size || 4;
-      return [lively('symbol', {x: x(0), y: y(1), fill: colour, fillOpacity: {value: 0.8},
+      return [lively('symbol', {x: x(0), y: y(1), fill: colour, ...shape, fillOpacity: {value: 0.8},
                                 stroke: {value: 'var(--paper)'}, strokeWidth: {value: 0.5},
                                 size: {value: Math.PI * radius * radius}},
                      {stroke: {value: 'var(--ink)'}, strokeWidth: {value: 2}})];
@@ -130,7 +198,7 @@ function marksOf(layer, index, chart) {
                      {strokeWidth: {value: 8}})];
     }
     case 'ellipses': {
-      const pixels = c => ({signal: `max(1.5, datum.c${c} * abs(scale('x', 1) - scale('x', 0)))`});
+      const pixels = (/** @type {number} */ c) => ({signal: `max(1.5, datum.c${c} * abs(scale('x', 1) - scale('x', 0)))`});
       return [lively('path', {x: x(0), y: y(1), path: {value: UNIT_CIRCLE}, scaleX: pixels(2),
                               scaleY: pixels(3), angle: {signal: '-datum.c4 * 180 / PI'},
                               fill: colour, fillOpacity: {value: 0.18}, stroke: colour,
@@ -143,7 +211,7 @@ function marksOf(layer, index, chart) {
       const radius = layer.size || 4;
       return [{...mark('rule', {...ends, stroke: colour, strokeWidth: {value: 2}},
                        {interactive: false}), name: 'reach' + index},
-              lively('symbol', {...middle, fill: colour,
+              lively('symbol', {...middle, fill: colour, ...shape,
                                 size: {value: Math.PI * radius * radius}},
                      {stroke: {value: 'var(--ink)'}, strokeWidth: {value: 2}})];
     }
@@ -175,29 +243,83 @@ function marksOf(layer, index, chart) {
   return [];
 }
 
-/// Names in the legend with their colours, each once.
+/**
+ * What is in the legend, each name once.
+ * @typedef {Looks & {name: string, colour: string, width: number}} Key
+ * @param {Chart} chart
+ * @returns {Key[]}
+ */
 function legendOf(chart) {
+  /** @type {Map<string, Key>} */
   const entries = new Map();
+  const looks = looksIn(chart);
   for (const layer of chart.layers) {
     if (layer.name && !layer.key && !entries.has(layer.name)) {
-      entries.set(layer.name, colourOf(layer.colour));
+      const line = LINES.includes(layer.kind);
+      const {dash, shape} = looks(layer);
+      const area = layer.kind === 'band' || layer.kind === 'bars';
+      entries.set(layer.name, {name: layer.name, colour: colourOf(layer.colour), dash: line ? dash : SOLID,
+                               shape: line ? 'stroke' : area ? 'square' : shape, width: line ? 2.5 : 0});
     }
-    (layer.key || []).forEach((name, k) => entries.set(name, shadeColour(k * 3)));
+    (layer.key || []).forEach((name, k) => {
+      if (!name) return;
+      entries.set(name, {name, colour: shadeColour(k * 3), dash: k === 0 ? [7, 3] : SOLID,
+                         shape: 'stroke', width: k === 1 ? 2 : 6});
+    });
   }
-  return [...entries];
+  return [...entries.values()];
+}
+
+/**
+ * A scale from names in the legend to how they look.
+ * @param {string} name
+ * @param {Key[]} legend
+ * @param {(key: Key) => unknown} look
+ */
+const keyScale = (name, legend, look) =>
+    ({name, type: 'ordinal', domain: legend.map(key => key.name), range: legend.map(look)});
+
+const LETTER = 6.4;       // pixels, about
+const LINE = 13;
+const MOST_LINES = 3;
+
+/**
+ * A name over several lines, each of so many letters at most; what does not fit is cut.
+ * @param {string} name
+ * @param {number} most
+ */
+export function wrapped(name, most) {
+  /** @type {string[]} */
+  const lines = [];
+  for (const word of name.split(' ')) {
+    const last = lines[lines.length - 1];
+    if (last !== undefined && last.length + 1 + word.length <= most) lines[lines.length - 1] = last + ' ' + word;
+    else lines.push(word);
+  }
+  if (lines.length > MOST_LINES) lines.splice(MOST_LINES - 1, lines.length, lines.slice(MOST_LINES - 1).join(' '));
+  return lines.map(line => line.length > most + 1 ? line.slice(0, most - 1) + '\u2026' : line);
 }
 
 const text = {font: 'system-ui, Liberation Sans, sans-serif'};
 
+/** @param {Chart} chart @param {number} width */
 export function specOf(chart, width) {
   const legend = legendOf(chart);
   let domains = [extent(chart, 0), extent(chart, 1)];
   // Room for the axes, near enough for a map's proportions.
   if (chart.equal) domains = equalised(domains, width - 65, chart.height);
-  const axis = (orient, of, name) => ({
+  const limit = {x: 110, y: Math.min(220, width * 0.4)};
+  // Names of categories, over several lines, by name.
+  const names = (/** @type {'x' | 'y'} */ name) => Object.fromEntries((chart[name].categories || [])
+      .map(one => [one, wrapped(one, Math.floor(limit[name] / LETTER))]));
+  const categories = (/** @type {'x' | 'y'} */ name) => ({encode: {labels: {update: {
+    text: {signal: `${name}Names[datum.value]`},
+    ...(name === 'y' ? {dy: {signal: `-${LINE / 2} * (length(yNames[datum.value]) - 1)`}} : {})}}}});
+  const axis = (/** @type {string} */ orient, /** @type {ChartAxis} */ of,
+                /** @type {'x' | 'y'} */ name) => ({
     orient, scale: name, title: of.title, grid: !isCategory(of), ticks: false, labelPadding: 6,
     domain: false, tickCount: {signal: `ceil(${name === 'x' ? 'width / 90' : 'height / 45'})`},
-    labelLimit: name === 'y' ? Math.min(220, width * 0.4) : 110,
+    labelLimit: limit[name] + 20, labelLineHeight: LINE, ...(isCategory(of) ? categories(name) : {}),
     ...(of.log ? {tickCount: 4, formatType: 'number', format: '~g'} : {}),
     aria: false});
   return {
@@ -210,19 +332,22 @@ export function specOf(chart, width) {
              titleFontWeight: 'normal', labelColor: 'var(--muted)', titleColor: 'var(--ink)',
              gridColor: 'var(--grid)', titlePadding: 8},
       legend: {labelFont: text.font, labelFontSize: 12, labelColor: 'var(--ink)',
-               labelLimit: 260, symbolStrokeWidth: 0, columnPadding: 16}},
+               labelLimit: 260, columnPadding: 16}},
     // A map's part that is shown: page.js moves it.
-    signals: chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [],
+    signals: [{name: 'xNames', value: names('x')}, {name: 'yNames', value: names('y')},
+              ...(chart.equal ? [{name: 'xs', value: domains[0]}, {name: 'ys', value: domains[1]}] : [])],
     data: chart.layers.map((layer, k) => ({name: 'd' + k, values: rowsOf(layer)})),
     scales: [scale('x', chart.x, chart.equal ? {signal: 'xs'} : domains[0]),
              scale('y', chart.y, chart.equal ? {signal: 'ys'} : domains[1]),
-             {name: 'legend', type: 'ordinal', domain: legend.map(e => e[0]),
-              range: legend.map(e => e[1])}],
+             keyScale('colour', legend, key => key.colour), keyScale('shape', legend, key => key.shape),
+             keyScale('dash', legend, key => key.dash), keyScale('width', legend, key => key.width),
+             keyScale('size', legend, key => key.shape === 'stroke' ? 500 : 120)],
     axes: [axis('bottom', chart.x, 'x'), axis('left', chart.y, 'y')],
     legends: legend.length
-        ? [{fill: 'legend', orient: 'top', direction: 'horizontal', symbolType: 'square', aria: false,
+        ? [{fill: 'colour', stroke: 'colour', shape: 'shape', strokeDash: 'dash', strokeWidth: 'width', size: 'size',
+            orient: 'top', direction: 'horizontal', aria: false,
             columns: Math.max(1, Math.floor((width - 60) /
-                (36 + 7 * Math.max(...legend.map(e => Math.min(37, e[0].length))))))}]
+                (36 + 7 * Math.max(...legend.map(key => Math.min(37, key.name.length))))))}]
         : [],
     marks: chart.layers.flatMap((layer, k) => marksOf(layer, k, chart))};
 }

@@ -13,6 +13,9 @@ import * as viewTransforms from 'vega-view-transforms';
 
 Object.assign(transforms, basic, encode, viewTransforms);
 
-/// A view of a specification.
+/**
+ * A view of a specification.
+ * @type {(spec: object, options: VegaOptions) => VegaView}
+ */
 export const viewOf = (spec, options) =>
     new View(parse(spec, null, {ast: true}), {...options, expr: expressionInterpreter});

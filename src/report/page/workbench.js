@@ -7,94 +7,117 @@
 //   pointing, typing --> preview                 pressing --> step, of the version that is shown
 import {ask, follow, tell} from './bench_api.js';
 import {showCandidates, showOn} from './bench_cards.js';
+import {showHistory} from './bench_history.js';
 import * as legs from './bench_legs.js';
 import * as look from './bench_look.js';
 import * as noise from './bench_noise.js';
 import {beginOwn} from './bench_own.js';
 import {showState} from './bench_view.js';
+import {buttonBy, by, messageOf, within} from './dom.js';
 import {followWidth} from './figure.js';
 import {notice} from './notice.js';
 
-const by = id => document.getElementById(id);
+/** @type {BenchState | null} */
 let state = null;
 let version = 0;
 let busy = true;
+/** @type {number[]} */
 let onward = [];  // steps that were undone
 
+/** @param {string} [text] */
 function fail(text) {
   by('failed').textContent = text || '';
   by('failed').hidden = !text;
 }
 
+/** @param {object} what */
 async function step(what) {
   try {
     fail('');
     setBusy(true);
     await tell('step', {version, ...what});
   } catch (error) {
-    fail(error.message);
+    fail(messageOf(error));
     setBusy(false);
   }
 }
 
+/** @type {import('./bench_cards.js').Acts} */
 const does = {
   busy: () => busy,
   look: look.look, lookOn: look.lookOn, leave: look.leave, pin: look.pinCard, pinOn: look.pinOn,
   add: card => { onward = []; step({do: 'add', finding: card.finding}); },
+  explain: asked => tell('explain', {version, ...asked}),
   remove: one => { onward = []; step({do: 'remove', effect: one.effect}); }
 };
 
+/** @param {number} to */
 function go(to) {
   onward = [];
   step({do: 'go', step: to});
 }
 
+/** @type {import('./bench_history.js').HistoryActs} */
+const past = {busy: () => busy, go, name: (at, label) => { step({do: 'name', step: at, label}); }};
+
+/** @param {boolean} now */
 function setBusy(now) {
   busy = now;
-  for (const button of document.querySelectorAll('.act, .step, #add, #own-add')) {
-    button.disabled = busy || button.parentElement.getAttribute('aria-current') === 'step';
+  /** @type {NodeListOf<HTMLButtonElement>} */
+  const buttons = document.querySelectorAll('.act, .step, #add, #own-add');
+  for (const button of buttons) {
+    button.disabled = busy || button.dataset.here === 'true';
   }
-  by('undo').disabled = busy || !state || state.at === 0;
-  by('redo').disabled = busy || !onward.length;
+  buttonBy('undo').disabled = busy || !state || state.at === 0;
+  buttonBy('redo').disabled = busy || !onward.length;
   legs.setBusy(busy);
   document.documentElement.dataset.busy = String(busy);
 }
 
-function showAll() {
-  showState(state, busy, go);
+/** @param {BenchState} state */
+function showAll(state) {
+  showState(state);
+  showHistory(state, past);
   showOn(by('on'), state, does);
   showCandidates(by('parts'), state, does);
   setBusy(busy);
 }
 
+/** @param {number} to version */
 async function renew(to) {
-  const next = await ask('state');
   const first = !state;
+  /** @type {BenchState} */
+  const next = await ask('state');
   state = next;
   version = to;
-  showAll();
-  const chosen = legs.renew(state, version);
+  showAll(next);
+  const chosen = legs.renew(next, version);
   if (first) {
-    beginOwn(state, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
+    beginOwn(next, {look: look.pinOwn, add: what => { onward = []; step({do: 'add', ...what}); }});
     performance.mark('first-picture');
   }
-  await Promise.all([chosen, look.renew(state, version), noise.renew(state, version)]);
-  document.documentElement.dataset.at = String(state.at);
-  document.documentElement.dataset.steps = String(state.steps.length);
+  await Promise.all([chosen, look.renew(next, version), noise.renew(next, version)]);
+  document.documentElement.dataset.at = String(next.at);
+  document.documentElement.dataset.steps = String(next.steps.length);
 }
 
 let renewing = Promise.resolve();
+/** @param {BenchStatus} status */
 function onStatus(status) {
-  by('doing').hidden = !status.busy;
-  by('doing').querySelector('span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
+  if (status.busy) {
+    within(by('doing'), 'span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
+    by('doing').hidden = false;
+  }
   if (status.failed) fail(status.failed);
   renewing = renewing.then(async () => {
     if (status.version !== version && status.version > 0) await renew(status.version);
     setBusy(status.busy);
-  }).catch(error => fail(error.message));
+    by('doing').hidden = !status.busy;  // not before the whole screen is that of the state
+  }).catch(error => fail(messageOf(error)));
 }
 
 by('undo').addEventListener('click', () => {
+  if (!state) return;
   const back = state.steps[state.at].from;
   onward.push(state.at);
   step({do: 'go', step: back});
@@ -105,7 +128,9 @@ by('redo').addEventListener('click', () => {
 });
 by('add').addEventListener('click', () => {
   onward = [];
-  const {finding, values, effect} = look.request();
+  const asked = look.request();
+  if (!asked) return;
+  const {finding, values, effect} = asked;
   step({do: 'add', ...(effect ? {effect} : {finding, ...(values ? {values} : {})})});
 });
 look.begin();

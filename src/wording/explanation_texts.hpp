@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What the effects of the catalogue do to a robot, in its owner's words.
+#pragma once
+
+#include <string_view>
+
+namespace trussmap {
+
+/// "{}" stands for the covariate's name in words.
+struct ExplanationText {
+  std::string_view name;   ///< of the catalogue
+  std::string_view does;   ///< to the robot
+  std::string_view look;   ///< at what, on the robot or round it
+  std::string_view drive;  ///< what, to be sure
+};
+
+/// nullptr where there is none: the radii of single wheels, which are all alike.
+[[nodiscard]] const ExplanationText* explanation_text(std::string_view name);
+
+}  // namespace trussmap

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "effects/channel_physics.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/workbench.hpp"
+#include "wording/channel_words.hpp"
+#include "wording/explanation_texts.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+/// Of "radius of wheel 3" and its like: which one.
+constexpr std::string_view kWheels[] = {"first", "second", "third", "fourth", "fifth", "sixth"};
+
+Explanation of_wheel(std::size_t wheel) {
+  const std::string_view which = kWheels[wheel];
+  return {fmt::format("The {} wheel is larger or smaller than believed: each move in which it "
+                      "turns pulls the robot to its side.",
+                      which),
+          fmt::format("Measure how far the {} wheel rolls in ten turns, under the usual load, and "
+                      "look at its tread or rollers.",
+                      which),
+          "Straight lines ahead, back and to the sides, and full turns on the spot: each wheel has "
+          "another share in each."};
+}
+
+std::string with(std::string_view text, const std::string& covariate) {
+  std::string result(text);
+  constexpr std::string_view kOpen = "{}";
+  for (std::size_t at = result.find(kOpen); at != std::string::npos; at = result.find(kOpen)) {
+    result.replace(at, kOpen.size(), covariate);
+  }
+  return result;
+}
+
+/// What an effect goes with, in words: "speed and turn rate"; empty where it goes with nothing.
+std::string goes_with(const Effect& effect) {
+  std::vector<std::string> names;
+  for (const Shape& shape : effect.shape) {
+    for (const std::string& name : shape.variables()) {
+      const std::string words = variable_in_words(name);
+      if (std::find(names.begin(), names.end(), words) == names.end()) names.push_back(words);
+    }
+  }
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  }
+  return text;
+}
+
+const char* where_to_look(Channel channel) {
+  switch (acts_on(channel)) {
+    case ActsOn::readings:
+      return "Look at the compass, at what is magnetic or switched near it, and at its time "
+             "stamps.";
+    case ActsOn::views:
+      return "Look at how the sensor is mounted, at its scale, and at its clock.";
+    case ActsOn::drives:
+      break;
+  }
+  return channel == Channel::gyro || channel == Channel::gyro_scale
+             ? "Look at the gyro: its zero at rest, its scale, its temperature."
+             : "Look at wheels, tyres, gears and castors, and at the floor.";
+}
+
+Explanation of_own(const Effect& effect) {
+  const std::string cause = goes_with(effect);
+  const std::string place = std::string(facts_of(effect.channel).does_what);
+  if (cause.empty()) {
+    return {fmt::format("It changes the {} alike everywhere.", place),
+            where_to_look(effect.channel),
+            "The same tour in both directions, and at two clearly different speeds."};
+  }
+  return {fmt::format("It changes the {} with {}, by the formula above.", place, cause),
+          where_to_look(effect.channel),
+          fmt::format("Drive so that {} takes a few clearly different values, each several times, "
+                      "with all else the same.",
+                      cause)};
+}
+
+}  // namespace
+
+Explanation explanation_of(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  if (entry == nullptr) return of_own(effect);
+  if (const auto wheel = wheel_of(entry->channel)) return of_wheel(*wheel);
+  const ExplanationText* known = explanation_text(entry->name);
+  if (known == nullptr) return of_own(effect);
+  const std::string covariate = goes_with(effect);
+  return {with(known->does, covariate), with(known->look, covariate),
+          with(known->drive, covariate)};
+}
+
+}  // namespace trussmap
