@@ -18,6 +18,7 @@
 #include "trussmap/discover.hpp"
 #include "trussmap/noise_fit.hpp"
 #include "trussmap/pose_graph.hpp"
+#include "trussmap/simulated_recording.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
@@ -86,6 +87,15 @@ enum class Mood { good, doubt, bad };
 /// A line per finding and below it the remedy; or that there is none.
 [[nodiscard]] std::string check_text(const std::vector<CheckFinding>& findings,
                                      TextStyle style = TextStyle::plain);
+
+/// A line per coefficient, under a heading.
+[[nodiscard]] std::string effects_text(const std::vector<Effect>& effects,
+                                       TextStyle style = TextStyle::plain);
+/// `folder`: where it was written; empty: nowhere. Hidden effects are not named.
+[[nodiscard]] std::string simulation_text(const SimulatedRecording& simulated,
+                                          const SimulationSettings& settings,
+                                          const std::string& folder,
+                                          TextStyle style = TextStyle::plain);
 
 /// Dead reckoning of drives that a calibration has not seen, one of each per drive.
 struct TestedDrives {

@@ -50,6 +50,7 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/shape.hpp"
 #include "trussmap/shards.hpp"
+#include "trussmap/simulated_recording.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/stop.hpp"
 #include "trussmap/survey_comparison.hpp"
