@@ -9,6 +9,7 @@
 #                      of pages in a browser and the slow ones are left to make test
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too
+#   make python        install what is missing, build the Python package into build/python
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
@@ -22,7 +23,7 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test fuzz tsan install-deps test-deps configure build command clean
+.PHONY: all check demo test python fuzz tsan install-deps test-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -45,6 +46,11 @@ check: install-deps build
 
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)
+
+python:
+	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev
+	@cmake --preset default $(GENERATOR) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
+	@cmake --build build --parallel $(JOBS) --target trussmap_python_package trussmap_command
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev

@@ -8,8 +8,12 @@
 
 docs/python.md teaches it. Lengths are in m, times in s, angles in rad.
 """
+from . import _core, _plots
 from ._core import *  # noqa: F401,F403
 from ._core import __version__  # noqa: F401
+
+_plots.add_plots()
+__all__ = [name for name in vars(_core) if not name.startswith("_")] + ["RecordingWarning"]
 
 
 class RecordingWarning(UserWarning):
