@@ -20,11 +20,11 @@ def version():
 
 
 class BuildByCMake(build_ext):
-    """Configures and builds the target trussmap_python; its module goes where setuptools wants it."""
+    """Configures (in TRUSSMAP_BUILD_DIR, else in build-python beside the sources) and builds the target trussmap_python; its module goes where setuptools wants it."""
 
     def build_extension(self, extension):
         module = Path(self.get_ext_fullpath(extension.name)).resolve()
-        build = Path(os.environ.get("TRUSSMAP_BUILD_DIR", Path(self.build_temp) / "cmake")).resolve()
+        build = Path(os.environ.get("TRUSSMAP_BUILD_DIR", PROJECT / "build-python")).resolve()
         build.mkdir(parents=True, exist_ok=True)
         subprocess.check_call(
             ["cmake", "-S", str(PROJECT), "-B", str(build), "-D", "CMAKE_BUILD_TYPE=Release",
