@@ -40,7 +40,8 @@ class RowClass {
  public:
   /// `name`: in Python; `header`: the struct's in C++.
   RowClass(py::module_& module, const char* name, const char* header)
-      : class_(module, name, doc(header)),
+      : class_(module, name,
+               *doc(header) == '\0' ? "A row: attributes, and to_dict() for tables." : doc(header)),
         name_(name),
         header_(header),
         fields_(std::make_shared<std::vector<std::string>>()) {
