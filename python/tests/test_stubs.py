@@ -50,11 +50,16 @@ class Stubs(unittest.TestCase):
 
     def test_are_of_this_module(self):
         done = subprocess.run(
-            [sys.executable, "-m", "mypy.stubtest", "trussmap", "--ignore-missing-stub",
-             "--allowlist", str(Path(__file__).with_name("stubs_allowed.txt"))],
+            [sys.executable, "-m", "mypy.stubtest", "--concise", "--ignore-missing-stub",
+             "trussmap"],
             capture_output=True, text=True, check=False,
             env={**os.environ, "MYPYPATH": str(PACKAGE.parent)})
-        self.assertEqual(done.returncode, 0, done.stdout)
+        # What pybind11 makes of every class.
+        usual = ("metaclass differs", ".__init__ is inconsistent", ".__hash__ is inconsistent")
+        wrong = [line for line in done.stdout.split("\n")
+                 if line.startswith("trussmap.") and not any(one in line for one in usual)]
+        self.assertEqual(wrong, [])
+        self.assertIn("metaclass differs", done.stdout)  # it was looked at
 
 
 if __name__ == "__main__":
