@@ -10,6 +10,7 @@
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too, as are, where there is npm, what checks their scripts' types
 #                      and their accessibility
+#   make python        install what is missing, build the Python package into build/python
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
@@ -25,7 +26,7 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test site site-check fuzz tsan install-deps test-deps site-deps configure build command clean
+.PHONY: all check demo test site site-check python fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -54,6 +55,11 @@ site: site-deps command
 
 site-check: install-deps command
 	@docs/site/run_blocks.py build/trussmap
+
+python:
+	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev
+	@cmake --preset default $(GENERATOR) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
+	@cmake --build build --parallel $(JOBS) --target trussmap_python_package trussmap_command
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A built map on the terminal and as JSON.
+// A built map as JSON, and what was written of it.
 #pragma once
 
 #include "page_runtime.hpp"
@@ -18,9 +18,6 @@ namespace trussmap::app {
 
 /// Per landmark x, y and, where known, its covariance.
 [[nodiscard]] nlohmann::ordered_json positions_json(const LandmarkGraph& map);
-
-/// `several`: of more than one recording, so that sightings say which.
-void print_built(const BuiltMap& built, const std::string& method, bool several);
 
 void print_written(const Files& files);
 

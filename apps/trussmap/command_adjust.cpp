@@ -10,10 +10,12 @@
 #include "terminal.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/pose_graph.hpp"
+#include "trussmap/texts.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -34,7 +36,7 @@ struct AdjustOptions {
   double tolerance = DistributedAdjustOptions{}.tolerance;
 };
 
-/// Everything that the table and the JSON file say.
+/// Everything that the JSON file says.
 struct Run {
   PoseGraphAdjustment result;
   int poses = 0;
@@ -44,28 +46,6 @@ struct Run {
   nlohmann::ordered_json left_out = nlohmann::ordered_json::array();  ///< edges, by ids
   double seconds = 0.0;
 };
-
-std::string table(const Run& run) {
-  const PoseGraphAdjustment& r = run.result;
-  std::string text = r.converged ? verdict_text(Mood::good, "adjusted: converged to a minimum\n")
-                                 : verdict_text(Mood::bad, "NOT CONVERGED") + "\n";
-  const auto row = [&text](std::string_view name, const std::string& value) {
-    text += fmt::format("  {:<18}{}\n", name, value);
-  };
-  row("chi2", fmt::format("{:.10g}", r.chi2));
-  row("dof", fmt::format("{}", r.dof));
-  if (r.dof > 0) row("chi2/dof", fmt::format("{:.6g}", r.chi2 / r.dof));
-  row("poses", fmt::format("{}", run.poses));
-  row("landmarks", fmt::format("{}", run.landmarks));
-  row("edges", fmt::format("{}", run.edges));
-  if (run.robust) row("edges left out", fmt::format("{}", run.left_out.size()));
-  row("iterations", fmt::format("{}", r.iterations));
-  row("gradient norm", fmt::format("{:.3g}", r.gradient_norm));
-  row("started from", r.start);
-  row("time", fmt::format("{:.3f} s", run.seconds));
-  for (const std::string& warning : r.warnings) text += warning_text(warning);
-  return text;
-}
 
 nlohmann::ordered_json json(const Run& run) {
   const PoseGraphAdjustment& r = run.result;
@@ -143,7 +123,9 @@ void run_adjust(const AdjustOptions& options) {
   if (!options.json.empty()) files.emplace_back(options.json, json(run).dump(2) + "\n");
   files.write();
   progress.end();
-  fmt::print("{}", table(run));
+  const std::optional<std::size_t> left_out =
+      run.robust ? std::optional(run.left_out.size()) : std::nullopt;
+  fmt::print("{}", pose_graph_text(graph, run.result, left_out, run.seconds, style_of(stdout)));
 }
 
 /// Options that belong to one solver are not given with another.

@@ -9,13 +9,10 @@
 #include "terminal.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/recording_files.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -40,18 +37,6 @@ std::vector<TimedPose> adjusted(const ModelRecordings& input, const ApplyCommand
   for (const std::string& warning : fit.warnings) fmt::print("{}", warning_text(warning));
   for (const std::string& one : fit.left_out) fmt::print("left out: {}\n", one);
   return adjusted_poses(fit);
-}
-
-/// Processes of the wheels' motion.
-bool motion_noise_lasts(const Noise& noise) {
-  return std::any_of(noise.processes.begin(), noise.processes.end(), [](const NoiseProcess& one) {
-    static constexpr std::array kOthers{
-        Channel::lever,   Channel::lever_left,   Channel::range,     Channel::range_scale,
-        Channel::bearing, Channel::delay,        Channel::compass,   Channel::truth_heading,
-        Channel::antenna, Channel::antenna_left, Channel::fix_delay, Channel::fix_x,
-        Channel::fix_y,   Channel::gyro,         Channel::gyro_scale};
-    return std::find(kOthers.begin(), kOthers.end(), one.channel) == kOthers.end();
-  });
 }
 
 void run_apply(ApplyCommand options) {
@@ -83,18 +68,11 @@ void run_apply(ApplyCommand options) {
     epoch = bag.epoch;
   }
   write_files(files);
-  const PoseEstimate& end = poses.back().estimate;
-  fmt::print("{} poses, {}; the last is known to {:.3f} m and {:.2f} deg (standard deviations)\n",
-             poses.size(),
-             options.adjusted ? "adjusted with everything that was measured, in the map's frame"
-                              : "dead reckoned from (0, 0, 0)",
-             std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
-             std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
+  fmt::print("{}", poses_text(poses, options.adjusted));
   fmt::print("written: {}\n", fmt::join(names, ", "));
   print_epoch(epoch);
-  if (!options.adjusted && motion_noise_lasts(input.model.noise)) {
-    fmt::print("{}", warning_text("of the wheels' noise the covariances know what is white: with "
-                                  "motion noise that lasts, as the model has, they are too small"));
+  if (!options.adjusted) {
+    fmt::print("{}", lasting_noise_text(input.model.noise, style_of(stdout)));
   }
 }
 

@@ -10,12 +10,14 @@
 #include "progress.hpp"
 #include "recording_warnings.hpp"
 #include "store_sessions.hpp"
+#include "terminal.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/texts.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -158,7 +160,7 @@ void run_build(const BuildOptions& options) {
   }
   files.write();
   progress.end();
-  print_built(built, method, options.recordings.size() > 1);
+  fmt::print("{}", map_text(built, method, options.recordings.size() > 1, style_of(stdout)));
   print_written(files);
 }
 

@@ -14,12 +14,9 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -32,8 +29,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kFarTooLarge = 2.0;  // chi^2/dof: more than any choice of noise explains
-
 struct CalibrateOptions {
   std::vector<std::string> recordings;
   std::string model;
@@ -43,13 +38,6 @@ struct CalibrateOptions {
   std::vector<std::string> test;
   std::vector<std::string> without;
   PageOptions page;
-};
-
-/// Dead reckoning of drives that the calibration has not seen.
-struct Tested {
-  std::vector<std::string> names;
-  std::vector<DriveError> nominal;
-  std::vector<DriveError> calibrated;
 };
 
 CalibrationOptions calibration_options(const CalibrateOptions& options) {
@@ -62,16 +50,16 @@ CalibrationOptions calibration_options(const CalibrateOptions& options) {
   return result;
 }
 
-Tested tested(const std::vector<Recording>& recordings, const Model& nominal,
-              const WheelCalibration& found) {
-  Tested result;
+TestedDrives tested(const std::vector<Recording>& recordings, const Model& nominal,
+                    const WheelCalibration& found) {
+  TestedDrives result;
   for (const Recording& one : recordings) result.names.push_back(one.name);
   result.nominal = drive_errors(recordings, nominal);
   result.calibrated = drive_errors(recordings, found.model, found.truth);
   return result;
 }
 
-ordered_json json(const Tested& test) {
+ordered_json json(const TestedDrives& test) {
   ordered_json out = {{"recordings", test.names.size()},
                       {"end_rms_m", rms_end(test.calibrated)},
                       {"end_rms_nominal_m", rms_end(test.nominal)},
@@ -99,7 +87,7 @@ ordered_json json(const CalibrationValidation& held) {
 }
 
 ordered_json json(const WheelCalibration& found, const CalibrationValidation& held,
-                  const std::optional<Tested>& test) {
+                  const std::optional<TestedDrives>& test) {
   ordered_json out;
   const auto add = [&out](const char* name, const std::optional<Calibrated>& one) {
     out[name] = one ? ordered_json(one->value) : ordered_json();
@@ -136,121 +124,6 @@ ordered_json json(const WheelCalibration& found, const CalibrationValidation& he
   return out;
 }
 
-struct Verdict {
-  Mood mood = Mood::doubt;
-  std::string text;
-};
-
-/// What the held-out legs say of the calibration.
-Verdict verdict(const CalibrationValidation& held) {
-  const std::string errors = fmt::format(
-      "{} {} end {:.1f} mm off (rms), nominal {:.1f} mm", held.legs(),
-      held.scheme == HoldoutScheme::recordings ? "legs, each recording held out in turn,"
-                                               : "held-out legs",
-      1000.0 * held.calibrated.rms(), 1000.0 * held.nominal.rms());
-  switch (held.gain()) {
-    case CalibrationGain::unknown:
-      return {Mood::doubt, "calibrated; no legs with truth could be held out to judge it by"};
-    case CalibrationGain::uncertain:
-      return {Mood::doubt,
-              "calibrated: " + errors + "; too few legs, or too short, to tell which is better"};
-    case CalibrationGain::better:
-      return {Mood::good, "calibrated: " + errors};
-    case CalibrationGain::worse:
-      break;
-  }
-  return {Mood::bad, "calibration does not help: " + errors};
-}
-
-/// The same as a sentence.
-std::string page_verdict(const CalibrationValidation& held) {
-  std::string sentence = verdict(held).text + ".";
-  sentence.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence.front())));
-  return sentence;
-}
-
-std::string text(const Tested& test) {
-  const auto line = [](const char* what, double before, double after, const char* unit) {
-    return fmt::format("  {}  {:8.1f} -> {:.1f} {}\n", what, 1000.0 * before, 1000.0 * after, unit);
-  };
-  return fmt::format(
-             "\n{} kept for the test, nominal -> calibrated (rms):\n",
-             test.names.size() == 1 ? "1 drive" : fmt::format("{} drives", test.names.size())) +
-         line("end point off by        ", rms_end(test.nominal), rms_end(test.calibrated), "mm") +
-         line("heading off by, per metre", rms_heading_per_metre(test.nominal),
-              rms_heading_per_metre(test.calibrated), "mrad/m");
-}
-
-/// "95 ms early", "20 ms early to 30 ms late" where sessions differ.
-std::string lateness(double first, double last) {
-  const auto words = [](double late) {
-    return fmt::format("{:.0f} ms {}", 1000.0 * std::abs(late), late < 0.0 ? "early" : "late");
-  };
-  const std::string one = words(first);
-  const std::string other = words(last);
-  return one == other ? one : one + " to " + other;
-}
-
-std::string text(const TruthAlignment& truth) {
-  double first = std::numeric_limits<double>::infinity();
-  double last = -first;
-  for (const auto& [session, clock] : truth.clocks) {
-    first = std::min(first, clock.late);
-    last = std::max(last, clock.late);
-  }
-  return fmt::format(
-      "  truth: the point tracked is {:.1f} mm ahead and {:.1f} mm left of the axle's centre, its\n"
-      "  heading is off by {:.1f} mrad, its rows are {} at the start\n",
-      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, lateness(first, last));
-}
-
-std::string text(const WheelCalibration& found, const CalibrationValidation& held,
-                 const std::optional<Tested>& test) {
-  const auto [mood, said] = verdict(held);
-  std::string out = verdict_text(mood, said) + "\n";
-  TextTable table;
-  table.columns = {Align::left, Align::right, Align::left};
-  const auto row = [&table](const char* name, const std::optional<Calibrated>& one,
-                            const char* unit) {
-    if (!one) return;
-    const QuantityText cells = quantity_text(one->value, one->sd);
-    table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit});
-  };
-  table.columns.push_back(Align::left);
-  row("E_d  right wheel / left wheel", found.diameter_ratio, "");
-  row("E_b  wheelbase / nominal", found.wheelbase_ratio, "");
-  row("E_s  true / measured travel", found.scale, "");
-  row("k    left wheel's noise", found.noise_left, "m^1/2");
-  row("k    right wheel's noise", found.noise_right, "m^1/2");
-  for (const DriveConstant& one : found.constants) {
-    const std::string name(facts_of(one.channel).does_what);
-    const std::string unit(facts_of(one.channel).unit);
-    const double size = unit.empty() ? 100.0 : 1.0;
-    const QuantityText cells = quantity_text(size * one.g.value, size * one.g.sd);
-    table.rows.push_back({name, cells.value, "\u00b1 " + cells.error, unit.empty() ? "%" : unit});
-  }
-  out += "\n" + table_text(table);
-  const double dispersion = found.dof > 0 ? found.chi2 / found.dof : 0.0;
-  out += fmt::format("\n  chi2/dof {:.3f} with {} degrees of freedom\n", dispersion, found.dof);
-  if (dispersion > kFarTooLarge) {
-    out += fmt::format(
-        "  errors are {0:.1f} times what the model's noise allows: take the \u00b1 {0:.1f} times "
-        "as "
-        "large\n",
-        std::sqrt(dispersion));
-  }
-  if (!found.truth.clocks.empty()) out += text(found.truth);
-  if (test) out += text(*test);
-  for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";
-  if (!found.settled) {
-    out += "\n" + warning_text(
-                      "the last round still moved an estimate by more than a tenth of its standard "
-                      "error: wheels that differ in these figures alone do not explain the "
-                      "recordings (trussmap diagnose looks for what does)");
-  }
-  return out;
-}
-
 void run_calibrate(const CalibrateOptions& options) {
   Progress progress({{"reading", 10}, {"calibrating", 45}, {"predicting held-out legs", 45}});
   progress.next();
@@ -262,7 +135,7 @@ void run_calibrate(const CalibrateOptions& options) {
   warn_of_mistakes(recordings, model, options.model);
   WheelCalibration found;
   CalibrationValidation held;
-  std::optional<Tested> test;
+  std::optional<TestedDrives> test;
   const CalibrationOptions how = calibration_options(options);
   try {
     progress.next();
@@ -279,15 +152,16 @@ void run_calibrate(const CalibrateOptions& options) {
     files.emplace_back(options.json, json(found, held, test).dump(2) + "\n");
   }
   if (options.page.wanted()) {
-    add_page(files,
-             with_drive(truth_page({found, held.nominal, held.calibrated, page_verdict(held)},
-                                   subject_of(options.recordings, options.model)),
-                        model.robot, recordings),
-             options.page);
+    add_page(
+        files,
+        with_drive(truth_page({found, held.nominal, held.calibrated, calibration_verdict(held)},
+                              subject_of(options.recordings, options.model)),
+                   model.robot, recordings),
+        options.page);
   }
   files.write();
   progress.end();
-  fmt::print("{}", text(found, held, test));
+  fmt::print("{}", calibration_text(found, held, test, style_of(stdout)));
 }
 
 }  // namespace

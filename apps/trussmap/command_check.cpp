@@ -8,7 +8,7 @@
 #include "terminal.hpp"
 #include "trussmap/check.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -48,16 +48,8 @@ void run_check(const CheckCommand& options) {
   const std::vector<CheckFinding> findings =
       check_recordings(recordings, model ? &*model : nullptr, options.model);
   if (!options.json.empty()) write_files({{options.json, json_text(findings)}});
-  for (const CheckFinding& one : findings) {
-    fmt::print("{}", shortened_words(fmt::format("{}, {}: {}: {}\n    {}\n", one.file,
-                                                 one.column.empty() ? "all" : one.column, one.kind,
-                                                 one.evidence, one.remedy)));
-  }
-  if (findings.empty()) {
-    fmt::print("{}\n", verdict_text(Mood::good, "nothing found: no column contradicts another"));
-    return;
-  }
-  throw AnswerIsNo();
+  fmt::print("{}", check_text(findings, style_of(stdout)));
+  if (!findings.empty()) throw AnswerIsNo();
 }
 
 }  // namespace

@@ -12,10 +12,9 @@
 #include "trussmap/diagnose.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -98,106 +97,6 @@ ordered_json json(const Diagnosis& result) {
       {"warnings", result.warnings}};
 }
 
-/// In the unit that suits the larger of it and what stands beside it.
-std::string length(double metres, double beside) {
-  return std::max(metres, beside) < 1.0 ? fmt::format("{:.1f} mm", 1e3 * metres)
-                                        : fmt::format("{:.3f} m", metres);
-}
-
-void print_verdict(const Diagnosis& result) {
-  if (result.verdict != Diagnosis::Verdict::missing) {
-    const bool good = result.verdict == Diagnosis::Verdict::nothing_missing;
-    fmt::print("{}\n", verdict_text(good ? Mood::good : Mood::bad, verdict_in_words(result)));
-  }
-  for (const Finding* found : found_by(result)) {
-    const Finding& one = *found;
-    const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
-    fmt::print("{}\n", verdict_text(mood, in_words(one)));
-    for (const LookAlike& rival : one.look_alikes) {
-      if (rival.told_apart()) {
-        fmt::print(
-            "  looks much like it: {} ({}), cosine {:.3f}; all measurements tell it apart (chi^2 "
-            "{:.0f} behind)\n",
-            rival.effect.name, formula_of(rival.effect), rival.cosine, rival.behind);
-      } else {
-        fmt::print("  looks the same here: {} ({}), cosine {:.3f}\n", rival.effect.name,
-                   formula_of(rival.effect), rival.cosine);
-      }
-    }
-  }
-  if (!result.missing.empty() && !result.held_out.legs.empty()) {
-    const bool several = result.findings.size() > 1 && !result.findings[1].joint.empty();
-    const char* what = several ? "them" : "it";
-    const double without = result.held_out.arrival_rms;
-    const double with = result.with_missing.arrival_rms;
-    fmt::print("  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n",
-               what, length(without, with), what, length(with, without),
-               result.held_out.legs.size());
-  }
-  if (result.next_drive) fmt::print("  to tell them apart: {}\n", in_words(result.next_drive));
-}
-
-/// Noise laws and single events that are significant.
-void print_others(const Diagnosis& result, std::size_t count) {
-  std::size_t shown = 0;
-  const bool estimated = result.under && result.under->noise.changed();  // shown by itself
-  for (const NoiseTest& one : estimated ? std::vector<NoiseTest>() : result.noise) {
-    if (one.p_adjusted >= kSignificance || shown >= 2) continue;
-    if (shown++ == 0) fmt::print("\nMore noise than the model states\n");
-    fmt::print("  {}: {} (score {:.1f}, p {})\n", one.law, in_words(one), one.score,
-               probability_text(one.p_adjusted));
-  }
-  shown = 0;
-  for (const EventTest& one : result.events) {
-    if (one.p_adjusted >= kSignificance || shown >= count) continue;
-    if (shown++ == 0) fmt::print("\nSingle events\n");
-    fmt::print("  {} {}: {} (score {:.1f}, p {})\n", name_of(one.kind), one.name, in_words(one),
-               one.score, probability_text(one.p_adjusted));
-  }
-}
-
-/// What is significant by itself and yet absent is explained by what comes before it.
-std::string status_text(const Finding& one) {
-  if (one.implausible && one.status != Status::missing && one.p_adjusted < kSignificance)
-    return "implausibly large";
-  if (one.status == Status::absent && one.p_adjusted < kSignificance)
-    return "explained by the above";
-  return std::string(name_of(one.status));
-}
-
-void print_candidates(const Diagnosis& result, std::size_t count) {
-  constexpr std::size_t kWidestCell = 36;  // characters; --json has all of it
-  TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
-                  {},
-                  true,
-                  2};
-  table.rows.push_back({"best candidates", "channel x shape", "chi2 less (dof)", "p, adjusted",
-                        "held out [mm]", "status"});
-  for (std::size_t k = 0; k < std::min(count, result.findings.size()); ++k) {
-    const Finding& one = result.findings[k];
-    table.rows.push_back(
-        {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
-         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
-         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
-  }
-  fmt::print("\n{}; {} tests\n{}", fit_in_words(result.chi2, result.dof, result.coefficients),
-             result.tried, table_text(table));
-}
-
-void print(const Diagnosis& result, const DiagnoseCommand& options) {
-  print_verdict(result);
-  print_candidates(result, options.list);
-  print_others(result, options.list);
-  if (!result.unobservable.empty()) fmt::print("\nNot to be seen in these data\n");
-  for (const Unobservable& one : result.unobservable) {
-    const Advice advice = advice_on(one);
-    fmt::print("  {}: {}; {}\n", one.effect.name, advice.why, advice.drive);
-  }
-  if (!result.lacks.empty()) fmt::print("\nWhat these data lack\n");
-  for (const std::string& line : in_words(result.lacks)) fmt::print("  {}\n", line);
-  for (const std::string& warning : result.warnings) fmt::print("{}", warning_text(warning));
-}
-
 void run_diagnose(const DiagnoseCommand& options) {
   std::vector<ProgressStep> steps{
       {"reading", 0.5}, {"fitting the map", 2.5}, {"looking for what is missing", 50}};
@@ -229,13 +128,8 @@ void run_diagnose(const DiagnoseCommand& options) {
   }
   files.write();
   progress.end();
-  print(result, options);
-  if (result.under) {
-    fmt::print("\n");
-    print_noise(result.under->noise);
-  }
-  print_budget(budget);
-  print_notes(input);
+  fmt::print("{}{}", diagnosis_text(result, budget, options.list, style_of(stdout)),
+             notes_text(input.notes));
 }
 
 }  // namespace

@@ -13,10 +13,9 @@
 #include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
-#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -67,65 +66,6 @@ ordered_json json(const Discovery& result) {
           {"noise_estimated",
            result.last.under ? noise_json(result.last.under->noise) : ordered_json(nullptr)},
           {"warnings", result.found.warnings}};
-}
-
-void print_steps(const Discovery& result, bool noise_found) {
-  const bool reckoned = result.steps.front().reckoned_30.has_value();
-  TextTable table{{Align::left, Align::right, Align::right, Align::right, Align::right,
-                   Align::right, Align::right},
-                  {},
-                  true,
-                  2};
-  table.rows.push_back({"model", "chi2", "dof", "predicted", "held out [mm]", "predicted", "legs"});
-  if (reckoned) {
-    table.columns.insert(table.columns.end(), {Align::right, Align::right});
-    table.rows.back().insert(table.rows.back().end(), {"10 s [mm]", "30 s [mm]"});
-  }
-  for (const DiscoveryStep& step : result.steps) {
-    std::string name = step.added ? "+ " + step.added->name : "as given";
-    for (const std::string& dropped : step.dropped) name += ", - " + dropped;
-    const double before =
-        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.predicted_chi2;
-    table.rows.push_back(
-        {name, fmt::format("{:.1f}", step.chi2), fmt::format("{}", step.dof),
-         step.added ? fmt::format("{:.1f}", before) : "-",
-         step.held_out.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * step.held_out.arrival_rms),
-         step.added ? fmt::format("{:.1f}", 1e3 * step.predicted.arrival_rms) : "-",
-         fmt::format("{}", step.held_out.legs.size())});
-    if (!reckoned) continue;
-    for (const std::optional<double>& error : {step.reckoned_10, step.reckoned_30}) {
-      table.rows.back().push_back(error ? fmt::format("{:.0f}", 1e3 * *error) : "-");
-    }
-  }
-  fmt::print("\n{}", table_text(table));
-  const Diagnosis& last = result.last;
-  const bool anew = noise_found || (last.under && last.under->noise.changed());
-  if (result.steps.size() > 1 && anew) {
-    fmt::print("  the noise is estimated anew in every line: chi2 is no measure across them\n");
-  }
-  if (reckoned) {
-    fmt::print("  10 s, 30 s: dead reckoning over so long, against the fit's own path (rms)\n");
-  }
-}
-
-/// `noise_found`: the model found has other noise than the one given.
-void print(const Discovery& result, bool noise_found) {
-  fmt::print("{}\n",
-             verdict_text(result.consistent ? Mood::good : Mood::bad, verdict_in_words(result)));
-  for (const EffectEstimate& one : result.found.effects) {
-    fmt::print("  {}: {}\n", one.effect.name, in_words(one.effect, one.sd));
-  }
-  print_steps(result, noise_found);
-  for (const DiscoveryStep& step : result.steps) {
-    for (const LookAlike& rival : step.look_alikes) {
-      if (rival.told_apart()) continue;
-      fmt::print("  instead of {} it could be: {} ({}), cosine {:.3f}\n", step.added->name,
-                 rival.effect.name, formula_of(rival.effect), rival.cosine);
-    }
-  }
-  for (const std::string& warning : result.found.warnings) {
-    fmt::print("{}", warning_text(warning));
-  }
 }
 
 /// Tells how far a discovery is: as if one effect were found, and one more whenever there is.
@@ -189,19 +129,8 @@ void run_discover(const DiscoverCommand& options) {
   }
   files.write();
   told.end();
-  const bool noise_found = !(result.found.model.noise == input.model.noise);
-  print(result, noise_found);
-  if (result.last.under) {
-    fmt::print("\n");
-    if (noise_found && !result.last.under->noise.changed()) {
-      fmt::print(
-          "Noise is estimated, in an earlier step, and not as stated: the model found has it\n");
-    } else {
-      print_noise(result.last.under->noise);
-    }
-  }
-  print_budget(budget);
-  print_notes(input);
+  fmt::print("{}{}", discovery_text(result, input.model.noise, budget, style_of(stdout)),
+             notes_text(input.notes));
 }
 
 }  // namespace

@@ -13,10 +13,9 @@
 #include "trussmap/evidence.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -78,55 +77,6 @@ ordered_json json(const EffectGain& result) {
           {"warnings", after.warnings}};
 }
 
-void print_estimates(const EffectGain& result) {
-  for (const EffectEstimate& one : result.with.effects) {
-    const bool none = std::all_of(one.effect.coefficients.begin(), one.effect.coefficients.end(),
-                                  [](double a) { return a == 0.0; });
-    const bool unseen = none && !one.not_fitted.empty();
-    fmt::print("{}\n",
-               verdict_text(unseen ? Mood::doubt : Mood::good,
-                            fmt::format("{}: {}", one.effect.name,
-                                        unseen ? "not fitted" : in_words(one.effect, one.sd))));
-    TextTable table{{Align::left, Align::right, Align::right}, {}, false, 4};
-    for (std::size_t k = 0; k < one.effect.coefficients.size(); ++k) {
-      const QuantityText text = quantity_text(one.effect.coefficients[k], one.sd[k]);
-      const Shape& shape = one.effect.shape[k % one.effect.shape.size()];
-      table.rows.push_back({fmt::format("{} x {}", name_of(one.effect.channel), shape.text()),
-                            text.value, text.error.empty() ? "" : "+- " + text.error});
-    }
-    fmt::print("{}", table_text(table));
-    for (const std::string& why : unfitted_words(one)) fmt::print("    {}\n", why);
-  }
-}
-
-void print(const EffectGain& result) {
-  print_estimates(result);
-  if (result.with.model.effects.empty()) {
-    fmt::print("under the noise found: {}, p {}\n\n",
-               fit_in_words(result.with.chi2, result.with.dof, result.with.coefficients),
-               probability_text(result.with.p_value));
-    for (const std::string& warning : result.with.warnings) fmt::print("{}", warning_text(warning));
-    return;
-  }
-  const ModelFit& before = result.without;
-  const ModelFit& after = result.with;
-  TextTable table{
-      {Align::left, Align::right, Align::right, Align::right, Align::right}, {}, true, 2};
-  table.rows.push_back({"", "chi2", "dof", "p", "held out [mm]"});
-  const auto row = [&table](const char* name, const ModelFit& fit, const HeldOut& held) {
-    table.rows.push_back({name, fmt::format("{:.1f}", fit.chi2), fmt::format("{}", fit.dof),
-                          probability_text(fit.p_value),
-                          held.legs.empty() ? "-" : fmt::format("{:.1f}", 1e3 * held.arrival_rms)});
-  };
-  row("without effects", before, result.held_out_without);
-  row("with them", after, result.held_out_with);
-  fmt::print("\n{}", table_text(table));
-  fmt::print("  chi2 was predicted to fall by {:.1f}, and fell by {:.1f}\n",
-             result.predicted_decrease, before.chi2 - after.chi2);
-  fmt::print("  {}\n", in_words(result.held_out_with));
-  for (const std::string& warning : after.warnings) fmt::print("{}", warning_text(warning));
-}
-
 void run_fit(const FitCommand& options) {
   std::vector<ProgressStep> steps{{"reading", 0.5},
                                   {"fitting without effects", 2.5},
@@ -167,12 +117,7 @@ void run_fit(const FitCommand& options) {
   }
   files.write();
   progress.end();
-  print(result);
-  if (noise) {
-    if (!result.with.model.effects.empty()) fmt::print("\n");
-    print_noise(*noise);
-  }
-  print_notes(input);
+  fmt::print("{}{}", fit_text(result, noise, style_of(stdout)), notes_text(input.notes));
 }
 
 }  // namespace

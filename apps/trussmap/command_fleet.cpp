@@ -81,7 +81,7 @@ void run_add(const AddCommand& options) {
   fmt::print("{}: robot {} on {}, chi2 {:.1f} ({} dof), {} coefficients\n",
              escaped_controls(options.store), escaped_controls(row.robot), row.date, row.chi2,
              row.dof, row.columns.size());
-  print_notes(input);
+  fmt::print("{}", notes_text(input.notes));
 }
 
 void run_merge(const MergeCommand& options) {

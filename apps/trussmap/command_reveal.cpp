@@ -5,6 +5,8 @@
 #include "commands.hpp"
 #include "effect_options.hpp"
 #include "sealed_answer.hpp"
+#include "terminal.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -25,7 +27,7 @@ void run_reveal(const RevealOptions& options) {
   const nlohmann::ordered_json answer = opened(options.folder);
   if (!options.json.empty()) write_file(options.json, answer.dump(2) + "\n");
   fmt::print("revealed: what is hidden in {}\n\n{}", options.folder,
-             effects_table(answer.at("effects")));
+             effects_text(effects_from(answer.at("effects")), style_of(stdout)));
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "tape_options.hpp"
+#include "terminal.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/umbmark.hpp"
 #include "umbmark_output.hpp"
 
@@ -115,7 +117,7 @@ void run_umbmark(const UmbmarkOptions& options) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }
   files.write();
-  fmt::print("{}", umbmark_text(rounds, method_of(options)));
+  fmt::print("{}", square_text(rounds, method_of(options), style_of(stdout)));
 }
 
 constexpr const char* kFooter =

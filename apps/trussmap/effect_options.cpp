@@ -4,14 +4,16 @@
 
 #include "commands.hpp"
 #include "terminal.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/table.hpp"
+#include "trussmap/simulated_recording.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -59,25 +61,6 @@ Effect named_effect(const std::string& option) {
   }
 }
 
-/// Throws std::invalid_argument.
-Effect applicable(const Effect& effect) {
-  Effect result = effect;
-  const auto refuse = [&result](const std::string& what) {
-    throw std::invalid_argument(fmt::format("effect \"{}\" {}", result.name, what));
-  };
-  if (result.coefficients.empty()) refuse("has no coefficients, expected one per shape");
-  // A simulated recording is one session, the first.
-  if (result.per_session) {
-    if (result.coefficients.size() < result.shape.size()) {
-      refuse(fmt::format("has {} coefficients, expected {}, one per shape",
-                         result.coefficients.size(), result.shape.size()));
-    }
-    result.coefficients.resize(result.shape.size());
-    result.per_session = false;
-  }
-  return result;
-}
-
 }  // namespace
 
 void add_effect_options(const Command& command, EffectOptions& options) {
@@ -100,7 +83,7 @@ std::vector<Effect> effects_of(const EffectOptions& options) {
   for (const std::string& option : options.named) effects.push_back(named_effect(option));
   for (Effect& effect : effects) {
     try {
-      effect = applicable(effect);
+      effect = simulated_effect(effect);
     } catch (const std::invalid_argument& error) {
       if (effect.line > 0) throw InputError(options.model, effect.line, error.what());
       throw UsageError(error.what());
@@ -140,22 +123,17 @@ nlohmann::ordered_json effects_json(const std::vector<Effect>& effects) {
   return list;
 }
 
-std::string effects_table(const nlohmann::ordered_json& effects) {
-  TextTable table;
-  table.columns = {Align::left, Align::left, Align::right, Align::left, Align::left};
-  table.has_heading = true;
-  table.rows = {{"effect", "channel", "coefficient", "unit", "shape"}};
-  for (const auto& effect : effects) {
-    const std::string name = effect.at("name");
-    const CatalogueEntry* entry = find_entry(name);
-    for (std::size_t k = 0; k < effect.at("shape").size(); ++k) {
-      table.rows.push_back({k == 0 ? name : "", k == 0 ? effect.at("channel") : "",
-                            fmt::format("{:g}", effect.at("coefficients").at(k).get<double>()),
-                            entry == nullptr ? "" : std::string(entry->unit),
-                            effect.at("shape").at(k)});
-    }
+std::vector<Effect> effects_from(const nlohmann::ordered_json& list) {
+  std::vector<Effect> effects;
+  for (const auto& one : list) {
+    Effect effect;
+    effect.name = one.at("name");
+    effect.channel = channel_named(one.at("channel").get<std::string>());
+    for (const std::string shape : one.at("shape")) effect.shape.emplace_back(shape);
+    effect.coefficients = one.at("coefficients").get<std::vector<double>>();
+    effects.push_back(std::move(effect));
   }
-  return table_text(table);
+  return effects;
 }
 
 }  // namespace trussmap::app

@@ -36,7 +36,7 @@ void add_effect_options(const Command& command, EffectOptions& options);
 /// [{"name", "channel", "shape", "coefficients"}].
 [[nodiscard]] nlohmann::ordered_json effects_json(const std::vector<Effect>& effects);
 
-/// A table with a heading, a line per coefficient.
-[[nodiscard]] std::string effects_table(const nlohmann::ordered_json& effects);
+/// The same read back.
+[[nodiscard]] std::vector<Effect> effects_from(const nlohmann::ordered_json& list);
 
 }  // namespace trussmap::app

@@ -6,11 +6,11 @@
 #include "recording_warnings.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording_files.hpp"
-#include "trussmap/survey_comparison.hpp"
-#include "trussmap/table.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -77,27 +77,6 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
 
 namespace {
 
-std::size_t sightings_of(const std::vector<Recording>& recordings) {
-  std::size_t sum = 0;
-  for (const Recording& one : recordings) sum += one.sightings.size();
-  return sum;
-}
-
-/// Survey points that contradict a map made without the survey are no measurements.
-void leave_contradicting_points_out(ModelRecordings& input, const ModelFit& without_survey) {
-  LandmarkPositions positions;
-  for (const FittedLandmark& one : without_survey.landmarks) positions[one.name] = one.position;
-  for (Recording& recording : input.recordings) {
-    const SurveyComparison comparison = compare_with_survey(positions, recording.survey);
-    for (const std::string& name : comparison.contradicting) {
-      std::erase_if(recording.survey,
-                    [&name](const SurveyPoint& point) { return point.landmark == name; });
-      input.notes.push_back(
-          fmt::format("landmark {}: its survey contradicts all the others, and is left out", name));
-    }
-  }
-}
-
 /// Stretches of time are of recordings that are there.
 void check_stretches(const std::vector<Recording>& recordings,
                      const std::vector<std::string>& stretches) {
@@ -124,26 +103,6 @@ void check_stretches(const std::vector<Recording>& recordings,
   }
 }
 
-void take_frames(ModelRecordings& input, const ModelRecordingsOptions& options) {
-  double every = options.every.value_or(0.0);
-  if (!options.every && has_dense_frames(input.recordings)) {
-    FitOptions how = fit_options(options);
-    how.use_survey = false;
-    const ModelFit fit = fit_model(input.recordings, input.model, how);
-    every = lasting_errors(fit).lasts;
-    if (fit_options(options).use_survey) leave_contradicting_points_out(input, fit);
-  }
-  if (!(every > 0.0)) return;
-  std::vector<Recording> thinned = thinned_frames(input.recordings, every);
-  const std::size_t all = sightings_of(input.recordings);
-  const std::size_t used = sightings_of(thinned);
-  if (used == all) return;
-  input.recordings = std::move(thinned);
-  input.notes.push_back(
-      fmt::format("of {} sightings {} are used, one frame in {:g} s{}", all, used, every,
-                  options.every ? "" : ": errors of sightings last so long (--every 0: all)"));
-}
-
 }  // namespace
 
 std::vector<Recording> read_recordings(const std::vector<std::string>& folders) {
@@ -158,25 +117,21 @@ void take_wheels(std::vector<Recording>& recordings, const Robot& robot) {
 }
 
 ModelRecordings read_model_recordings(const ModelRecordingsOptions& options) {
-  ModelRecordings result;
-  result.recordings = read_recordings(options.recordings);
-  result.model = read_model(options.model, result.recordings);
-  take_wheels(result.recordings, result.model.robot);
-  check_stretches(result.recordings, options.exclude);
-  warn_of_mistakes(result.recordings, result.model, options.model);
-  take_frames(result, options);
-  return result;
-}
-
-void print_notes(const ModelRecordings& input) {
-  for (const std::string& note : input.notes) fmt::print("note: {}\n", shortened_words(note));
+  std::vector<Recording> recordings = read_recordings(options.recordings);
+  Model model = read_model(options.model, recordings);
+  take_wheels(recordings, model.robot);
+  check_stretches(recordings, options.exclude);
+  warn_of_mistakes(recordings, model, options.model);
+  PreparedRecordings prepared =
+      prepare_recordings(std::move(recordings), model, fit_options(options), options.every);
+  return {std::move(model), std::move(prepared.recordings), std::move(prepared.notes)};
 }
 
 FitOptions fit_options(const ModelRecordingsOptions& options) {
   const auto left_out = [&options](const char* what) {
     return std::find(options.without.begin(), options.without.end(), what) != options.without.end();
   };
-  FitOptions result;
+  FitOptions result = gated_fit(options.gate);
   result.use_survey = !left_out("survey");
   result.use_truth = !left_out("truth");
   result.use_fixes = !left_out("fixes");
@@ -187,8 +142,6 @@ FitOptions fit_options(const ModelRecordingsOptions& options) {
     if (result.excluded.size() <= place) result.excluded.resize(place + 1);
     result.excluded[place].push_back(one.time);
   }
-  if (options.gate > 0.0) result.gate = options.gate * options.gate;
-  result.most_left_out = kMostLeftOut;
   return result;
 }
 

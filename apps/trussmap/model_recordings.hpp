@@ -54,9 +54,6 @@ void take_wheels(std::vector<Recording>& recordings, const Robot& robot);
 /// Throws InputError, with the model file's line where an effect cannot be applied.
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
 
-/// A line for each note.
-void print_notes(const ModelRecordings& input);
-
 /// --without, --exclude and --gate; the effects are fitted.
 [[nodiscard]] FitOptions fit_options(const ModelRecordingsOptions& options);
 [[nodiscard]] CompareOptions compare_options(const ModelRecordingsOptions& options);

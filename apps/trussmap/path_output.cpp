@@ -15,8 +15,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr std::size_t kLeftOutShown = 10;
-
 /// How many fixes, or loops, and how many of them were left out.
 struct TieCount {
   std::size_t all = 0;
@@ -33,43 +31,6 @@ TieCount count_of(const std::vector<BuiltPath>& paths, bool loops) {
     }
   }
   return count;
-}
-
-void print_left_out(const std::vector<BuiltPath>& paths, bool loops) {
-  const TieCount count = count_of(paths, loops);
-  if (count.all == 0) return;
-  fmt::print("  {:<28} {:>8}  of {}\n", loops ? "loops left out" : "fixes left out", count.left_out,
-             count.all);
-  std::size_t shown = 0;
-  for (const BuiltPath& path : paths) {
-    const std::string where = paths.size() > 1 ? shortened_words(path.recording) + ", " : "";
-    for (const PathTie& tie : path.ties) {
-      if (tie.loop != loops || !tie.left_out || ++shown > kLeftOutShown) continue;
-      if (loops) {
-        fmt::print("    {}t = {:.3f} s to {:.3f} s: {:.2f} m from where the path has the robot\n",
-                   where, tie.t, tie.t2, tie.misfit);
-      } else {
-        fmt::print("    {}t = {:.3f} s: {:.2f} m from where the path has the antenna\n", where,
-                   tie.t, tie.misfit);
-      }
-    }
-  }
-  if (shown > kLeftOutShown) {
-    fmt::print("    and {} more (--json lists all)\n", shown - kLeftOutShown);
-  }
-}
-
-void print_truth(const PathOnTruth& truth) {
-  fmt::print("\n  against the truth of {} rows, after rotation and translation:\n", truth.rows);
-  fmt::print("  {:<28} {:>8.3f} m\n", "rms error of the path", truth.rms);
-  fmt::print("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", truth.rms_dead_reckoning);
-}
-
-void print_path(const BuiltPath& path) {
-  fmt::print("  {:<28} {:>8.3f} m  (median; worst {:.3f} m, t = {:.1f} s)\n",
-             "standard error of the path", path.median_sd, path.worst_sd, path.worst_t);
-  fmt::print("  {:<28} {:>8.3f} m  (rms, after rotation and translation)\n",
-             "dead reckoning is off by", path.rms_dead_reckoning);
 }
 
 }  // namespace
@@ -102,31 +63,6 @@ nlohmann::ordered_json paths_json(const std::vector<BuiltPath>& paths) {
     result.push_back(std::move(one));
   }
   return result;
-}
-
-void print_paths_built(const std::vector<BuiltPath>& paths) {
-  double length = 0.0;
-  for (const BuiltPath& path : paths) length += path.length;
-  fmt::print("no landmark was sighted: the path of {:.1f} m, adjusted to its {}\n", length,
-             count_of(paths, true).all == 0    ? "fixes"
-             : count_of(paths, false).all == 0 ? "loops"
-                                               : "fixes and loops");
-}
-
-void print_paths(const BuiltMap& built) {
-  const bool several = built.paths.size() > 1;
-  if (!several) print_path(built.paths.front());
-  fmt::print("  {:<28} {:>8.2f}  (chi^2/dof of {} degrees of freedom; 1: as the model says)\n",
-             "dispersion of the errors", built.quality.dispersion, built.fit.dof);
-  print_left_out(built.paths, false);
-  print_left_out(built.paths, true);
-  for (const BuiltPath& path : built.paths) {
-    if (several) {
-      fmt::print("\n  {}, {:.1f} m:\n", shortened_words(path.recording), path.length);
-      print_path(path);
-    }
-    if (path.on_truth) print_truth(*path.on_truth);
-  }
 }
 
 }  // namespace trussmap::app

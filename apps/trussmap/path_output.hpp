@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What is built of recordings without landmarks, their paths, on the terminal and as JSON.
+// What is built of recordings without landmarks, their paths, as JSON.
 #pragma once
 
 #include "trussmap/build_map.hpp"
@@ -14,11 +14,5 @@ namespace trussmap::app {
 
 /// Figures of each path, and every fix and loop that was left out.
 [[nodiscard]] nlohmann::ordered_json paths_json(const std::vector<BuiltPath>& paths);
-
-/// The headline.
-void print_paths_built(const std::vector<BuiltPath>& paths);
-
-/// The figures; `built` has paths.
-void print_paths(const BuiltMap& built);
 
 }  // namespace trussmap::app

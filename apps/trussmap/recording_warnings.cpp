@@ -18,7 +18,7 @@ void warn_of_mistakes(const std::vector<Recording>& recordings, const Model& mod
   // What progress has written goes first.
   if (can_rewrite_lines(stderr)) fmt::print(stderr, "\r\033[K");
   for (const CheckFinding& one : findings) {
-    fmt::print(stderr, "{}", warning_text(in_words(one), is_coloured(stderr)));
+    fmt::print(stderr, "{}", trussmap::warning_text(in_words(one), style_of(stderr)));
   }
 }
 

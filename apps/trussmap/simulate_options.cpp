@@ -16,11 +16,6 @@
 namespace trussmap::app {
 namespace {
 
-constexpr double kGapSpread = 0.4;     // uneven: gaps of 1 -+ this times the spacing,
-constexpr double kJitterShare = 0.06;  // and landmarks moved by up to this times the spacing
-constexpr double kRestShare = 0.1;
-constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
-
 /// Kinds of rough noise.
 Check rough_kinds() {
   return {[](const std::string& text) -> std::string {
@@ -177,24 +172,7 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
   add_positive("--reach", options.reach, "Reach of the range sensor [m]");
 }
 
-Robot geometry_of(const SimulateOptions& options) {
-  Robot robot = usual_robot(drive_named(options.drive), options.wheelbase, options.length);
-  robot.wheel_left = options.wheel_left;
-  return robot;
-}
-
 }  // namespace
-
-Mesh make_mesh(const SimulateOptions& options) {
-  const MeshSize size = parse_mesh_size(options.mesh);
-  if (!options.uneven) return even_mesh(size, options.spacing);
-  std::mt19937_64 random = random_stream(options.seed, Stream::mesh);
-  const double shortest = (1.0 - kGapSpread) * options.spacing;
-  const double longest = (1.0 + kGapSpread) * options.spacing;
-  const std::vector<double> x = random_lines(size.columns, shortest, longest, random);
-  const std::vector<double> y = random_lines(size.rows, shortest, longest, random);
-  return jittered(mesh_of_lines(x, y), kJitterShare * options.spacing, random);
-}
 
 void check_drive_options(const Command& command, const SimulateOptions& options) {
   const auto refuse_unless = [&](const char* option, std::initializer_list<const char*> drives) {
@@ -207,78 +185,6 @@ void check_drive_options(const Command& command, const SimulateOptions& options)
   refuse_unless("--length", {"tricycle", "ackermann", "omni3", "mecanum", "wheels"});
   refuse_unless("--wheel-left", {"ackermann"});
   refuse_unless("--steer-noise", {"tricycle", "ackermann"});
-}
-
-WheeledRobot make_robot(const SimulateOptions& options) {
-  WheeledRobot robot;
-  robot.geometry = geometry_of(options);
-  robot.noise.steer = options.steer_noise;
-  robot.compass = !options.no_compass;
-  robot.gyro = options.gyro;
-  robot.noise.gyro = options.gyro_noise;
-  robot.noise.gyro_walk = options.gyro_walk;
-  robot.range_sensor = options.range_sensor || options.ranges_alone || options.bearings_alone;
-  if (options.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
-  if (options.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;
-  robot.loops = options.loops;
-  robot.markers = options.markers;
-  robot.noise.yaw = options.yaw_noise;
-  robot.noise.loop = options.loop_noise;
-  robot.noise.loop_heading = options.loop_heading_noise;
-  robot.reach = options.reach;
-  robot.noise.left = options.wheel_noise;
-  robot.noise.right = options.wheel_noise;
-  robot.noise.compass = options.compass_noise;
-  robot.noise.survey = options.survey_noise;
-  robot.noise.fix = options.fix_noise;
-  robot.fix_rate = options.fix_rate;
-  if (!options.rough.empty()) {
-    robot.rough = parse_rough(options.rough);
-    if (options.no_compass) robot.rough.haze = false;
-    if (rough_names(robot.rough).empty()) {
-      throw UsageError(
-          "simulate: --rough haze is noise of a compass, which --no-compass leaves out");
-    }
-  }
-  if (options.noise_free) robot.noise = kNoiseFree;
-  return robot;
-}
-
-DrivingStyle make_style(const SimulateOptions& options, const std::vector<Effect>& effects) {
-  DrivingStyle style;
-  style.slowest = options.speeds.at(0);
-  style.fastest = options.speeds.at(1);
-  style.slowest_turn = options.turn_rates.at(0);
-  style.fastest_turn = options.turn_rates.at(1);
-  style.ramp = options.ramp;
-  style.covariates = options.covariates;
-  const bool delayed = std::any_of(effects.begin(), effects.end(),
-                                   [](const Effect& one) { return one.channel == Channel::delay; });
-  style.overrun = options.overrun >= 0.0 ? options.overrun : delayed ? kDelayOverrun : 0.0;
-  style.standing = options.noise_free ? 0.0 : options.sighting_noise;
-  style.rest_share = options.rests ? kRestShare : 0.0;
-  style.full_spins = options.full_turns;
-  return style;
-}
-
-Model nominal_model(const SimulateOptions& options) {
-  Model model;
-  const SensorNoise sensors;
-  model.robot = geometry_of(options);
-  model.noise.steer = options.steer_noise;
-  model.noise.left = options.wheel_noise;
-  model.noise.right = options.wheel_noise;
-  model.noise.compass = options.compass_noise;
-  model.noise.sighting = options.sighting_noise;
-  model.noise.range = sensors.range;
-  model.noise.bearing = sensors.bearing;
-  model.noise.survey = options.survey_noise;
-  if (options.gyro) model.noise.gyro = options.gyro_noise;
-  model.noise.fix = options.fix_noise;
-  if (options.markers) model.noise.yaw = options.yaw_noise;
-  model.noise.loop = options.loop_noise;
-  model.noise.loop_heading = options.loop_heading_noise;
-  return model;
 }
 
 void add_simulate_options(const Command& command, SimulateOptions& options) {

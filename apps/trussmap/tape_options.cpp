@@ -4,9 +4,7 @@
 
 #include "commands.hpp"
 #include "option_checks.hpp"
-#include "terminal.hpp"
 #include "trussmap/model_file.hpp"
-#include "trussmap/table.hpp"
 
 #include <charconv>
 
@@ -88,17 +86,6 @@ TapeRobot simulated_robot(const TapeOptions& options, double wheelbase) {
   robot.tape_sd = options.scatter;
   robot.tape_heading_sd = options.scatter_heading;
   return robot;
-}
-
-std::vector<std::string> quantity_cells(const Estimate& estimate) {
-  const QuantityText text = quantity_text(estimate.value, estimate.standard_error);
-  return {text.value, text.error.empty() ? "" : "\u00b1 " + text.error};
-}
-
-std::string warnings_text(const std::vector<std::string>& warnings) {
-  std::string text = warnings.empty() ? "" : "\n";
-  for (const std::string& warning : warnings) text += warning_text(warning);
-  return text;
 }
 
 }  // namespace trussmap::app

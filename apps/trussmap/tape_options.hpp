@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// What the calibrations with a tape measure have in common: the model they start from, the robot
-// that rehearses them, and tables of estimates.
+// What the calibrations with a tape measure have in common: the model they start from, and the
+// robot that rehearses them.
 #pragma once
 
 #include "command_line.hpp"
 #include "page_runtime.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/umbmark.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -46,11 +45,5 @@ void check_source(const Command& command, bool has_files);
 
 /// The robot to rehearse with.
 [[nodiscard]] TapeRobot simulated_robot(const TapeOptions& options, double wheelbase);
-
-/// Cells of a table: value, "±", standard error, unit.
-[[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
-
-/// "warning: ..." lines.
-[[nodiscard]] std::string warnings_text(const std::vector<std::string>& warnings);
 
 }  // namespace trussmap::app

@@ -5,7 +5,7 @@
 // anywhere else (a file, a pipe, NO_COLOR, TERM=dumb).
 #pragma once
 
-#include "trussmap/table.hpp"
+#include "trussmap/texts.hpp"
 
 #include <cstdio>
 #include <string>
@@ -18,18 +18,13 @@ namespace trussmap::app {
 /// The same, and colour is not unwanted (NO_COLOR, https://no-color.org).
 [[nodiscard]] bool is_coloured(std::FILE* file);
 
-enum class Mood { good, doubt, bad };
+/// The style of text that suits it.
+[[nodiscard]] TextStyle style_of(std::FILE* file);
 
-/// A sentence that begins with its verdict, "misfit: ...": the word up to the colon in colour and
-/// bold; all of it where there is no colon.
-[[nodiscard]] std::string verdict_text(Mood mood, std::string_view sentence,
-                                       bool coloured = is_coloured(stdout));
+// Parts of texts (texts.hpp) for standard output.
 
-/// format_table, its heading dim.
-[[nodiscard]] std::string table_text(const TextTable& table, bool coloured = is_coloured(stdout));
-
-/// "warning: ..." and an end of line.
-[[nodiscard]] std::string warning_text(std::string_view warning,
-                                       bool coloured = is_coloured(stdout));
+[[nodiscard]] std::string verdict_text(Mood mood, std::string_view sentence);
+[[nodiscard]] std::string table_text(const TextTable& table);
+[[nodiscard]] std::string warning_text(std::string_view warning);
 
 }  // namespace trussmap::app

@@ -58,6 +58,10 @@ struct PageRuntime {
 /// The file. Its content security policy lets this script run and no other, and loads nothing.
 [[nodiscard]] std::string render_page(const Page& page, const PageRuntime& runtime);
 
+/// The same as a part of another page, such as a notebook's: verdict, figures, answers, tables and
+/// charts as pictures; without a script, and with the little style that it needs.
+[[nodiscard]] std::string render_section(const Page& page);
+
 struct DrawnChart {
   std::string id;   ///< small letters, digits, -
   std::string svg;  ///< a file

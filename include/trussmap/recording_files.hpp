@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,10 @@ namespace trussmap {
 /// Reads a folder, strictly: InputError with file and line for whatever is wrong, nothing is
 /// guessed. sightings.csv may be absent only where there is a truth.csv, fixes.csv or loops.csv.
 [[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
+
+/// What a covariate may be called: a letter, then letters, digits and _, and no name that shapes or
+/// columns have.
+[[nodiscard]] bool is_covariate_name(std::string_view name);
 
 /// Texts by the names of their files.
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;

@@ -5,11 +5,11 @@
 //
 // Five targets to link. trussmap::map has what stands in arc, build_map, channel,
 // corrected_odometry, dead_reckoning, error, fit_model, gate, landmark_map, map_builder, model,
-// noise_fit, planar, pose_graph, recording, survey_comparison, test_path and truss; trussmap::store
-// map_store and the store of fleet, too. log_files takes trussmap::logs, distributed
-// trussmap::distributed. All the others, and effects in a model (a shape is read from its text),
-// take trussmap::trussmap. All include trussmap::map, and trussmap::logs trussmap::trussmap. Find
-// the first alone by find_package(trussmap COMPONENTS map).
+// noise_fit, planar, pose_graph, recording, stop, survey_comparison, test_path, threads and truss;
+// trussmap::store map_store and the store of fleet, too. log_files takes trussmap::logs,
+// distributed trussmap::distributed. All the others, and effects in a model (a shape is read from
+// its text), take trussmap::trussmap. All include trussmap::map, and trussmap::logs
+// trussmap::trussmap. Find the first alone by find_package(trussmap COMPONENTS map).
 //
 // Threads. Functions share nothing that is changed: they may run in as many threads as there are,
 // on the same recordings, models and maps. An object may be read (const calls) by several threads
@@ -45,14 +45,18 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/pose_graph.hpp"
+#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/shape.hpp"
 #include "trussmap/shards.hpp"
+#include "trussmap/simulated_recording.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/stop.hpp"
 #include "trussmap/survey_comparison.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/test_path.hpp"
+#include "trussmap/texts.hpp"
 #include "trussmap/threads.hpp"
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/truss.hpp"

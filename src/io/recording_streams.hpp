@@ -7,15 +7,11 @@
 #include "trussmap/recording.hpp"
 
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 namespace trussmap {
 
 /// landmark,x,y[,sd][,heading]. Throws InputError with file and line.
 [[nodiscard]] std::vector<SurveyPoint> read_survey(const std::filesystem::path& file);
-
-/// A letter, then letters, digits and _, and no name that shapes or columns have.
-[[nodiscard]] bool is_covariate_name(std::string_view name);
 
 }  // namespace trussmap

@@ -25,6 +25,7 @@
 #pragma once
 
 #include "linalg/sparse_cholesky.hpp"
+#include "trussmap/stop.hpp"
 
 #include <algorithm>
 #include <concepts>
@@ -106,6 +107,7 @@ DescentResult<typename Problem::State> levenberg_marquardt(Problem& problem,
   result.chi2 = problem.linearise(result.state);
   double damping = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {
+    stop_if_asked();
     const typename Problem::Step step = solve_damped(problem, damping);
     const double predicted = problem.predicted(step, damping);
     const bool rounding = problem.rounding(result.state, step);

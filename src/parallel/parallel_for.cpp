@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "parallel/parallel_for.hpp"
 
+#include "trussmap/stop.hpp"
 #include "trussmap/threads.hpp"
 
 #include <algorithm>
@@ -112,6 +113,7 @@ class Turns {
     within_turn = true;
     for (std::size_t k = next_++; k < turns_ && k < failed_; k = next_++) {
       try {
+        stop_if_asked();
         turn_(k);
       } catch (...) {
         const std::scoped_lock lock(mutex_);
@@ -164,7 +166,10 @@ void parallel_for(std::size_t turns, const std::function<void(std::size_t)>& tur
     const std::size_t helpers = std::min(turns, static_cast<std::size_t>(threads())) - 1;
     if (pool().run(helpers, [&shared] { shared.work(); })) return shared.rethrow();
   }
-  for (std::size_t k = 0; k < turns; ++k) turn(k);
+  for (std::size_t k = 0; k < turns; ++k) {
+    stop_if_asked();
+    turn(k);
+  }
 }
 
 void parallel_ranges(std::size_t turns, std::size_t block,

@@ -45,6 +45,14 @@ std::string heights(const PageContent& page) {
   return text;
 }
 
+/// A chart as a picture.
+std::string drawn(const Chart& chart) {
+  const std::string svg = draw_chart(chart);
+  return fmt::format("<figure>\n<h4>{}</h4>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+                     xml_escaped(chart.title), svg.substr(svg.find("<svg")),
+                     xml_escaped(chart.caption));
+}
+
 /// A figure of a chart: its caption and data are in the page, the script draws it.
 std::string html(const Chart& chart) {
   return fmt::format(
@@ -87,12 +95,14 @@ std::string html(const PageTable& table) {
 }
 
 struct BlockText {
+  bool pictures = false;
+
   std::string operator()(const std::string& text) const { return element("p", text); }
   std::string operator()(const PageTable& table) const { return html(table); }
   std::string operator()(const ChartRow& charts) const {
     std::string text =
         fmt::format("<div class=\"charts {}\">\n", charts.size() > 1 ? "many" : "one");
-    for (const Chart& chart : charts) text += html(chart);
+    for (const Chart& chart : charts) text += pictures ? drawn(chart) : html(chart);
     return text + "</div>\n";
   }
 };
@@ -109,15 +119,15 @@ const char* tone_words(Tone tone) {
   return "";
 }
 
-std::string html(const PageSection& section) {
-  std::string text = element("h2", section.title);
-  for (const PageBlock& block : section.blocks) text += std::visit(BlockText{}, block);
+std::string html(const PageSection& section, bool pictures = false) {
+  std::string text = element(pictures ? "h3" : "h2", section.title);
+  for (const PageBlock& block : section.blocks) text += std::visit(BlockText{pictures}, block);
   if (section.details.empty()) return text;
   text += fmt::format(
       "<details class=\"more\"><summary>Details<span class=\"unseen\">: {}</span>"
       "</summary>\n",
       xml_escaped(section.title));
-  for (const PageBlock& block : section.details) text += std::visit(BlockText{}, block);
+  for (const PageBlock& block : section.details) text += std::visit(BlockText{pictures}, block);
   return text + "</details>\n";
 }
 
@@ -227,6 +237,19 @@ Page::Page(PageContent content)
 
 std::string render_page(const Page& page, const PageRuntime& runtime) {
   return render_page(page.content(), runtime);
+}
+
+std::string render_section(const Page& page) {
+  constexpr const char* kStyle =
+      ".trussmap .facts{display:flex;flex-wrap:wrap;gap:1em 2em}"
+      ".trussmap .facts dd{font-size:1.4em;margin:0}.trussmap .charts{display:flex;flex-wrap:wrap}"
+      ".trussmap figure{margin:.5em 1em .5em 0;max-width:40em}.trussmap svg{max-width:100%}"
+      ".trussmap td.number,.trussmap th.number{text-align:right}"
+      ".trussmap .unseen{position:absolute;left:-999em}";
+  std::string text = fmt::format("<style>{}</style>\n<section class=\"trussmap\">\n", kStyle);
+  text += first_screen(page.content());
+  for (const PageSection& section : page.content().sections) text += html(section, true);
+  return text + "</section>\n";
 }
 
 std::vector<DrawnChart> draw_charts(const Page& page) {

@@ -176,7 +176,7 @@ TEST(SimulateCommand, BadEffectsEndWithOneLineAndWriteNothing) {
                         {"--effects " + at + "none.toml", "cannot be opened"},
                         {"--effects " + at + "fitless.toml", "has no coefficients"},
                         {"--effects " + at + "channel.toml", "channel \"lift\" is unknown"},
-                        {"--effect 'yaw offset=0.1'", "acts on yaws of landmarks, expected --mark"},
+                        {"--effect 'yaw offset=0.1'", "acts on yaws of landmarks, expected mark"},
                         {"--hide --effect wheelbase=0.1", "excludes"},
                         {"--rough fog", "half, memory, haze, tails, floor"},
                         {"--rough half,", "unknown rough noise ''"},

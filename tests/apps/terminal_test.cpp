@@ -30,7 +30,6 @@ namespace trussmap {
 namespace {
 
 namespace fs = std::filesystem;
-using app::Mood;
 using app::ProgressClock;
 using testing::run_trussmap;
 using testing::ScratchFolder;
@@ -158,19 +157,19 @@ TEST(ProgressClock, FitsIntoALine) {
 }
 
 TEST(Terminal, ColoursTheVerdictsWordAlone) {
-  EXPECT_EQ(app::verdict_text(Mood::bad, "misfit: all is off", false), "misfit: all is off");
-  const std::string text = app::verdict_text(Mood::bad, "misfit: all is off", true);
+  EXPECT_EQ(verdict_text(Mood::bad, "misfit: all is off", TextStyle::plain), "misfit: all is off");
+  const std::string text = verdict_text(Mood::bad, "misfit: all is off", TextStyle::coloured);
   EXPECT_NE(text.find("\033[31mmisfit\033[0m: all is off"), std::string::npos) << text;
-  EXPECT_NE(app::verdict_text(Mood::good, "fine", true).find("\033[32mfine\033[0m"),
+  EXPECT_NE(verdict_text(Mood::good, "fine", TextStyle::coloured).find("\033[32mfine\033[0m"),
             std::string::npos);
-  EXPECT_NE(app::warning_text("old", true).find("\033[33mwarning\033[0m: old\n"),
+  EXPECT_NE(warning_text("old", TextStyle::coloured).find("\033[33mwarning\033[0m: old\n"),
             std::string::npos);
 }
 
 TEST(Terminal, DimsTheHeadOfATableAlone) {
   const TextTable table{{Align::left}, {{"head"}, {"row"}}, true, 0};
-  EXPECT_EQ(app::table_text(table, false), format_table(table));
-  EXPECT_EQ(app::table_text(table, true), "\033[2mhead\033[0m\n----\nrow\n");
+  EXPECT_EQ(table_text(table, TextStyle::plain), format_table(table));
+  EXPECT_EQ(table_text(table, TextStyle::coloured), "\033[2mhead\033[0m\n----\nrow\n");
 }
 
 TEST(ChildProcess, SignalsNoProcessWhoseIdIsNotPositive) {

@@ -47,6 +47,7 @@ const std::map<std::string, std::set<std::string>> kOnly = {
 
 /// The room that each public header belongs to.
 const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
+                                                   {"stop", "parallel"},
                                                    {"error", "geometry"},
                                                    {"gate", "geometry"},
                                                    {"planar", "geometry"},
@@ -78,12 +79,15 @@ const std::map<std::string, std::string> kDoors = {{"threads", "parallel"},
                                                    {"workbench", "workbench"},
                                                    {"evidence", "criticism"},
                                                    {"fleet", "fleet"},
+                                                   {"prepared_recordings", "criticism"},
                                                    {"wording", "wording"},
                                                    {"check", "check"},
                                                    {"simulation", "simulation"},
+                                                   {"simulated_recording", "simulation"},
                                                    {"shards", "experiment"},
                                                    {"tour_experiment", "experiment"},
                                                    {"pages", "report"},
+                                                   {"texts", "report"},
                                                    {"table", "text"},
                                                    {"log_files", "io"},
                                                    {"map_files", "io"},
@@ -223,8 +227,8 @@ TEST(IncludeDirection, PublicHeadersIncludePublicHeadersAlone) {
   }
 }
 
-TEST(IncludeDirection, ThereAreAtMostFortyFourPublicHeadersBesideTheUmbrella) {
-  EXPECT_LE(source_files({"include"}).size(), 45U + 1U);
+TEST(IncludeDirection, ThereAreAtMostFiftyPublicHeadersBesideTheUmbrella) {
+  EXPECT_LE(source_files({"include"}).size(), 50U + 1U);
 }
 
 TEST(IncludeDirection, ApplicationsUsePublicHeadersAlone) {

@@ -55,6 +55,21 @@ TEST(Page, HostileNamesStayText) {
   EXPECT_EQ(count(html, "</script"), 5U);
 }
 
+TEST(Page, APartOfAnotherPageHasPicturesAndNoScript) {
+  const std::string html = render_section(Page(page_with("A")));
+  EXPECT_EQ(count(html, "<script"), 0U);
+  EXPECT_EQ(count(html, "<svg"), draw_charts(Page(page_with("A"))).size());
+  EXPECT_EQ(count(html, "<?xml"), 0U);
+  for (const char* said : {"Verdict on A", "what A", "Note on A", "Section A", "Text A"}) {
+    EXPECT_NE(html.find(said), std::string::npos) << said;
+  }
+  // Every rule is for this part alone.
+  const std::string style = html.substr(0, html.find("</style>"));
+  EXPECT_EQ(count(style, "{"), count(style, "}"));
+  EXPECT_EQ(style.find("body"), std::string::npos);
+  EXPECT_EQ(render_section(Page(hostile_page())).find("<img"), std::string::npos);
+}
+
 TEST(Page, LoadsNothing) {
   const std::string html = render_page(page_with("A"), kRuntime);
   EXPECT_FALSE(std::regex_search(html, std::regex("<[a-z]+[^<>]* src=")));

@@ -6,6 +6,7 @@
 #include "io/logs/toml_fields.hpp"
 #include "io/model_tables.hpp"
 #include "io/recording_streams.hpp"
+#include "trussmap/recording_files.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calls.hpp"
+
+namespace trussmap::python {
+
+bool was_interrupted() {
+  const py::gil_scoped_acquire lock;
+  return PyErr_CheckSignals() != 0;
+}
+
+CallProgress::CallProgress(py::object callback, std::vector<CallStep> steps)
+    : callback_(std::move(callback)), steps_(std::move(steps)) {
+  if (!callback_.is_none() && PyCallable_Check(callback_.ptr()) == 0) {
+    throw py::type_error("progress: expected a function of (what, done), or None");
+  }
+}
+
+void CallProgress::next() {
+  ++begun_;
+  tell(begun_ <= steps_.size() ? steps_[begun_ - 1].what : std::string(), share_before());
+}
+
+void CallProgress::say(const std::string& what) {
+  tell(what, share_before());
+}
+
+double CallProgress::share_before() const {
+  double all = 0.0;
+  double before = 0.0;
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    if (k + 1 < begun_) before += steps_[k].share;
+    all += steps_[k].share;
+  }
+  return all > 0.0 ? before / all : 0.0;
+}
+
+void CallProgress::end() {
+  tell("done", 1.0);
+}
+
+void CallProgress::tell(const std::string& what, double done) {
+  if (callback_.is_none()) return;
+  const py::gil_scoped_acquire lock;
+  callback_(what, done);
+}
+
+}  // namespace trussmap::python

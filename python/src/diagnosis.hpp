@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A diagnosis as Python has it; a discovery has two.
+#pragma once
+
+#include "fits.hpp"
+#include "trussmap/diagnose.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace trussmap::python {
+
+struct DiagnosisResult {
+  Diagnosis found;
+  ModelFit fit;
+  std::vector<NoiseBudget> budget;
+  Prepared input;
+  DiagnoseOptions how;
+  std::size_t list = 8;
+  LazySection section;
+};
+
+}  // namespace trussmap::python

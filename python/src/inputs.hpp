@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What calls take: recordings and a model, from objects or from files, and what of them to use.
+#pragma once
+
+#include "trussmap/check.hpp"
+#include "trussmap/compare.hpp"
+#include "trussmap/diagnose.hpp"
+#include "trussmap/gate.hpp"
+#include "trussmap/model.hpp"
+#include "trussmap/recording.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <pybind11/pybind11.h>
+#include <string>
+#include <vector>
+
+namespace trussmap::python {
+
+namespace py = pybind11;
+
+/// One recording or several, in memory or in folders; a model, in memory or in a file.
+struct Given {
+  std::vector<std::shared_ptr<const Recording>> held;  ///< nullptr: to be read from its folder
+  std::vector<std::filesystem::path> folders;          ///< beside each of them; may be empty
+  std::optional<Model> model;
+  std::filesystem::path model_file;
+};
+
+/// TypeError on anything else; `model` may be None where `may_lack`.
+[[nodiscard]] Given given(py::handle recordings, py::handle model, bool may_lack = false);
+
+/// Read.
+struct Read {
+  std::vector<Recording> recordings;  ///< as they are in their files
+  Model model;
+  std::string model_name;  ///< for messages
+};
+
+/// Touches no Python.
+[[nodiscard]] Read read(const Given& given);
+
+/// Read, checked and prepared for a fit.
+struct Prepared {
+  std::shared_ptr<const std::vector<Recording>> recordings;
+  Model model;
+  std::vector<std::string> notes;
+  std::vector<std::string> mistakes;  ///< what check_recordings finds, in words
+  std::string subject;                ///< recordings and model, for a page
+};
+
+/// What compare, fit, diagnose and discover have in common.
+struct UseOptions {
+  FitOptions fit;
+  LegOptions legs;
+  std::optional<double> every;
+  double level = kSignificance;
+};
+
+/// ValueError on what is out of range, or a name in `without` that is none.
+[[nodiscard]] UseOptions use_options(const std::vector<std::string>& without, double gate,
+                                     std::optional<double> every, double holdout, double min_drive,
+                                     double leg, double level);
+
+/// Touches no Python.
+[[nodiscard]] Prepared prepared(const Given& given, const UseOptions& use);
+
+/// As Python warnings, of the category trussmap.RecordingWarning.
+void warn(const std::vector<std::string>& mistakes);
+
+/// "a, b and 3 more with model.toml".
+[[nodiscard]] std::string subject_of(const Given& given);
+
+/// The text without its last end of line, which print adds.
+[[nodiscard]] std::string for_print(std::string text);
+
+}  // namespace trussmap::python

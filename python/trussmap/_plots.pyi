@@ -1,0 +1,3 @@
+# SPDX-FileCopyrightText: 2026 The trussmap authors
+# SPDX-License-Identifier: MIT
+def add_plots() -> None: ...

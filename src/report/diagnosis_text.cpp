@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/texts.hpp"
+#include "trussmap/wording.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+/// In the unit that suits the larger of it and what stands beside it.
+std::string length(double metres, double beside) {
+  return std::max(metres, beside) < 1.0 ? fmt::format("{:.1f} mm", 1e3 * metres)
+                                        : fmt::format("{:.3f} m", metres);
+}
+
+std::string missing_text(const Diagnosis& result, TextStyle style) {
+  std::string text;
+  if (result.verdict != Diagnosis::Verdict::missing) {
+    const bool good = result.verdict == Diagnosis::Verdict::nothing_missing;
+    text += fmt::format(
+        "{}\n", verdict_text(good ? Mood::good : Mood::bad, verdict_in_words(result), style));
+  }
+  for (const Finding* found : found_by(result)) {
+    const Finding& one = *found;
+    const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
+    text += fmt::format("{}\n", verdict_text(mood, in_words(one), style));
+    for (const LookAlike& rival : one.look_alikes) {
+      const std::string alike = fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
+                                            formula_of(rival.effect), rival.cosine);
+      text += rival.told_apart()
+                  ? fmt::format(
+                        "  looks much like it: {}; all measurements tell it apart (chi^2 {:.0f} "
+                        "behind)\n",
+                        alike, rival.behind)
+                  : fmt::format("  looks the same here: {}\n", alike);
+    }
+  }
+  if (!result.missing.empty() && !result.held_out.legs.empty()) {
+    const bool several = result.findings.size() > 1 && !result.findings[1].joint.empty();
+    const char* what = several ? "them" : "it";
+    const double without = result.held_out.arrival_rms;
+    const double with = result.with_missing.arrival_rms;
+    text += fmt::format(
+        "  without {} legs end {} off, with {} {} (rms of {} held-out legs, predicted)\n", what,
+        length(without, with), what, length(with, without), result.held_out.legs.size());
+  }
+  if (result.next_drive)
+    text += fmt::format("  to tell them apart: {}\n", in_words(result.next_drive));
+  return text;
+}
+
+/// Noise laws and single events that are significant.
+std::string others_text(const Diagnosis& result, std::size_t count) {
+  std::string text;
+  std::size_t shown = 0;
+  const bool estimated = result.under && result.under->noise.changed();  // shown by itself
+  for (const NoiseTest& one : estimated ? std::vector<NoiseTest>() : result.noise) {
+    if (one.p_adjusted >= kSignificance || shown >= 2) continue;
+    if (shown++ == 0) text += "\nMore noise than the model states\n";
+    text += fmt::format("  {}: {} (score {:.1f}, p {})\n", one.law, in_words(one), one.score,
+                        probability_text(one.p_adjusted));
+  }
+  shown = 0;
+  for (const EventTest& one : result.events) {
+    if (one.p_adjusted >= kSignificance || shown >= count) continue;
+    if (shown++ == 0) text += "\nSingle events\n";
+    text += fmt::format("  {} {}: {} (score {:.1f}, p {})\n", name_of(one.kind), one.name,
+                        in_words(one), one.score, probability_text(one.p_adjusted));
+  }
+  return text;
+}
+
+/// What is significant by itself and yet absent is explained by what comes before it.
+std::string status_text(const Finding& one) {
+  if (one.implausible && one.status != Status::missing && one.p_adjusted < kSignificance)
+    return "implausibly large";
+  if (one.status == Status::absent && one.p_adjusted < kSignificance)
+    return "explained by the above";
+  return std::string(name_of(one.status));
+}
+
+std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyle style) {
+  std::string text;
+  constexpr std::size_t kWidestCell = 36;  // characters; --json has all of it
+  TextTable table{{Align::left, Align::left, Align::right, Align::right, Align::right, Align::left},
+                  {},
+                  true,
+                  2};
+  table.rows.push_back({"best candidates", "channel x shape", "chi2 less (dof)", "p, adjusted",
+                        "held out [mm]", "status"});
+  for (std::size_t k = 0; k < std::min(count, result.findings.size()); ++k) {
+    const Finding& one = result.findings[k];
+    table.rows.push_back(
+        {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
+         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
+         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
+  }
+  text +=
+      fmt::format("\n{}; {} tests\n{}", fit_in_words(result.chi2, result.dof, result.coefficients),
+                  result.tried, table_text(table, style));
+  return text;
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& result, const std::vector<NoiseBudget>& budget,
+                           std::size_t list, TextStyle style) {
+  std::string text = missing_text(result, style) + candidates_text(result, list, style) +
+                     others_text(result, list);
+  if (!result.unobservable.empty()) text += "\nNot to be seen in these data\n";
+  for (const Unobservable& one : result.unobservable) {
+    const Advice advice = advice_on(one);
+    text += fmt::format("  {}: {}; {}\n", one.effect.name, advice.why, advice.drive);
+  }
+  if (!result.lacks.empty()) text += "\nWhat these data lack\n";
+  for (const std::string& line : in_words(result.lacks)) text += fmt::format("  {}\n", line);
+  for (const std::string& warning : result.warnings) text += warning_text(warning, style);
+  if (result.under) text += "\n" + noise_text(result.under->noise, style);
+  return text + budget_text(budget, style);
+}
+
+}  // namespace trussmap

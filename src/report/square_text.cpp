@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "report/quantity_cells.hpp"
+#include "trussmap/texts.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+std::string verdict(const SquareRound& round, std::size_t number) {
+  const SquareClusters& clusters = round.clusters;
+  const QuantityText size =
+      quantity_text(clusters.largest_offset.value, clusters.largest_offset.standard_error);
+  const std::string again = number > 1 ? "still " : "";
+  if (!(clusters.sem > 0.0)) {
+    return fmt::format("systematic error {} m; the runs show no scatter to judge it by\n",
+                       size.value);
+  }
+  const std::string limit =
+      fmt::format("three standard errors of a centre, {:#.2g} m", 3.0 * clusters.sem);
+  return clusters.second_round_worthwhile
+             ? fmt::format("{}worth correcting: systematic error {} m, more than {}\n", again,
+                           size.value, limit)
+             : fmt::format("nothing left to correct: systematic error {} m, within {}\n",
+                           size.value, limit);
+}
+
+std::string corrections_text(const SquareRound& round, SquareMethod method, TextStyle style) {
+  const SquareCorrections use = corrections_after(round, method);
+  TextTable table{{Align::left, Align::right, Align::left, Align::left}, {}, false, 4};
+  const auto row = [&](const char* name, const Estimate& value, const char* unit) {
+    std::vector<std::string> cells = quantity_cells(value);
+    table.rows.push_back({name, cells[0], cells[1], unit});
+  };
+  row("wheelbase", use.wheelbase, "m");
+  row("left wheel's travel times", use.left_factor, "");
+  row("right wheel's travel times", use.right_factor, "");
+  return fmt::format("\n  Use from now on ({}):\n{}",
+                     method == SquareMethod::exact ? "exact solution" : "the papers' formulas",
+                     table_text(table, style));
+}
+
+std::string solutions_text(const SquareRound& round, TextStyle style) {
+  TextTable table;
+  table.columns = {Align::left, Align::right, Align::left, Align::right, Align::left, Align::left};
+  table.has_heading = true;
+  table.rows.push_back({"", "exact", "", "formulas", "", "unit"});
+  const auto row = [&](const char* name, Estimate SquareSolution::*member, const char* unit) {
+    const std::vector<std::string> exact = quantity_cells(round.exact.*member);
+    const std::vector<std::string> small = quantity_cells(round.formulas.*member);
+    table.rows.push_back({name, exact[0], exact[1], small[0], small[1], unit});
+  };
+  row("E_d  right wheel / left wheel", &SquareSolution::diameter_ratio, "");
+  row("E_b  wheelbase / believed", &SquareSolution::wheelbase_ratio, "");
+  row("alpha  missing per quarter turn", &SquareSolution::alpha, "rad");
+  row("beta  turned per leg", &SquareSolution::beta, "rad");
+  return "\n" + table_text(table, style);
+}
+
+std::string clusters_text(const SquareRound& round, TextStyle style) {
+  TextTable table;
+  table.columns = {Align::left,  Align::right, Align::right, Align::left,
+                   Align::right, Align::left,  Align::right};
+  table.has_heading = true;
+  table.rows.push_back({"centre", "runs", "x [m]", "", "y [m]", "", "distance [m]"});
+  for (const auto& [name, mean] :
+       {std::pair("cw", &round.clusters.cw), std::pair("ccw", &round.clusters.ccw)}) {
+    const auto x = quantity_cells({mean->mean.x(), std::sqrt(mean->covariance(0, 0)), 0.0});
+    const auto y = quantity_cells({mean->mean.y(), std::sqrt(mean->covariance(1, 1)), 0.0});
+    table.rows.push_back({name, std::to_string(mean->count), x[0], x[1], y[0], y[1],
+                          fmt::format("{:.4f}", mean->mean.norm())});
+  }
+  return "\n" + table_text(table, style);
+}
+
+std::string one_way_text(const SquareRound& round) {
+  const OneWayTuning one_way = tune_one_way(round.exact.errors(), round.setup, Direction::ccw);
+  return fmt::format(
+      "\n  Driven ccw alone, the wheelbase could be tuned until {:.3f} m became {:.3f} m; cw, "
+      "{:.3f} "
+      "m\n  would be left. That is why the square is driven both ways.\n",
+      one_way.error_before, one_way.error_same_way, one_way.error_other_way);
+}
+
+}  // namespace
+
+std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
+                        TextStyle style) {
+  std::string out =
+      verdict_text(rounds.back().clusters.second_round_worthwhile ? Mood::doubt : Mood::good,
+                   verdict(rounds.back(), rounds.size()), style);
+  if (rounds.size() > 1) {
+    TextTable table{{Align::left, Align::right, Align::left, Align::left}, {}, false, 2};
+    for (std::size_t k = 0; k < rounds.size(); ++k) {
+      const auto cells = quantity_cells(rounds[k].clusters.largest_offset);
+      table.rows.push_back(
+          {fmt::format("round {}: systematic error", k + 1), cells[0], cells[1], "m"});
+    }
+    out += "\n" + table_text(table, style);
+  }
+  const SquareRound& last = rounds.back();
+  if (rounds.size() > 1 && last.clusters.sem > 0.0 && !last.clusters.second_round_worthwhile) {
+    out +=
+        "\n  The last round's own corrections are within its scatter; those of the rounds before\n"
+        "  would do as well.\n";
+  }
+  out += corrections_text(last, method, style) + solutions_text(last, style) +
+         clusters_text(last, style);
+  if (rounds.size() == 1 && last.clusters.second_round_worthwhile) out += one_way_text(last);
+  return out + warnings_text(all_doubts(rounds), style);
+}
+
+}  // namespace trussmap

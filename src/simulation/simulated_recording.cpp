@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "trussmap/simulated_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace trussmap {
+namespace {
+
+constexpr double kGapSpread = 0.4;     // uneven: gaps of 1 -+ this times the spacing,
+constexpr double kJitterShare = 0.06;  // and landmarks moved by up to this times the spacing
+constexpr double kRestShare = 0.1;
+constexpr double kDelayOverrun = 0.4;  // m: a robot that stands shows no delay
+
+Robot geometry_of(const SimulationSettings& settings) {
+  Robot robot = usual_robot(drive_named(settings.drive), settings.wheelbase, settings.length);
+  robot.wheel_left = settings.wheel_left;
+  return robot;
+}
+
+Mesh make_mesh(const SimulationSettings& settings) {
+  const MeshSize size = parse_mesh_size(settings.mesh);
+  if (!settings.uneven) return even_mesh(size, settings.spacing);
+  std::mt19937_64 random = random_stream(settings.seed, Stream::mesh);
+  const double shortest = (1.0 - kGapSpread) * settings.spacing;
+  const double longest = (1.0 + kGapSpread) * settings.spacing;
+  const std::vector<double> x = random_lines(size.columns, shortest, longest, random);
+  const std::vector<double> y = random_lines(size.rows, shortest, longest, random);
+  return jittered(mesh_of_lines(x, y), kJitterShare * settings.spacing, random);
+}
+
+WheeledRobot make_robot(const SimulationSettings& settings) {
+  WheeledRobot robot;
+  robot.geometry = geometry_of(settings);
+  robot.noise.steer = settings.steer_noise;
+  robot.compass = !settings.no_compass;
+  robot.gyro = settings.gyro;
+  robot.noise.gyro = settings.gyro_noise;
+  robot.noise.gyro_walk = settings.gyro_walk;
+  robot.range_sensor = settings.range_sensor || settings.ranges_alone || settings.bearings_alone;
+  if (settings.ranges_alone) robot.sensor_parts = SensorParts::range_alone;
+  if (settings.bearings_alone) robot.sensor_parts = SensorParts::bearing_alone;
+  robot.loops = settings.loops;
+  robot.markers = settings.markers;
+  robot.noise.yaw = settings.yaw_noise;
+  robot.noise.loop = settings.loop_noise;
+  robot.noise.loop_heading = settings.loop_heading_noise;
+  robot.reach = settings.reach;
+  robot.noise.left = settings.wheel_noise;
+  robot.noise.right = settings.wheel_noise;
+  robot.noise.compass = settings.compass_noise;
+  robot.noise.survey = settings.survey_noise;
+  robot.noise.fix = settings.fix_noise;
+  robot.fix_rate = settings.fix_rate;
+  robot.rough = rough_of(settings);
+  if (settings.noise_free) robot.noise = kNoiseFree;
+  return robot;
+}
+
+DrivingStyle make_style(const SimulationSettings& settings, const std::vector<Effect>& effects) {
+  DrivingStyle style;
+  style.slowest = settings.speeds.at(0);
+  style.fastest = settings.speeds.at(1);
+  style.slowest_turn = settings.turn_rates.at(0);
+  style.fastest_turn = settings.turn_rates.at(1);
+  style.ramp = settings.ramp;
+  style.covariates = settings.covariates;
+  const bool delayed = std::any_of(effects.begin(), effects.end(),
+                                   [](const Effect& one) { return one.channel == Channel::delay; });
+  style.overrun = settings.overrun >= 0.0 ? settings.overrun : delayed ? kDelayOverrun : 0.0;
+  style.standing = settings.noise_free ? 0.0 : settings.sighting_noise;
+  style.rest_share = settings.rests ? kRestShare : 0.0;
+  style.full_spins = settings.full_turns;
+  return style;
+}
+
+}  // namespace
+
+double SimulatedRecording::length() const {
+  double sum = 0.0;
+  for (const TrueRow& row : drive.motion.rows) {
+    sum += std::hypot(row.speed, row.sideways) * row.duration;
+  }
+  return sum;
+}
+
+SimulatedRecording simulate(const SimulationSettings& settings,
+                            const std::vector<Effect>& effects) {
+  for (const Effect& effect : effects) {
+    if (effect.channel != Channel::sighting_yaw || settings.markers) continue;
+    throw std::invalid_argument(
+        fmt::format("effect \"{}\" acts on yaws of landmarks, expected markers", effect.name));
+  }
+  SimulatedRecording result;
+  result.effects = effects;
+  result.mesh = make_mesh(settings);
+  std::mt19937_64 random = random_stream(settings.seed, Stream::walk);
+  const Tours tours =
+      make_tours(result.mesh, parse_walk_kind(settings.walk), settings.tours, random);
+  const WheeledRobot robot = make_robot(settings);
+  if (settings.hide) {
+    result.effects = draw_hidden_effects(result.mesh, tours.walk, make_style(settings, {}), robot,
+                                         !settings.no_survey, settings.seed);
+  }
+  result.drive = simulate_drive(
+      result.mesh, tours.walk, make_style(settings, result.effects), robot, settings.seed,
+      {result.effects, settings.true_rates ? Rates::true_motion : Rates::as_recorded});
+  if (settings.no_survey) result.drive.recording.survey.clear();
+  result.model = nominal_model(settings);
+  return result;
+}
+
+RoughNoise rough_of(const SimulationSettings& settings) {
+  RoughNoise rough;
+  if (settings.rough.empty()) return rough;
+  rough = parse_rough(settings.rough);
+  if (settings.no_compass) rough.haze = false;
+  if (rough_names(rough).empty()) {
+    throw std::invalid_argument(
+        "rough noise: haze is noise of a compass, expected a robot that has one");
+  }
+  return rough;
+}
+
+Model nominal_model(const SimulationSettings& settings) {
+  Model model;
+  const SensorNoise sensors;
+  model.robot = geometry_of(settings);
+  model.noise.steer = settings.steer_noise;
+  model.noise.left = settings.wheel_noise;
+  model.noise.right = settings.wheel_noise;
+  model.noise.compass = settings.compass_noise;
+  model.noise.sighting = settings.sighting_noise;
+  model.noise.range = sensors.range;
+  model.noise.bearing = sensors.bearing;
+  model.noise.survey = settings.survey_noise;
+  if (settings.gyro) model.noise.gyro = settings.gyro_noise;
+  model.noise.fix = settings.fix_noise;
+  if (settings.markers) model.noise.yaw = settings.yaw_noise;
+  model.noise.loop = settings.loop_noise;
+  model.noise.loop_heading = settings.loop_heading_noise;
+  return model;
+}
+
+Effect simulated_effect(const Effect& effect) {
+  Effect result = effect;
+  const auto refuse = [&result](const std::string& what) {
+    throw std::invalid_argument(fmt::format("effect \"{}\" {}", result.name, what));
+  };
+  if (result.coefficients.empty()) refuse("has no coefficients, expected one per shape");
+  // A simulated recording is one session, the first.
+  if (result.per_session) {
+    if (result.coefficients.size() < result.shape.size()) {
+      refuse(fmt::format("has {} coefficients, expected {}, one per shape",
+                         result.coefficients.size(), result.shape.size()));
+    }
+    result.coefficients.resize(result.shape.size());
+    result.per_session = false;
+  }
+  return result;
+}
+
+}  // namespace trussmap
