@@ -51,13 +51,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text;
     if (option->get_type_size() != 0) {
-      const std::string type = spelled_type(*option);
-      text = " " + type;
-      const bool many = option->get_expected_max() == CLI::detail::expected_max_vector_size;
-      if (many && !type.ends_with("...")) text += "...";
-      std::string standard = option->get_default_str();
-      if (standard.starts_with('[')) standard = standard.substr(1, standard.size() - 2);
-      if (!standard.empty()) text += "=" + standard;
+      text = " " + spelled_value(*option);
       if (option->get_required()) text += " (required)";
     }
     for (const CLI::Option* other : option->get_excludes()) {
@@ -98,6 +92,16 @@ bool reads_recordings(const CLI::App& command) {
 }
 
 }  // namespace
+
+std::string spelled_value(const CLI::Option& option) {
+  std::string text = spelled_type(option);
+  const bool many = option.get_expected_max() == CLI::detail::expected_max_vector_size;
+  if (many && !text.ends_with("...")) text += "...";
+  std::string standard = option.get_default_str();
+  if (standard.starts_with('[')) standard = standard.substr(1, standard.size() - 2);
+  if (!standard.empty()) text += "=" + standard;
+  return text;
+}
 
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
   std::string result;

@@ -22,6 +22,9 @@ void begin_help(CLI::App& app);
 /// After they have been added.
 void finish_help(CLI::App& app);
 
+/// "FILE", "{a,b},...", "X=0.05": what an option takes, as help spells it.
+[[nodiscard]] std::string spelled_value(const CLI::Option& option);
+
 /// Words broken into lines of at most `width` characters, each after the first with an indent.
 /// Line breaks in the text stay.
 [[nodiscard]] std::string wrapped(const std::string& text, std::size_t width, std::size_t indent);

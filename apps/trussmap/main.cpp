@@ -90,12 +90,14 @@ int run(int argc, char** argv) {
   trussmap::app::setup_calibrate(commands);
   trussmap::app::setup_check(commands);
   trussmap::app::setup_compare(commands);
+  trussmap::app::setup_completion(commands, app);
   trussmap::app::setup_convert(commands);
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_effects(commands);
   trussmap::app::setup_fit(commands);
   trussmap::app::setup_fleet(commands);
+  trussmap::app::setup_manual(commands, app);
   trussmap::app::setup_merge(commands);
   trussmap::app::setup_noise(commands);
   trussmap::app::setup_reveal(commands);

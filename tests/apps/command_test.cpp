@@ -289,8 +289,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
       ran.output,
       "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
       "calibrate, check, "
-      "compare, convert, diagnose, discover, fit, fleet, merge, noise, reveal, serve, simulate, "
-      "tour, umbmark\n");
+      "compare, completion, convert, diagnose, discover, fit, fleet, manual, merge, noise, reveal, "
+      "serve, simulate, tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {
