@@ -10,6 +10,8 @@
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too, as are, where there is npm, what checks their scripts' types
 #                      and their accessibility
+#   make package       install what is missing, build the Debian packages into build/package and
+#                      check them (lintian); make dist: the archive of the sources alone
 #   make python        install what is missing, build the Python package into build/python
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
@@ -26,7 +28,7 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test site site-check python fuzz tsan install-deps test-deps site-deps configure build command clean
+.PHONY: all check demo test dist package site site-check python fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -55,6 +57,13 @@ site: site-deps command
 
 site-check: install-deps command
 	@docs/site/run_blocks.py build/trussmap
+
+dist:
+	@packaging/make_package dist
+
+package: install-deps
+	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev debhelper dh-python dpkg-dev lintian git
+	@packaging/make_package package
 
 python:
 	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev

@@ -4,6 +4,8 @@
 # Four sets of targets, five with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
+set(TRUSSMAP_ZSH_FOLDER site-functions CACHE STRING "Where zsh looks for completions, below share/zsh")
+mark_as_advanced(TRUSSMAP_ZSH_FOLDER)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
 install(TARGETS trussmap_map EXPORT trussmapMapTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -40,6 +42,24 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
               cmake/FindCholmod.cmake
         cmake/FindLz4.cmake
         DESTINATION ${config_dir})
+configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 if(TARGET trussmap_command)
   install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The command says itself what man and shells take.
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(CODE "
+      set(top \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
+      execute_process(COMMAND $<TARGET_FILE:trussmap_command> manual --out \"\${top}/${CMAKE_INSTALL_MANDIR}/man1\"
+                      OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+      foreach(to bash:bash-completion/completions/trussmap zsh:zsh/${TRUSSMAP_ZSH_FOLDER}/_trussmap
+                 fish:fish/vendor_completions.d/trussmap.fish)
+        string(REPLACE \":\" \";\" to \${to})
+        list(GET to 0 shell)
+        list(GET to 1 file)
+        execute_process(COMMAND $<TARGET_FILE:trussmap_command> completion \${shell} OUTPUT_VARIABLE text
+                        COMMAND_ERROR_IS_FATAL ANY)
+        file(WRITE \"\${top}/${CMAKE_INSTALL_DATADIR}/\${file}\" \"\${text}\")
+      endforeach()")
+  endif()
 endif()

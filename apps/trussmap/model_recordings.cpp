@@ -56,11 +56,11 @@ void add_fitted_recordings(const Command& command, ModelRecordingsOptions& optio
   command
       .add_option(
           "--exclude", options.exclude,
-          "Do not use what was measured and driven from one time to another [s], of the Nth "
-          "recording")
+          "Do not use what was measured and driven in these times: FROM:TO [s], or N:FROM:TO of "
+          "the Nth recording")
       .delimiter(',')
       .check(stretch_of_time())
-      .type_name("[N:]FROM:TO,...");
+      .type_name("TIME,...");
   command
       .add_option(
           "--gate", options.gate,

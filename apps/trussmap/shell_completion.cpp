@@ -38,7 +38,7 @@ std::vector<std::string> option_names(const CommandWords& command) {
 }
 
 /// Between single quotes.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string result = "'";
   for (const char one : text) result += one == '\'' ? std::string("'\\''") : std::string(1, one);
   return result + "'";
@@ -63,17 +63,20 @@ std::string first_line(const std::string& text) {
 std::string bash_completion(const CommandWords& whole) {
   std::string choices, words, names;
   visit_commands(whole, "", [&](const std::string& path, const CommandWords& command) {
+    std::vector<std::string> next = command_names(command);  // or the words of an argument
     for (const OptionWords& option : command.options) {
       if (option.choices.empty()) continue;
+      if (option.is_argument) next.insert(next.end(), option.choices.begin(), option.choices.end());
+      if (option.is_argument) continue;
       for (const std::string& name : option.names) {
-        choices += fmt::format("    {}) words={} ;;\n", quoted(path + " " + name),
-                               quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+        choices += fmt::format("    {}) words={} ;;\n", in_quotes(path + " " + name),
+                               in_quotes(fmt::format("{}", fmt::join(option.choices, " "))));
       }
     }
-    words += fmt::format("    {}) options={} commands={} ;;\n", quoted(path),
-                         quoted(fmt::format("{}", fmt::join(option_names(command), " "))),
-                         quoted(fmt::format("{}", fmt::join(command_names(command), " "))));
-    if (!path.empty()) names += (names.empty() ? "" : "|") + quoted(path);
+    words += fmt::format("    {}) options={} commands={} ;;\n", in_quotes(path),
+                         in_quotes(fmt::format("{}", fmt::join(option_names(command), " "))),
+                         in_quotes(fmt::format("{}", fmt::join(next, " "))));
+    if (!path.empty()) names += (names.empty() ? "" : "|") + in_quotes(path);
   });
   return fmt::format(
       "# Completion of {0} for bash: source it, or put it where bash-completion looks.\n"
@@ -92,10 +95,10 @@ std::string bash_completion(const CommandWords& whole) {
       "  case \"$path\" in\n{3}  esac\n"
       "  if [ -n \"$words\" ]; then\n"
       "    COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
-      "  elif [ -n \"$commands\" ] && [ \"$place\" -eq \"$COMP_CWORD\" ]; then\n"
-      "    COMPREPLY=($(compgen -W \"$commands $options\" -- \"$current\"))\n"
       "  elif [ \"${{current#-}}\" != \"$current\" ]; then\n"
       "    COMPREPLY=($(compgen -W \"$options\" -- \"$current\"))\n"
+      "  elif [ -n \"$commands\" ] && [ \"$place\" -eq \"$COMP_CWORD\" ]; then\n"
+      "    COMPREPLY=($(compgen -W \"$commands\" -- \"$current\"))\n"
       "  else\n"
       "    COMPREPLY=($(compgen -f -- \"$current\"))\n"
       "  fi\n"
@@ -109,26 +112,29 @@ std::string zsh_completion(const CommandWords& whole) {
   visit_commands(whole, "", [&](const std::string& path, const CommandWords& command) {
     std::string function = "_" + whole.name;
     for (const char one : path.empty() ? path : " " + path) function += one == ' ' ? '_' : one;
-    std::string arguments;
+    std::string arguments, last = ":file:_files";
     for (const OptionWords& option : command.options) {
+      if (option.is_argument && !option.choices.empty()) {
+        last = fmt::format(":word:({})", fmt::join(option.choices, " "));
+      }
       if (option.is_argument) continue;
       const std::string value = option.value.empty() ? std::string()
                                 : option.choices.empty()
                                     ? ":" + described(option.value) + ":_files"
                                     : fmt::format(":word:({})", fmt::join(option.choices, " "));
       for (const std::string& name : option.names) {
-        arguments += " \\\n    " +
-                     quoted(fmt::format("*{}[{}]{}", name, described(option.description), value));
+        arguments += " \\\n    " + in_quotes(fmt::format("*{}[{}]{}", name,
+                                                         described(option.description), value));
       }
     }
     if (command.commands.empty()) {
-      functions += fmt::format("{}() {{\n  _arguments{} \\\n    '*:file:_files'\n}}\n\n", function,
-                               arguments);
+      functions +=
+          fmt::format("{}() {{\n  _arguments{} \\\n    '*{}'\n}}\n\n", function, arguments, last);
       return;
     }
     std::string names, calls;
     for (const CommandWords& one : command.commands) {
-      names += " " + quoted(one.name + ":" + first_line(one.description));
+      names += " " + in_quotes(one.name + ":" + first_line(one.description));
       calls += fmt::format("      {0}) {1}_{0} ;;\n", one.name, function);
     }
     functions += fmt::format(
@@ -155,25 +161,30 @@ std::string fish_completion(const CommandWords& whole) {
               fmt::format("__fish_seen_subcommand_from {}", path.substr(begin, end - begin));
       begin = end + 1;
     }
-    const std::string here = seen.empty() ? std::string() : " -n " + quoted(seen);
+    const std::string here = seen.empty() ? std::string() : " -n " + in_quotes(seen);
     for (const CommandWords& one : command.commands) {
       const std::string open =
           (seen.empty() ? "" : seen + "; and ") + "not __fish_seen_subcommand_from " + names;
-      text += fmt::format("complete -c {} -f -n {} -a {} -d {}\n", whole.name, quoted(open),
-                          one.name, quoted(first_line(one.description)));
+      text += fmt::format("complete -c {} -f -n {} -a {} -d {}\n", whole.name, in_quotes(open),
+                          one.name, in_quotes(first_line(one.description)));
     }
     for (const OptionWords& option : command.options) {
-      if (option.is_argument) continue;
       std::string line = "complete -c " + whole.name + here;
+      if (option.is_argument) {
+        if (option.choices.empty()) continue;
+        text +=
+            line + " -f -a " + in_quotes(fmt::format("{}", fmt::join(option.choices, " "))) + "\n";
+        continue;
+      }
       for (const std::string& name : option.names) {
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       }
       if (!option.choices.empty()) {
-        line += " -x -a " + quoted(fmt::format("{}", fmt::join(option.choices, " ")));
+        line += " -x -a " + in_quotes(fmt::format("{}", fmt::join(option.choices, " ")));
       } else if (!option.value.empty()) {
         line += " -r";
       }
-      text += line + " -d " + quoted(first_line(option.description)) + "\n";
+      text += line + " -d " + in_quotes(first_line(option.description)) + "\n";
     }
   });
   return text;

@@ -100,11 +100,12 @@ std::map<std::string, std::string> documented_effects() {
 
 TEST(EffectsCommand, ListsWhatTheDocumentationHas) {
   const ScratchFolder scratch;
-  const std::string json = (scratch.path() / "e.json").string();
-  const Ran ran = run_trussmap("effects --json " + json);
+  const std::string file = (scratch.path() / "e.json").string();
+  const Ran ran = run_trussmap("effects --json " + file);
   ASSERT_EQ(ran.status, 0) << ran.output;
   std::map<std::string, std::string> listed;
-  for (const auto& one : read_json(json)["effects"]) {
+  const json written = read_json(file);
+  for (const json& one : written["effects"]) {
     const std::string in_full = one["in_full"];
     EXPECT_NE(ran.output.find("  " + in_full + " "), std::string::npos) << in_full;
     EXPECT_FALSE(one["cause"].get<std::string>().empty()) << in_full;
@@ -285,12 +286,12 @@ TEST(Command, ASessionThatMeetsNoLandmarkOfTheOthersIsNamed) {
 TEST(Command, AWordThatIsNoCommandIsNamed) {
   const Ran ran = run_trussmap("polish x");
   EXPECT_EQ(ran.status, 2);
-  EXPECT_EQ(
-      ran.output,
-      "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
-      "calibrate, check, "
-      "compare, completion, convert, diagnose, discover, fit, fleet, manual, merge, noise, reveal, "
-      "serve, simulate, tour, umbmark\n");
+  EXPECT_EQ(ran.output,
+            "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
+            "calibrate, check, "
+            "compare, completion, convert, diagnose, discover, effects, fit, fleet, manual, merge, "
+            "noise, "
+            "reveal, serve, simulate, tour, umbmark\n");
 }
 
 TEST(Command, ASessionGivenTwiceIsRefused) {

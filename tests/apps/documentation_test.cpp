@@ -68,14 +68,16 @@ class WorkingFolder {
 
 TEST(DocumentedCommands, PrintWhatThePagesShow) {
   const fs::path top(TRUSSMAP_SOURCE_DIR);
-  const ScratchFolder scratch;
-  fs::copy(top / "maps", scratch.path() / "maps", fs::copy_options::recursive);
-  const WorkingFolder here(scratch.path());
   std::vector<fs::path> pages{top / "README.md"};
-  for (const auto& entry : fs::directory_iterator(top / "docs")) pages.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(top / "docs")) {
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  }
 
   int ran_examples = 0;
-  for (const fs::path& page : pages) {
+  for (const fs::path& page : pages) {  // each begins anew
+    const ScratchFolder scratch;
+    fs::copy(top / "maps", scratch.path() / "maps", fs::copy_options::recursive);
+    const WorkingFolder here(scratch.path());
     std::ifstream text(page);
     for (const Example& example : examples_of(text)) {
       const Ran ran = run_trussmap(example.arguments);
