@@ -84,10 +84,10 @@ std::string page_verdict(const Comparison& result) {
     return fmt::format("Missing: {}.{}", result.missing, legs ? " Legs end " + held + " off." : "");
   }
   if (const Trend* first = telling_trend(result)) {
-    return fmt::format("The model does not explain these measurements: {}.{}", trend_words(*first),
+    return fmt::format("The model does not explain these errors: {}.{}", trend_words(*first),
                        legs ? " Legs end " + held + " off." : "");
   }
-  return fmt::format("The model does not explain these measurements{}: {}.",
+  return fmt::format("The model does not explain these errors{}: {}.",
                      legs ? ", legs end " + held + " off" : "", objection_in_words(result));
 }
 

@@ -119,7 +119,8 @@ TEST(WorkbenchInBrowser, EffectsAreExplainedOnTheirCards) {
   chrome.click(card + " .explain");
   chrome.wait("document.querySelector('" + explanation + " svg')");
   const std::string text = chrome.text(explanation);
-  for (const char* part : {"turns with the robot", "Look for magnets", "full turn", "calibrate"}) {
+  for (const char* part :
+       {"turns with the robot", "Look for magnets", "full turn", "Calibrate the compass"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
   }
   // As drawn by the library, and drawn as wide as there is room for.
