@@ -100,11 +100,11 @@ std::map<std::string, std::string> documented_effects() {
 
 TEST(EffectsCommand, ListsWhatTheDocumentationHas) {
   const ScratchFolder scratch;
-  const std::string json = (scratch.path() / "e.json").string();
-  const Ran ran = run_trussmap("effects --json " + json);
+  const std::string listing = (scratch.path() / "e.json").string();
+  const Ran ran = run_trussmap("effects --json " + listing);
   ASSERT_EQ(ran.status, 0) << ran.output;
   std::map<std::string, std::string> listed;
-  for (const auto& one : read_json(json)["effects"]) {
+  for (const auto& one : read_json(listing)["effects"]) {
     const std::string in_full = one["in_full"];
     EXPECT_NE(ran.output.find("  " + in_full + " "), std::string::npos) << in_full;
     EXPECT_FALSE(one["cause"].get<std::string>().empty()) << in_full;
