@@ -7,6 +7,7 @@ import re
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # nothing is left beside the sources
 here = Path(__file__).parent
 sys.path.insert(0, str(here))
 out = Path(os.environ["TRUSSMAP_SITE"])  # build/site
