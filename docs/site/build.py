@@ -11,6 +11,8 @@ import sys
 import time
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # nothing is left beside the sources
+
 import check_links
 import commands
 import gallery

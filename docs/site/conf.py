@@ -7,6 +7,7 @@ import re
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # nothing is left beside the sources
 here = Path(__file__).parent
 sys.path.insert(0, str(here))
 out = Path(os.environ["TRUSSMAP_SITE"])  # build/site
@@ -18,7 +19,7 @@ release = re.search(r"project\(trussmap\s+VERSION\s+([0-9.]+)",
                     (here.parents[1] / "CMakeLists.txt").read_text())[1]
 version = release
 
-extensions = ["myst_parser", "breathe", "katex_math"]
+extensions = ["myst_parser", "breathe", "katex_math", "cpp_links"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}

@@ -18,6 +18,8 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # nothing is left beside the sources
+
 from pages import HERE, TOP, slug_of
 
 WORLD = "--mesh 4x4 --uneven --tours 2"

@@ -9,6 +9,8 @@ import subprocess
 import sys
 import tomllib
 
+sys.dont_write_bytecode = True  # nothing is left beside the sources
+
 from pages import HERE, TOP, Contents, without_code
 
 WORDS = HERE / "words.txt"
