@@ -4,7 +4,9 @@
 // trussmap effects: the catalogue, or one effect of it.
 #include "commands.hpp"
 #include "effect_options.hpp"
+#include "help.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/workbench.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -22,7 +24,16 @@ using nlohmann::ordered_json;
 struct EffectsCommand {
   std::string name;
   std::string json;
+  std::string drawing;
 };
+
+/// Of an entry, to be explained.
+Effect effect_of(const CatalogueEntry& entry) {
+  Effect effect;
+  effect.name = entry.name;
+  effect.channel = entry.channel;
+  return effect;
+}
 
 std::vector<const CatalogueEntry*> asked_for(const std::string& name) {
   std::vector<const CatalogueEntry*> entries;
@@ -43,6 +54,7 @@ ordered_json entry_json(const CatalogueEntry& entry) {
     parameters.push_back({{"name", one.name}, {"unit", one.unit}, {"usual", one.usual}});
   }
   const ChannelFacts& channel = facts_of(entry.channel);
+  const Explanation explained = explanation_of(effect_of(entry));
   return {{"name", entry.name},
           {"in_full", name_with_brackets(entry)},
           {"channel", channel.name},
@@ -50,6 +62,9 @@ ordered_json entry_json(const CatalogueEntry& entry) {
           {"channel_unit", channel.unit},
           {"shape", entry.pattern},
           {"unit", entry.unit},
+          {"does", explained.does},
+          {"look", explained.look},
+          {"drive", explained.drive},
           {"cause", entry.cause},
           {"remedy", entry.remedy},
           {"detectable", entry.detectable},
@@ -66,11 +81,17 @@ std::string json_text(const std::vector<const CatalogueEntry*>& entries) {
 
 std::string entry_text(const CatalogueEntry& entry) {
   const ChannelFacts& channel = facts_of(entry.channel);
+  const Explanation explained = explanation_of(effect_of(entry));
+  constexpr std::size_t kWidth = 85, kColumn = 15;
   std::string text = fmt::format(
-      "{}\n\n  cause        {}\n  remedy       {}\n  acts on      {} (channel {})\n"
+      "{}\n\n  does         {}\n  look at      {}\n  drive        {}\n", name_with_brackets(entry),
+      wrapped(explained.does, kWidth, kColumn), wrapped(explained.look, kWidth, kColumn),
+      wrapped(explained.drive, kWidth, kColumn));
+  text += fmt::format(
+      "  cause        {}\n  remedy       {}\n  acts on      {} (channel {})\n"
       "  goes with    {}\n  coefficient  {}\n",
-      name_with_brackets(entry), entry.cause, entry.remedy, channel.does_what, channel.name,
-      fmt::join(entry.pattern, "; "), entry.unit.empty() ? "-" : entry.unit);
+      entry.cause, entry.remedy, channel.does_what, channel.name, fmt::join(entry.pattern, "; "),
+      entry.unit.empty() ? "-" : entry.unit);
   if (entry.detectable > 0.0) {
     text += fmt::format("  seen from    {:g}{}{} on, roughly\n", entry.detectable,
                         channel.unit.empty() ? "" : " ", channel.unit);
@@ -80,7 +101,15 @@ std::string entry_text(const CatalogueEntry& entry) {
 
 void run_effects(const EffectsCommand& options) {
   const std::vector<const CatalogueEntry*> entries = asked_for(options.name);
-  if (!options.json.empty()) write_files({{options.json, json_text(entries)}});
+  if (!options.drawing.empty() && options.name.empty()) {
+    throw UsageError("--drawing draws one effect, expected its NAME");
+  }
+  NamedContents files;
+  if (!options.json.empty()) files.emplace_back(options.json, json_text(entries));
+  if (!options.drawing.empty()) {
+    files.emplace_back(options.drawing, effect_drawing(effect_of(*entries.front())));
+  }
+  write_files(files);
   fmt::print("{}", options.name.empty() ? catalogue_text() : entry_text(*entries.front()));
 }
 
@@ -92,6 +121,9 @@ void setup_effects(const Command& app) {
       app.add_subcommand("effects", "List the catalogue of physical effects, or tell of one");
   command.add_option("NAME", options->name, "An effect of the catalogue").type_name("NAME");
   command.add_option("--json", options->json, "Write the same as JSON").type_name("FILE");
+  command
+      .add_option("--drawing", options->drawing, "Write a drawing of what it does to a robot (SVG)")
+      .type_name("FILE");
   command.footer(
       "  trussmap effects\n"
       "  trussmap effects \"turn scrub\"\n"

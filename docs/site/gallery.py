@@ -195,6 +195,8 @@ class Gallery:
         if signature:
             lines += self.shown(entry, signature, stage)
         lines += ["## What to look at on the robot", "", text["look"].strip(), ""]
+        if entry.get("drive"):
+            lines += ["## What to drive to be sure", "", entry["drive"], ""]
         lines += ["## A recording to try", "", "```sh", *self.commands(name),
                   "trussmap diagnose rec --model rec/model.toml --html page.html", "```", ""]
         if signature:

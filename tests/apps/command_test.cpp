@@ -98,6 +98,18 @@ std::map<std::string, std::string> documented_effects() {
   return effects;
 }
 
+TEST(EffectsCommand, DrawsWhatItTellsOf) {
+  const ScratchFolder scratch;
+  const std::string file = (scratch.path() / "e.svg").string();
+  const Ran ran = run_trussmap("effects \"turn scrub\" --drawing " + file);
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  std::ifstream stream(file);
+  std::string first;
+  std::getline(stream, first);
+  EXPECT_EQ(first.rfind("<svg", 0), 0U) << first;
+  EXPECT_EQ(run_trussmap("effects --drawing " + file).status, 2);  // of which?
+}
+
 TEST(EffectsCommand, ListsWhatTheDocumentationHas) {
   const ScratchFolder scratch;
   const std::string file = (scratch.path() / "e.json").string();
