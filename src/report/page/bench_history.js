@@ -71,16 +71,20 @@ function itemOf(state, step, does, again) {
   return item;
 }
 
-/** @param {string} what @param {string} one @param {string} other */
-const rowOf = (what, one, other) => make('tr', {}, make('th', {scope: 'row', textContent: what}),
-                                         make('td', {textContent: one}), make('td', {textContent: other}));
-
 /** @param {BenchStep} one @param {BenchStep} other */
 function comparisonOf(one, other) {
   const list = (/** @type {string[]} */ names) => names.join(', ') || 'none';
   const only = (/** @type {BenchStep} */ a, /** @type {BenchStep} */ b) =>
       list(a.has.filter(name => !b.has.includes(name)));
   const both = one.has.filter(name => other.has.includes(name));
+  // On a narrow screen a row is a card, with the steps' names beside its cells.
+  const cell = (/** @type {string} */ textContent, /** @type {BenchStep} */ step) => {
+    const made = make('td', {textContent});
+    made.dataset.heading = titleOf(step);
+    return made;
+  };
+  const rowOf = (/** @type {string} */ what, /** @type {string} */ a, /** @type {string} */ b) =>
+      make('tr', {}, make('th', {scope: 'row', textContent: what}), cell(a, one), cell(b, other));
   const head = make('tr', {}, make('td'), make('th', {scope: 'col', textContent: titleOf(one)}),
                     make('th', {scope: 'col', textContent: titleOf(other)}));
   return make('table', {}, make('thead', {}, head), make('tbody', {},
