@@ -52,7 +52,7 @@ class Stubs(unittest.TestCase):
         done = subprocess.run(
             [sys.executable, "-m", "mypy.stubtest", "--concise", "--ignore-missing-stub",
              "trussmap"],
-            capture_output=True, text=True, check=False,
+            capture_output=True, text=True, check=False, cwd=scratch_folder(self),
             env={**os.environ, "MYPYPATH": str(PACKAGE.parent)})
         # What pybind11 makes of every class.
         usual = ("metaclass differs", ".__init__ is inconsistent", ".__hash__ is inconsistent")
