@@ -69,7 +69,7 @@ std::string bash_completion(const CommandWords& whole) {
       if (option.is_argument) next.insert(next.end(), option.choices.begin(), option.choices.end());
       if (option.is_argument) continue;
       for (const std::string& name : option.names) {
-        choices += fmt::format("    {}) words={} ;;\n", in_quotes(path + " " + name),
+        choices += fmt::format("    {}) words={} ;;\n", in_quotes(fmt::format("{} {}", path, name)),
                                in_quotes(fmt::format("{}", fmt::join(option.choices, " "))));
       }
     }
@@ -163,8 +163,8 @@ std::string fish_completion(const CommandWords& whole) {
     }
     const std::string here = seen.empty() ? std::string() : " -n " + in_quotes(seen);
     for (const CommandWords& one : command.commands) {
-      const std::string open =
-          (seen.empty() ? "" : seen + "; and ") + "not __fish_seen_subcommand_from " + names;
+      const std::string open = fmt::format("{}{}not __fish_seen_subcommand_from {}", seen,
+                                           seen.empty() ? "" : "; and ", names);
       text += fmt::format("complete -c {} -f -n {} -a {} -d {}\n", whole.name, in_quotes(open),
                           one.name, in_quotes(first_line(one.description)));
     }
