@@ -242,7 +242,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
     names.push_back(name_in_words(rival.effect) +
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }
-  const std::string open =
+  std::string open =
       names.empty() ? std::string()
                     : fmt::format("Instead of {} it could be {}: these recordings cannot tell.",
                                   short_name(effect), listed(names, "or"));

@@ -227,13 +227,17 @@ std::vector<std::string> noise_lines(const std::vector<NoiseBudget>& budget) {
     const std::string words = typeset(in_words(one));
     const std::size_t at =
         words.find(fmt::format(" {:.0f} % is ", 100.0 * one.shares.front().share));
-    if (at == std::string::npos) continue;
+    if (at == std::string::npos) {
+      said.emplace_back(words, std::vector<std::string>());
+      continue;
+    }
     const std::string what = words.substr(at);
     if (said.empty() || said.back().first != what)
       said.emplace_back(what, std::vector<std::string>());
     said.back().second.push_back(words.substr(0, at));
   }
   std::vector<std::string> lines;
+  lines.reserve(said.size());
   for (const auto& [what, when] : said)
     lines.push_back(capitalised(listed(when, "and") + what) + ".");
   return lines;
