@@ -311,7 +311,7 @@ TEST(Workbench, ExcludesLegsAndTakesThemBackIn) {
   const int dof = bench.now().fit().dof;
   const std::vector<std::size_t> chosen = free_legs(bench.now(), 3);
   bench.exclude(chosen);
-  const WorkbenchStep& step = bench.log().steps.back();
+  const WorkbenchStep step = bench.log().steps.back();
   EXPECT_EQ(step.kind, WorkbenchStep::Kind::exclude);
   EXPECT_GE(step.excluded_legs, 3U);
   EXPECT_LT(bench.now().fit().dof, dof);
