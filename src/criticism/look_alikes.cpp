@@ -46,6 +46,7 @@ std::vector<LookAlike> look_alikes_of(std::size_t at, const std::vector<Tested>&
                    [](const LookAlike& a, const LookAlike& b) { return a.cosine > b.cosine; });
   if (alike.size() > kMost) alike.resize(kMost);
   std::vector<Effect> effects;
+  effects.reserve(alike.size());
   for (const LookAlike& one : alike) effects.push_back(one.effect);
   ScoreTest beside = tests;
   for (const std::size_t k : others) {

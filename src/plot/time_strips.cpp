@@ -87,15 +87,15 @@ Chart chart_of(const std::string& id, const std::string& title, Strip strip,
   chart.caption = "In time, sessions one after the other.";
   chart.x.title = "t [s]";
   chart.height = 70.0;
-  ChartLayer line{
-      LayerKind::line, "", {{"t [s]", std::move(strip.t)}, {title, std::move(strip.value)}}};
-  line.size = 1.2;
   if (!marked.chosen.empty()) {
     chart.layers.push_back(band_over(merged(marked.chosen), "chosen", "2", strip));
   }
   if (!marked.excluded.empty()) {
     chart.layers.push_back(band_over(merged(marked.excluded), "excluded", "muted", strip));
   }
+  ChartLayer line{
+      LayerKind::line, "", {{"t [s]", std::move(strip.t)}, {title, std::move(strip.value)}}};
+  line.size = 1.2;
   chart.layers.push_back(std::move(line));
   return chart;
 }

@@ -194,6 +194,21 @@ ordered_json channels_json() {
   return list;
 }
 
+/// Where an effect that was added saves nothing of what was foretold; empty else.
+std::string disappointment(const WorkbenchLog& log) {
+  constexpr double kLess = 0.95, kMore = 1.2;
+  const WorkbenchStep& step = log.steps[log.at];
+  if (step.kind != WorkbenchStep::Kind::add || !step.predicted_rms) return {};
+  const double before = log.steps[step.from].arrival_rms;
+  if (step.arrival_rms < kLess * before || step.arrival_rms < kMore * *step.predicted_rms)
+    return {};
+  return fmt::format(
+      "Adding {} did not help: legs end {} off, where {} was foretold and {} was before. Undo it, "
+      "and try another.",
+      step.effect, distance_text(step.arrival_rms), distance_text(*step.predicted_rms),
+      distance_text(before));
+}
+
 /// What is said above all else.
 ordered_json verdict_json(const TriedModel& now) {
   const Diagnosis& diagnosis = now.diagnosis();
@@ -260,11 +275,17 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
   const std::vector<std::size_t> way = way_to(log, log.at);
   ordered_json steps = ordered_json::array();
   for (std::size_t k = 0; k < log.steps.size(); ++k) steps.push_back(step_json(log, k, way));
+  ordered_json verdict = verdict_json(now);
+  if (provisional) {
+    verdict["text"] = "So far: " + typeset(verdict_in_words(now.diagnosis()));
+  } else if (const std::string said = disappointment(log); !said.empty()) {
+    verdict["others"].insert(verdict["others"].begin(), said);
+  }
   ordered_json result = {{"subject", subject},
                          {"provisional", provisional},
                          {"at", log.at},
                          {"steps", std::move(steps)},
-                         {"verdict", verdict_json(now)},
+                         {"verdict", std::move(verdict)},
                          {"fit", fit_in_words(now.diagnosis().chi2, now.diagnosis().dof,
                                               now.diagnosis().coefficients)},
                          {"tried", now.diagnosis().tried},

@@ -7,6 +7,7 @@
 #include "estimation/simulated_recordings.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/recording_files.hpp"
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace trussmap {
 namespace {
@@ -377,6 +379,38 @@ TEST(Workbench, PointsAreOfTheLegsThatAreChosen) {
     }
     ASSERT_GT(squares, 2.0);
     EXPECT_NEAR(along / squares, recording == 0 ? 0.0 : kIron, 0.015) << recording;
+  }
+}
+
+TEST(Workbench, SaysWhereWhatWasAddedDidNotHelp) {
+  WorkbenchLog log = begun().log();
+  log.steps.push_back(log.steps.front());
+  log.steps[0].arrival_rms = 0.032;
+  WorkbenchStep& added = log.steps[1];
+  added.kind = WorkbenchStep::Kind::add;
+  added.effect = "load on the left wheel";
+  added.predicted_rms = 0.0202;
+  added.arrival_rms = 0.0331;
+  log.at = 1;
+  const std::string said = workbench_json(begun().now(), log, "a robot");
+  EXPECT_NE(
+      said.find("Adding load on the left wheel did not help: legs end 33 mm off, where 20 mm"),
+      std::string::npos);
+  added.arrival_rms = 0.0215;  // as promised, or nearly
+  EXPECT_EQ(workbench_json(begun().now(), log, "a robot").find("did not help"), std::string::npos);
+  added.arrival_rms = 0.025;  // less than promised, and better than before
+  EXPECT_EQ(workbench_json(begun().now(), log, "a robot").find("did not help"), std::string::npos);
+}
+
+TEST(Workbench, LegsAreMarkedInTimeOverTheWholeHeight) {
+  const auto state =
+      nlohmann::json::parse(selection_json(begun().now(), free_legs(begun().now(), 2)));
+  for (const auto& strip : state.at("strips")) {
+    const auto& band = strip.at("layers").at(0);
+    ASSERT_EQ(band.at("name"), "chosen");
+    const auto& columns = band.at("columns");
+    EXPECT_GT(columns.at(2).at("values").at(0).get<double>(),
+              columns.at(1).at("values").at(0).get<double>());
   }
 }
 

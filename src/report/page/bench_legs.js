@@ -22,6 +22,7 @@ let choice = null;   // null: all
 /** @type {Selection | null} */
 let views = null;    // of the choice
 let busy = true;
+let leaving = false;  // what is chosen is being excluded
 /** @type {(choice: Choice | null) => void} */
 let chosenElse = () => {};
 /** @type {Set<HTMLElement>} */
@@ -94,9 +95,8 @@ export function begin(changed, step) {
   });
   by('all-legs').addEventListener('click', () => choose(null));
   by('exclude').addEventListener('click', () => {
-    const without = choice;
-    choose(null);
-    step({do: 'exclude', choice: without});
+    leaving = true;
+    step({do: 'exclude', choice});
   });
   by('include').addEventListener('click', () => step({do: 'include'}));
 }
@@ -104,6 +104,7 @@ export function begin(changed, step) {
 /** @param {boolean} now */
 export function setBusy(now) {
   busy = now;
+  if (!busy) leaving = false;
   if (state) showButtons();
 }
 
@@ -116,6 +117,12 @@ export function renew(next, its) {
   state = next;
   version = its;
   views = null;
+  if (leaving) {
+    leaving = false;
+    choice = null;
+    document.documentElement.dataset.chosen = '';
+    chosenElse(null);
+  }
   showAll();
   return choice ? choose(choice) : undefined;
 }

@@ -39,6 +39,7 @@ let state;
 let version = 0;     // of the state
 /** @type {Target | null} */
 let pinned = null;   // what to go back to
+let byDefault = false;  // nobody chose it
 /** @type {Target | null} */
 let looked = null;   // what is shown
 let asked = 0;
@@ -103,6 +104,7 @@ async function show(target) {
 /** @param {Target} target */
 function showPinned(target) {
   pinned = target;
+  byDefault = false;
   return show(target);
 }
 
@@ -159,9 +161,10 @@ const ofCard = card => ({name: card.id, card, on: false, ask: {finding: card.fin
 /** @type {(one: OnCard) => Target} */
 const ofOn = one => ({name: one.id, on: true, ask: {effect: one.effect}});
 
-/** @param {Target} target */
-function pin(target) {
+/** @param {Target} target @param {boolean} [unasked] */
+function pin(target, unasked = false) {
   pinned = target;
+  byDefault = unasked;
   showSliders(target, (target.card?.parameters || []).map(one => one.value));
   showDuel(target.card);
   /** @type {NodeListOf<HTMLElement>} */
@@ -214,9 +217,11 @@ export function renew(next, its) {
   const before = pinned;
   const on = state.on.find(one => one.id === before?.name);
   const card = state.cards.find(one => one.id === before?.name && !before.on);
-  if (on) return pinOn(on);
-  if (card) return pinCard(card);
-  if (state.cards.length) return pinCard(state.cards.find(one => one.status === 'missing') || state.cards[0]);
-  if (state.on.length) return pinOn(state.on[0]);
+  if (on) return pin(ofOn(on), byDefault);
+  if (card && !byDefault) return pinCard(card);
+  if (state.cards.length) {
+    return pin(ofCard(state.cards.find(one => one.status === 'missing') || state.cards[0]), true);
+  }
+  if (state.on.length) return pin(ofOn(state.on[0]), true);
   return undefined;
 }
