@@ -36,8 +36,10 @@ std::optional<Shape> formula_of(const std::string& variable, const Effect& effec
 void estimate(Response& response, const Score& score, double prior_sd, const FitState& fit,
               const ScoreTest& tests, const Eigen::MatrixXd& traces, const Eigen::VectorXd& rows) {
   std::vector<ResponseBin>& bins = response.bins;
-  Eigen::MatrixXd M = score.projected;
-  if (rows.size() > 0) M = rows.asDiagonal() * M;
+  const bool all = rows.size() == 0;
+  const Eigen::MatrixXd some =
+      all ? Eigen::MatrixXd() : Eigen::MatrixXd(rows.asDiagonal() * score.projected);
+  const Eigen::MatrixXd& M = all ? score.projected : some;
   const Eigen::MatrixXd S = M.transpose() * M;
   const SymmetricModes modes = symmetric_modes(S);
   const double least =
@@ -52,9 +54,8 @@ void estimate(Response& response, const Score& score, double prior_sd, const Fit
   }
   const double left = tests.residuals().squaredNorm() - explained;
   // Of some rows nobody knows how many values the map has taken.
-  const double dof = rows.size() > 0
-                         ? 0.0
-                         : static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows());
+  const double dof =
+      all ? static_cast<double>(fit.adjustment.dof) - static_cast<double>(S.rows()) : 0.0;
   const Eigen::MatrixXd projected = modes.eigenvectors * inverse.asDiagonal() *
                                     modes.eigenvectors.transpose() * (M.transpose() * traces);
   response.rivals.resize(static_cast<std::size_t>(traces.cols()));
