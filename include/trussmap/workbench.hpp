@@ -38,7 +38,10 @@ struct Explanation {
   std::string does;   ///< what it does to the robot
   std::string look;   ///< what to look at on the robot
   std::string drive;  ///< what to drive to be sure
+  /// Its coefficients have the sign that such effects seldom have, and the drawing does not show.
+  bool unusual = false;
 };
+/// By the sign of its coefficients, where it has any.
 [[nodiscard]] Explanation explanation_of(const Effect& effect);
 
 /// What an effect does to a robot, as SVG of 320 x 170: dashed as the robot believes it to be, blue
