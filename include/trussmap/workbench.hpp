@@ -7,7 +7,7 @@
 //                           preview(effect)   its curve, and what it would leave of the error:
 //                                             score tests, no fit
 //                           shown(effect)     one that the model has, as the recordings show it
-//                                             where the model lacks it alone
+//                                             beside the others
 //                           legs()            where, when, whether they count; both of the above
 //                                             can look at some legs alone
 //
@@ -132,7 +132,7 @@ class TriedModel {
   [[nodiscard]] EffectPreview preview(const Effect& effect, const std::vector<Effect>& rivals = {},
                                       const std::vector<std::size_t>& legs = {}) const;
 
-  /// An effect of the model by its place there. One more fit, kept until another is asked for.
+  /// An effect of the model by its place there, as the measurements show it beside the others.
   /// Throws std::out_of_range.
   [[nodiscard]] EffectEvidence shown(std::size_t effect,
                                      const std::vector<std::size_t>& legs = {}) const;

@@ -98,20 +98,20 @@ export function showOn(list, state, does) {
   if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
 }
 
-/** @param {Stacked} one @param {Acts} does @returns {HTMLElement} */
-function candidate(one, does) {
+/** @param {Stacked} one @param {Acts} does @param {boolean} [rival] of the card it is stacked in */
+function candidate(one, does, rival = false) {
   const item = card(one.name, [
     make('span', {className: 'save', textContent: saving(one.saves_mm) +
-      (one.status === 'missing' && one.saves_mm < 0 ? ' alone, before it is fitted' : '')}),
+      (one.status === 'missing' && one.saves_mm < 0 ? ' alone' : '')}),
     act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
   item.dataset.finding = String(one.finding);
   within(item, '.line').append(explainButton(item, one, () => does.explain({finding: one.finding})));
-  item.append(make('p', {}, tagOf(one), ' ' + one.words));
+  item.append(make('p', {}, rival ? '' : tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
     item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
-                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does))));
+                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does, true))));
   }
   return item;
 }
