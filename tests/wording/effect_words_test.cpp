@@ -23,7 +23,7 @@ TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {
 }
 
 TEST(EffectWords, NamesSayWhatIsOpenInThem) {
-  EXPECT_EQ(name_in_words(catalogue_effect("missed ticks (v0=0.4)")), "missed ticks above 0.4 m/s");
+  EXPECT_EQ(name_in_words(catalogue_effect("missed ticks (v0=0.4)")), "missed ticks of the left wheel above 0.4 m/s");
   EXPECT_EQ(name_in_words(catalogue_effect("tyre drift (t)")), "tyre drift with time");
   EXPECT_EQ(name_in_words({"turn with turn_rate", Channel::turn, {"turn_rate"}, {}}),
             "turning error with turn rate");
