@@ -127,12 +127,18 @@ std::optional<std::string> curve_in_words(const Effect& effect) {
   }
   const Scale scale = scale_of(effect.channel);
   const Phrase phrase = phrase_of(effect.channel);
+  constexpr double kNothing = 1e-3;  // of the most
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
   std::string text = phrase.subject;
   for (std::size_t j = 0; j < values.size(); ++j) {
-    text += fmt::format("{} {}{} {} at {} {}", j == 0 ? "" : ",",
-                        two_digits(scale.factor * std::abs(values[j])), scale.unit,
-                        values[j] < 0.0 ? phrase.less : phrase.more, variable_in_words(u),
-                        fmt::format("{:.3g}", middles[j]));
+    const std::string size =
+        std::abs(values[j]) < kNothing * most
+            ? std::string("nothing")
+            : fmt::format("{}{} {}", two_digits(scale.factor * std::abs(values[j])), scale.unit,
+                          values[j] < 0.0 ? phrase.less : phrase.more);
+    text += fmt::format("{} {} at {} {:.3g}", j == 0 ? "" : ",", size, variable_in_words(u),
+                        middles[j]);
   }
   return text;
 }
