@@ -92,9 +92,9 @@ TEST(LargeEffects, PassForNoNoiseThatLasts) {
   const Diagnosis result = diagnose({one.drive.recording}, one.model);
   EXPECT_EQ(missing_in(result), std::vector<std::string>{"left with speed squared"});
   ASSERT_TRUE(result.under);
-  for (const NoiseProcess& one : result.under->noise.noise.processes) {
-    EXPECT_NE(one.channel, Channel::left);
-    EXPECT_NE(one.channel, Channel::difference);
+  for (const NoiseProcess& process : result.under->noise.noise.processes) {
+    EXPECT_NE(process.channel, Channel::left);
+    EXPECT_NE(process.channel, Channel::difference);
   }
   EXPECT_LT(result.under->noise.noise.left, 1.2 * one.model.noise.left);
 }
