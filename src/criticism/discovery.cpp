@@ -165,7 +165,9 @@ class Discoverer {
       if (k == at || chosen.size() > kMostRivals) continue;
       const bool alike = std::any_of(
           winner.look_alikes.begin(), winner.look_alikes.end(), [&](const LookAlike& other) {
-            return other.effect.name == one.effect.name && other.cosine < kSame;
+            // What is the same to first order, and acts elsewhere, may yet be told apart by a fit.
+            return other.effect.name == one.effect.name &&
+                   (other.cosine < kSame || one.effect.channel != winner.effect.channel);
           });
       if (alike && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(k);
     }
@@ -202,6 +204,7 @@ class Discoverer {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
+    std::vector<LookAlike> look_alikes = rivals_of(trials, best, winner);
     found_.push_back(trials[best].candidate);
     result_.found = std::move(trials[best].fit);
     seek_parameters_anew();
@@ -211,8 +214,25 @@ class Discoverer {
     step.dropped = std::move(dropped);
     step.predicted_chi2 = winner.score;
     step.predicted = winner.held_out;
-    step.look_alikes = winner.look_alikes;
+    step.look_alikes = std::move(look_alikes);
     return true;
+  }
+
+  /// Of the trial that is taken: the winner's look-alikes, itself among them where another is
+  /// taken. Those that were tried are as far behind as their fits are.
+  [[nodiscard]] static std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials,
+                                                        std::size_t taken, const Finding& winner) {
+    const ModelFit& fit = trials[taken].fit;
+    const double noise = std::max(1.0, fit.chi2 / std::max(1, fit.dof));
+    std::vector<LookAlike> rivals = winner.look_alikes;
+    for (LookAlike& rival : rivals) {
+      if (rival.effect.name == trials[taken].candidate.effect.name) rival.effect = winner.effect;
+      for (const Trial& trial : trials) {
+        if (trial.candidate.effect.name != rival.effect.name) continue;
+        rival.behind = (trial.fit.chi2 - fit.chi2) / noise;
+      }
+    }
+    return rivals;
   }
 
   /// Dead reckoning over the longer horizon with another fit, as each fit's own path judges it, as

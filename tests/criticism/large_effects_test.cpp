@@ -10,6 +10,7 @@
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/workbench.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -70,6 +71,23 @@ TEST(KnownCauses, LeaveAFormAloneThatIsTheOnlyCause) {
   const SimulatedRecording one = toured(12, {left_with_speed_squared(0.02)});
   const Diagnosis result = diagnose({one.drive.recording}, one.model);
   EXPECT_EQ(missing_in(result), std::vector<std::string>{"left with speed squared"});
+}
+
+TEST(LargeEffects, ThatAreTheSameToFirstOrderAreToldApartByTheirFits) {
+  // A robot that drives askew gets a little less far than its wheels say; one whose compass is
+  // mounted askew does not.
+  const SimulatedRecording one = toured(104, {sized(catalogue_effect("constant creep"), -0.03)});
+  const Discovery result = discover({one.drive.recording}, one.model);
+  ASSERT_EQ(result.found.model.effects.size(), 1U);
+  EXPECT_EQ(result.found.model.effects[0].name, "constant creep");
+  const std::vector<LookAlike>& rivals = result.steps.at(1).look_alikes;
+  const auto named = [&rivals](const std::string& name) {
+    return std::find_if(rivals.begin(), rivals.end(),
+                        [&name](const LookAlike& rival) { return rival.effect.name == name; });
+  };
+  EXPECT_EQ(named("constant creep"), rivals.end());
+  ASSERT_NE(named("compass offset"), rivals.end());
+  EXPECT_TRUE(named("compass offset")->told_apart());
 }
 
 TEST(LargeEffects, AreForetoldAsTheFitThenFindsThem) {
