@@ -36,7 +36,7 @@ namespace trussmap {
 /// its own, any other by its channel and what it goes with.
 struct Explanation {
   std::string does;   ///< what it does to the robot
-  std::string look;   ///< what to look at on the robot
+  std::string look;   ///< what to look at on the robot; empty where that is said already
   std::string drive;  ///< what to drive to be sure
   /// Its coefficients have the sign that such effects seldom have, and the drawing does not show.
   bool unusual = false;
@@ -160,6 +160,7 @@ struct WorkbenchStep {
   std::string effect;      ///< that was added or removed
   std::size_t from = 0;    ///< the step that it began at; of the first its own
   std::string label = {};  ///< what its maker calls it; empty: nothing
+  std::vector<Effect> could_be = {};  ///< that recordings could not tell from what was added then
   Model model;             ///< what was added has no coefficients
   /// FitOptions::excluded here.
   std::vector<std::vector<TimeSpan>> excluded = {};

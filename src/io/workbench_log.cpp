@@ -56,6 +56,10 @@ ordered_json json(const WorkbenchStep& step) {
                          {"model", format_model(step.model)}};
   if (step.predicted_rms) result["predicted_rms"] = *step.predicted_rms;
   if (!step.label.empty()) result["label"] = step.label;
+  for (const Effect& one : step.could_be) {
+    result["could_be"].push_back(
+        {{"name", one.name}, {"channel", name_of(one.channel)}, {"shape", texts_of(one.shape)}});
+  }
   if (!step.excluded.empty()) {
     ordered_json& recordings = result["excluded"] = ordered_json::array();
     for (const std::vector<TimeSpan>& spans : step.excluded) {
@@ -96,6 +100,14 @@ WorkbenchStep step_of(const ordered_json& json, std::size_t number, std::size_t 
   step.dof = json.at("dof").get<int>();
   if (json.contains("predicted_rms")) step.predicted_rms = json.at("predicted_rms").get<double>();
   step.label = json.value("label", "");
+  for (const ordered_json& one : json.value("could_be", ordered_json::array())) {
+    Effect effect;
+    effect.name = one.at("name").get<std::string>();
+    effect.channel = channel_named(one.at("channel").get<std::string>());
+    for (const ordered_json& shape : one.at("shape"))
+      effect.shape.emplace_back(shape.get<std::string>());
+    step.could_be.push_back(std::move(effect));
+  }
   if (json.contains("excluded")) {
     step.excluded = excluded_of(json.at("excluded"), recordings, file);
     step.excluded_legs = json.at("excluded_legs").get<std::size_t>();

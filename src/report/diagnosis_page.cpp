@@ -60,19 +60,23 @@ std::string legs_end(const Diagnosis& diagnosis) {
                      as_good_as_noise(legs) ? ", as good as this robot's noise allows" : "");
 }
 
+std::string faultless_verdict(const Diagnosis& diagnosis) {
+  if (noise_is_wrong(diagnosis)) {
+    return fmt::format("The noise is not as the model states it: {}. No effect is missing.{}",
+                       found_and_stated(diagnosis.under->noise), slight_misfit_note(diagnosis));
+  }
+  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}{}",
+                     diagnosis.tried, legs_end(diagnosis), slight_misfit_note(diagnosis));
+}
+
 std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   switch (diagnosis.verdict) {
     case Diagnosis::Verdict::missing:
       return missing_verdict(diagnosis, evidence);
     case Diagnosis::Verdict::nothing_missing:
-      if (noise_is_wrong(diagnosis)) {
-        return fmt::format("The noise is not as the model states it: {}. No effect is missing.",
-                           found_and_stated(diagnosis.under->noise));
-      }
-      return fmt::format(
-          "Nothing is missing: none of {} changes tried explains more than chance.{}",
-          diagnosis.tried, legs_end(diagnosis));
+      return faultless_verdict(diagnosis);
     case Diagnosis::Verdict::unexplained_misfit:
+      if (is_slight_misfit(diagnosis)) return faultless_verdict(diagnosis);
       break;
   }
   const std::string text = "Something is wrong that no effect explains: " +
@@ -155,11 +159,11 @@ ResultRows unexplained_rows(const Diagnosis& diagnosis, const DiagnosisEvidence&
 }
 
 ResultRows rows_on(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
-  ResultRows rows = diagnosis.verdict == Diagnosis::Verdict::missing
-                        ? missing_rows(diagnosis, evidence)
-                    : diagnosis.verdict == Diagnosis::Verdict::nothing_missing
-                        ? faultless_rows(diagnosis, evidence)
-                        : unexplained_rows(diagnosis, evidence);
+  ResultRows rows =
+      diagnosis.verdict == Diagnosis::Verdict::missing ? missing_rows(diagnosis, evidence)
+      : diagnosis.verdict == Diagnosis::Verdict::nothing_missing || is_slight_misfit(diagnosis)
+          ? faultless_rows(diagnosis, evidence)
+          : unexplained_rows(diagnosis, evidence);
   rows.off = evidence.with
                  ? off_sentences(evidence.given, *evidence.with, with_name(evidence),
                                  noise_floor(diagnosis, evidence))
@@ -233,10 +237,11 @@ Page diagnosis_page(const Diagnosis& diagnosis, const DiagnosisEvidence& evidenc
   page.command = "diagnose";
   page.subject = subject;
   page.verdict = page_verdict(diagnosis, evidence);
-  page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing ? Tone::bad
-              : noise_is_wrong(diagnosis)                              ? Tone::bad
-              : others_notes(diagnosis).empty()                        ? Tone::good
-                                                                       : Tone::neutral;
+  const bool slight = is_slight_misfit(diagnosis);
+  page.tone = diagnosis.verdict != Diagnosis::Verdict::nothing_missing && !slight ? Tone::bad
+              : noise_is_wrong(diagnosis)                                         ? Tone::bad
+              : others_notes(diagnosis).empty() && !slight                        ? Tone::good
+                                                                                  : Tone::neutral;
   page.answers = answers_of(rows_on(diagnosis, evidence));
   const NamedModel given{kGiven, evidence.given};
   std::vector<NamedModel> models{given};

@@ -94,6 +94,10 @@ std::string end_off(const HeldOut& legs, bool noise_found) {
                                              : ", as good as this robot's noise allows");
 }
 
+bool is_unexplained(const Discovery& discovery) {
+  return !discovery.consistent && !is_slight_misfit(discovery.last);
+}
+
 std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& evidence) {
   const auto& effects = evidence.effects;
   const Comparison& now = evidence.found.comparison;
@@ -107,16 +111,17 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
                        : now.consistent() ? "The model now explains the measurements."
                                           : "Something is still unexplained.");
   }
-  if (!discovery.consistent) {
+  if (is_unexplained(discovery)) {
     return fmt::format("Nothing found, and something is unexplained: {}.{}",
                        objection_in_words(now), off);
   }
   if (noise) {
-    return fmt::format("The noise is not as the model states it: {}. No effect is missing.",
-                       found_and_stated(discovery.last.under->noise));
+    return fmt::format("The noise is not as the model states it: {}. No effect is missing.{}",
+                       found_and_stated(discovery.last.under->noise),
+                       slight_misfit_note(discovery.last));
   }
-  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}",
-                     discovery.last.tried, off);
+  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}{}",
+                     discovery.last.tried, off, slight_misfit_note(discovery.last));
 }
 
 /// What held-out legs cannot tell from the first effect found.
@@ -159,7 +164,7 @@ ResultRows rows_without(const Discovery& discovery, const DiscoveryEvidence& evi
   const Diagnosis& last = discovery.last;
   const bool noise = noise_is_wrong(last);
   ResultRows rows;
-  rows.missing = {!discovery.consistent
+  rows.missing = {is_unexplained(discovery)
                       ? fmt::format("Unknown: none of {} changes tried explains it.", last.tried)
                       : fmt::format("{}: none of {} changes tried explains more than chance.",
                                     noise ? "No effect" : "Nothing", last.tried)};
@@ -183,7 +188,7 @@ ResultRows rows_without(const Discovery& discovery, const DiscoveryEvidence& evi
 ResultRows rows_on(const Discovery& discovery, const DiscoveryEvidence& evidence) {
   ResultRows rows = evidence.effects.empty() ? rows_without(discovery, evidence)
                                              : found_rows(discovery, evidence);
-  if (!evidence.effects.empty() || !discovery.consistent) {
+  if (!evidence.effects.empty() || is_unexplained(discovery)) {
     rows.missing.push_back(fmt::format("Looked for more: {}.", stop_in_words(discovery)));
   }
   const std::vector<std::string> others = others_notes(discovery.last);
@@ -204,7 +209,9 @@ Page discovery_page(const Discovery& discovery, const DiscoveryEvidence& evidenc
   page.subject = subject;
   page.verdict = found_verdict(discovery, evidence);
   const bool noise_alone = !found_any && noise_is_wrong(discovery.last);
-  page.tone = discovery.consistent && !noise_alone ? Tone::good : Tone::bad;
+  page.tone = noise_alone || is_unexplained(discovery) ? Tone::bad
+              : discovery.consistent                   ? Tone::good
+                                                       : Tone::neutral;
   page.answers = answers_of(rows_on(discovery, evidence));
   const NamedModel given{kModelGiven, evidence.given};
   const NamedModel found{kModelFound, evidence.found};

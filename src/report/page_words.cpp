@@ -255,6 +255,13 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
   return open.empty() ? told : open + " " + told;
 }
 
+std::string slight_misfit_note(const Diagnosis& diagnosis) {
+  if (!is_slight_misfit(diagnosis)) return "";
+  return fmt::format(
+      " A slight misfit is left, as much as noise alone makes in one of {:.0f} recordings.",
+      1.0 / diagnosis.p_value);
+}
+
 std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::string& who_states) {
   std::vector<std::string> notes;
   if (noise_is_wrong(diagnosis)) {

@@ -26,8 +26,8 @@ Chart chart_of(const EffectPreview& preview) {
   }
   const std::string name = name_in_words(evidence.estimate.effect);
   return response_chart("plot", "The error against its cause",
-                        "Dots with 95 % intervals: the error that the model leaves, as the "
-                        "recordings show it. The line: " +
+                        "Dots with 95 % intervals: this error as the recordings show it, beside "
+                        "what else the model has. The line: " +
                             name + (rivals.empty() ? "." : "; dashed: what it is set against."),
                         evidence.response, name, rivals);
 }

@@ -5,6 +5,7 @@
 #include "report/effect_parts.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
+#include "trussmap/workbench.hpp"
 
 namespace trussmap {
 
@@ -18,7 +19,8 @@ ordered_json effect_view(const Effect& effect) {
                          {"channel", name_of(effect.channel)},
                          {"does", facts_of(effect.channel).does_what},
                          {"shape", texts_of(effect.shape)}};
-  if (const CatalogueEntry* entry = find_entry(effect.name)) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  if (entry != nullptr && !explanation_of(effect).unusual) {
     result["cause"] = entry->cause;
     result["remedy"] = entry->remedy;
   }

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,7 +72,8 @@ Chart staircase(const WorkbenchLog& log, const std::vector<std::size_t>& way) {
   std::vector<LadderStep> ladder;
   for (const std::size_t k : way) {
     const WorkbenchStep& step = log.steps[k];
-    ladder.push_back({step_name(step), step.arrival_rms, step.chi2, step.dof, step.predicted_rms});
+    ladder.push_back({step.label.empty() ? step_name(step) : step.label, step.arrival_rms,
+                      step.chi2, step.dof, step.predicted_rms});
   }
   return ladder_chart("staircase", ladder, log.steps[way.back()].expected_rms);
 }
@@ -86,6 +88,7 @@ ordered_json card_json(const TriedModel& now, std::size_t k) {
   card["status"] = name_of(one.status);
   card["implausible"] = one.implausible;
   card["saves_mm"] = 1e3 * (diagnosis.held_out.arrival_rms - one.held_out.arrival_rms);
+  card["chi2_less"] = one.score;
   card["leaves_mm"] = 1e3 * one.held_out.arrival_rms;
   card["p"] = chance_text(one.p_adjusted);
   card["significant"] = one.p_adjusted < kSignificance;
@@ -148,7 +151,19 @@ ordered_json cards_json(const TriedModel& now) {
   return cards;
 }
 
-ordered_json on_json(const TriedModel& now) {
+/// What these recordings could not tell an effect from when it was added.
+std::vector<std::string> could_be(const Effect& effect, const WorkbenchLog& log) {
+  std::vector<std::string> names;
+  for (const std::size_t k : way_to(log, log.at)) {
+    const WorkbenchStep& step = log.steps[k];
+    if (step.kind != WorkbenchStep::Kind::add || step.effect != effect.name) continue;
+    names.clear();
+    for (const Effect& one : step.could_be) names.push_back(name_in_words(one));
+  }
+  return names;
+}
+
+ordered_json on_json(const TriedModel& now, const WorkbenchLog& log) {
   ordered_json list = ordered_json::array();
   for (std::size_t k = 0; k < now.fit().effects.size(); ++k) {
     const EffectEstimate& one = now.fit().effects[k];
@@ -158,6 +173,7 @@ ordered_json on_json(const TriedModel& now) {
     ordered_json unfitted = ordered_json::array();
     for (const UnfittedCoefficient& why : one.not_fitted) unfitted.push_back(in_words(one, why));
     card["not_fitted"] = std::move(unfitted);
+    card["could_be"] = could_be(one.effect, log);
     list.push_back(std::move(card));
   }
   return list;
@@ -187,9 +203,15 @@ std::vector<std::string> shape_variables(const std::vector<Recording>& recording
   return names;
 }
 
-ordered_json channels_json() {
+/// What an effect can act on in these recordings: where the search has looked, or the model acts.
+ordered_json channels_json(const TriedModel& now) {
+  std::set<Channel> there;
+  for (const Finding& one : now.diagnosis().findings) there.insert(one.effect.channel);
+  for (const Unobservable& one : now.diagnosis().unobservable) there.insert(one.effect.channel);
+  for (const EffectEstimate& one : now.fit().effects) there.insert(one.effect.channel);
   ordered_json list = ordered_json::array();
   for (const ChannelFacts& one : channels()) {
+    if (!there.contains(one.channel)) continue;
     list.push_back({{"name", one.name}, {"unit", one.unit}, {"words", one.does_what}});
   }
   return list;
@@ -243,10 +265,11 @@ ordered_json verdict_json(const TriedModel& now) {
     result["unsure"] =
         first.look_alikes.empty() ? "" : rivals_note(first.effect, first.look_alikes);
   }
-  result["drive"] = diagnosis.next_drive
-                        ? "To tell them apart, " + in_words(diagnosis.next_drive) + "."
-                    : !diagnosis.lacks.empty() ? advised_drive(advice_on(diagnosis.lacks.front()))
-                                               : "";
+  const bool doubt = diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit && !slight;
+  result["drive"] =
+      diagnosis.next_drive ? "To tell them apart, " + in_words(diagnosis.next_drive) + "."
+      : doubt && !diagnosis.lacks.empty() ? advised_drive(advice_on(diagnosis.lacks.front()))
+                                          : "";
   result["others"] = others_notes(diagnosis, "the model that is taken along states it");
   if (slight) {
     result["others"].push_back(
@@ -317,12 +340,12 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
                          {"fit", fit_in_words(now.diagnosis().chi2, now.diagnosis().dof,
                                               now.diagnosis().coefficients)},
                          {"tried", now.diagnosis().tried},
-                         {"on", on_json(now)},
+                         {"on", on_json(now, log)},
                          {"cards", cards_json(now)},
                          {"unseen", unseen_json(now.diagnosis())},
                          {"noise", noise_json(now)},
                          {"variables", shape_variables(now.recordings())},
-                         {"channels", channels_json()},
+                         {"channels", channels_json(now)},
                          {"staircase", chart_view(staircase(log, way))}};
   result.update(views_json(now, std::nullopt));
   return safe_text(result);

@@ -97,6 +97,10 @@ Chart map_of(const TriedModel& now, const IsShown& is_shown, bool all) {
     map = route_chart("map", "The map, routes by what is left", now.map(),
                       all ? routes : route_errors(shown, now.map()), worst);
   }
+  std::vector<Effect> acting;
+  for (const EffectEstimate& one : now.fit().effects) acting.push_back(one.effect);
+  for (const Finding* one : found_by(now.diagnosis())) acting.push_back(one->effect);
+  add_places(map, acting);
   const auto is_excluded = [](const TriedLeg& leg) { return leg.excluded; };
   if (std::ranges::any_of(now.legs(), is_excluded)) {
     map.layers.push_back(leg_layer(now.legs(), "excluded", "muted", is_excluded));

@@ -203,27 +203,27 @@ const char* noun_of(Channel channel) {
 std::string channel_in_words(Channel channel) {
   switch (channel) {
     case Channel::travel:
-      return "travel, measured too short by";
+      return "robot travels further than measured by";
     case Channel::wheels:
-      return "both wheels, measured too short by";
+      return "both wheels larger than nominal by";
     case Channel::left:
-      return "left wheel, measured too short by";
+      return "left wheel rolls further than it says by";
     case Channel::right:
-      return "right wheel, measured too short by";
+      return "right wheel rolls further than it says by";
     case Channel::creep:
       return "slip to the left, of the travel";
     case Channel::turn:
-      return "turning, measured too little by";
+      return "robot turns more than measured by";
     case Channel::difference:
-      return "right wheel against left";
+      return "right wheel larger than the left by";
     case Channel::drift:
-      return "turning, missing per second";
+      return "heading drifts to the left by";
     case Channel::compass:
       return "compass reads too much by";
     case Channel::gyro:
       return "gyro reads too much by";
     case Channel::gyro_scale:
-      return "turning, measured too little by the gyro by";
+      return "robot turns more than its gyro says by";
     case Channel::range:
     case Channel::range_scale:
       return "ranges too long by";
@@ -236,9 +236,9 @@ std::string channel_in_words(Channel channel) {
     case Channel::lever_left:
       return "sensor to the left by";
     case Channel::advance:
-      return "travel, missing per event";
+      return "robot moves forward per event by";
     case Channel::rotate:
-      return "turning, missing per event";
+      return "robot turns left per event by";
     case Channel::delay:
       return "sightings stamped late by";
     case Channel::truth_heading:
@@ -254,23 +254,23 @@ std::string channel_in_words(Channel channel) {
     case Channel::fix_y:
       return "fixes too far along y by";
     case Channel::sideways:
-      return "way to the side, measured too short by";
+      return "robot moves sideways more than measured by";
     case Channel::wheel1:
-      return "first wheel, measured too short by";
+      return "first wheel rolls further than it says by";
     case Channel::wheel2:
-      return "second wheel, measured too short by";
+      return "second wheel rolls further than it says by";
     case Channel::wheel3:
-      return "third wheel, measured too short by";
+      return "third wheel rolls further than it says by";
     case Channel::wheel4:
-      return "fourth wheel, measured too short by";
+      return "fourth wheel rolls further than it says by";
     case Channel::wheel5:
-      return "fifth wheel, measured too short by";
+      return "fifth wheel rolls further than it says by";
     case Channel::wheel6:
-      return "sixth wheel, measured too short by";
+      return "sixth wheel rolls further than it says by";
     case Channel::steer:
       return "steering further left than measured by";
     case Channel::steer_gain:
-      return "steering, measured too little by";
+      return "steered wheel turns further than it says by";
   }
   return "";
 }

@@ -96,8 +96,7 @@ Explanation explanation_of(const Effect& effect) {
   const std::string covariate = goes_with(effect);
   const auto against = [known](double value) { return value * known->sign < 0.0; };
   if (!effect.coefficients.empty() && std::ranges::all_of(effect.coefficients, against)) {
-    return {with(known->otherwise, covariate), with(known->look, covariate),
-            with(known->drive, covariate), true};
+    return {with(known->otherwise, covariate), "", with(known->drive, covariate), true};
   }
   return {with(known->does, covariate), with(known->look, covariate),
           with(known->drive, covariate)};

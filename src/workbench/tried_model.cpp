@@ -167,7 +167,14 @@ EffectPreview TriedModel::preview(const Effect& effect, const std::vector<Effect
     result.rivals_predicted.push_back(predicted_by(*tried_->legs, asked[k], scores[k]));
   }
   if (!rivals.empty()) {
-    result.rivals_behind = chi2_behind(effect, rivals, *tried_->tests, tried_->fit.dof);
+    ScoreTest beside = *tried_->tests;  // what else is missing, as the diagnosis has it
+    for (const Finding* one : found_by(tried_->run.result)) {
+      const auto same = [one](const Effect& other) { return other.name == one->effect.name; };
+      if (std::none_of(asked.begin(), asked.end(), same)) {
+        beside.condition_on(beside.columns(one->effect));
+      }
+    }
+    result.rivals_behind = chi2_behind(effect, rivals, beside, tried_->fit.dof);
   }
   const EffectEstimate estimate{asked.front(), score.sd, {}};
   result.evidence = seen_effect(estimate, {asked.begin() + 1, asked.end()}, fit, *tried_->tests,

@@ -132,6 +132,14 @@ void Workbench::add(const Effect& effect, const WorkbenchWatch& watch) {
                                   "\" already, expected another name");
     }
   }
+  for (const Finding& one : now().diagnosis().findings) {
+    if (one.effect.name != effect.name) continue;
+    for (const LookAlike& rival : one.look_alikes) {
+      if (rival.told_apart()) continue;
+      step.could_be.push_back(rival.effect);
+      step.could_be.back().coefficients.clear();
+    }
+  }
   const EffectPreview preview = now().preview(effect);
   if (preview.predicted) step.predicted_rms = preview.predicted->arrival_rms;
   step.model.effects.push_back(effect);

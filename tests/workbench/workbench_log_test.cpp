@@ -37,6 +37,7 @@ WorkbenchLog some_log() {
   log.steps[1].dof = 116;
   log.steps[1].excluded = {{{1.0 / 3.0, 2.5}, {7.0, 9.0}}};
   log.steps[1].excluded_legs = 4;
+  log.steps[1].could_be = {catalogue_effect("body tilt")};
   log.steps[2].kind = WorkbenchStep::Kind::remove;
   log.steps[2].effect = "hard iron";
   log.steps[2].from = 1;

@@ -65,7 +65,7 @@ function tagOf(one) {
   if (one.status === 'missing') return tag('missing', 'bad');
   if (one.implausible) return tag('implausibly large', 'plain');
   if (one.status === 'negligible') return tag('too small to matter', 'plain');
-  return one.significant ? tag('fits less well', 'plain') : tag('no more than chance', 'plain');
+  return one.significant ? tag('less likely', 'plain') : tag('no more than chance', 'plain');
 }
 
 /**
@@ -93,6 +93,10 @@ export function showOn(list, state, does) {
     within(item, '.line').append(explainButton(item, one, () => does.explain({effect: one.effect})));
     item.append(make('p', {textContent: (state.provisional ? 'For now: ' : '') + one.words}),
                 ...one.not_fitted.map(why => make('p', {className: 'failed', textContent: why})));
+    if (one.could_be.length) {
+      item.append(make('p', {className: 'doubt', textContent:
+        `When it was added these recordings could not tell it from ${one.could_be.join(', ')}.`}));
+    }
     return item;
   }));
   if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
@@ -101,8 +105,8 @@ export function showOn(list, state, does) {
 /** @param {Stacked} one @param {Acts} does @param {boolean} [rival] of the card it is stacked in */
 function candidate(one, does, rival = false) {
   const item = card(one.name, [
-    make('span', {className: 'save', textContent: saving(one.saves_mm) +
-      (one.status === 'missing' && one.saves_mm < 0 ? ' alone' : '')}),
+    make('span', {className: 'save', textContent: one.status === 'missing' && one.saves_mm < 0.05
+      ? `\u03c7\u00b2 \u2212${one.chi2_less.toFixed(0)}` : saving(one.saves_mm)}),
     act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
@@ -110,7 +114,7 @@ function candidate(one, does, rival = false) {
   within(item, '.line').append(explainButton(item, one, () => does.explain({finding: one.finding})));
   item.append(make('p', {}, rival ? '' : tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
-    item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
+    item.append(make('p', {className: 'or', textContent: 'or, for these recordings cannot tell:'}),
                 make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does, true))));
   }
   return item;

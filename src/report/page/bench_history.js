@@ -13,6 +13,7 @@ import {by, make, selectBy} from './dom.js';
 
 /** @type {[number, number] | null} */
 let beside = null;  // the two that are compared
+let besideAt = -1;  // the step at which they were chosen
 /** @type {number | null} */
 let naming = null;  // the step that is being named
 
@@ -24,7 +25,8 @@ function figuresOf(state, step) {
   const here = step.step === state.at;
   const less = step.mm - state.steps[state.at].mm;
   const against = here ? ' (here)'
-      : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
+      : Math.abs(less) < 0.05 ? ' (as here)'
+      : ` (${Math.abs(less).toFixed(1)} mm ${less > 0 ? 'more' : 'less'} than here)`;
   const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
   const roughly = here && state.provisional ? '\u2248 ' : '';
   const branches = step.step > 0 && step.from !== step.step - 1 ? `from ${step.from + 1}: ` : '';
@@ -101,7 +103,10 @@ function showComparison(state, does) {
   box.hidden = state.steps.length < 2;
   if (box.hidden) return;
   const last = state.steps.length - 1;
-  if (!beside || Math.max(...beside) > last) beside = [state.steps[state.at].from, state.at];
+  if (!beside || Math.max(...beside) > last || besideAt !== state.at) {
+    beside = [state.steps[state.at].from, state.at];
+    besideAt = state.at;
+  }
   if (beside[0] === beside[1]) beside = [beside[0], beside[0] === last ? 0 : last];
   const [a, b] = beside;
   for (const [id, chosen] of /** @type {[string, number][]} */ ([['compare-one', a], ['compare-other', b]])) {

@@ -54,10 +54,9 @@ export const request = () => looked && {...looked.ask};
 /** @param {Preview} reply @param {Target} target */
 function saves(reply, target) {
   if (reply.leaves_mm === null) return '';
-  if (state.on.length && target.card?.status === 'missing' && reply.leaves_mm > reply.now_mm) {
-    return 'How much it saves shows when it is fitted: what the model has already changes with it.';
-  }
-  return `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
+  const none = target.card?.status === 'missing' && reply.leaves_mm > reply.now_mm - 0.05;
+  return `${none ? 'By itself it moves no leg\u2019s end nearer, yet it explains much: ' : ''}` +
+         `${reply.now_mm.toFixed(1)} mm now, ${reply.leaves_mm.toFixed(1)} mm with it, as predicted; ` +
          `chi\u00b2 less by ${reply.chi2_less.toFixed(reply.chi2_less < 10 ? 1 : 0)} (${reply.dof} coefficient${reply.dof > 1 ? 's' : ''}), p ${reply.p}`;
 }
 
@@ -165,7 +164,7 @@ function showDuel(card) {
   const bySaving = (/** @type {Card} */ a, /** @type {Card} */ b) => b.saves_mm - a.saves_mm;
   by('duel').replaceChildren(
       make('option', {value: '', textContent: 'nothing'}),
-      ...[{label: 'told apart by no data here', cards: first},
+      ...[{label: 'these recordings cannot tell it from', cards: first},
           {label: `of the same part (${card?.part})`, cards: same.sort(bySaving).slice(0, 20)},
           {label: 'of other parts', cards: rest.sort(bySaving).slice(0, 20)}]
           .filter(group => group.cards.length).map(group => groupOf(group.label, group.cards)));

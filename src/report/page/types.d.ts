@@ -111,6 +111,7 @@ interface OnCard {
   effect: number;
   words: string;
   not_fitted: string[];
+  could_be: string[];
 }
 
 interface Card {
@@ -128,6 +129,7 @@ interface Card {
   status: string;
   implausible: boolean;
   saves_mm: number;
+  chi2_less: number;
   leaves_mm: number;
   p: string;
   significant: boolean;

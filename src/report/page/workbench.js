@@ -21,6 +21,7 @@ import {notice} from './notice.js';
 let state = null;
 let version = 0;
 let busy = true;
+let stopping = false;  // somebody asked for it
 /** @type {number[]} */
 let onward = [];  // steps that were undone
 
@@ -114,12 +115,17 @@ function onStatus(status) {
   renewing = renewing.then(async () => {
     if (status.version !== version && status.version > 0) await renew(status.version);
     setBusy(status.busy);
+    if (stopping && !status.busy) {
+      stopping = false;
+      if (!status.failed) fail('Stopped: all is as it was before that step.');
+    }
     by('doing').hidden = !status.busy;  // not before the whole screen is that of the state
   }).catch(error => fail(messageOf(error)));
 }
 
 by('stop').addEventListener('click', () => {
   by('stop').hidden = true;
+  stopping = true;
   tell('stop', {}).catch(error => fail(messageOf(error)));
 });
 by('undo').addEventListener('click', () => {
