@@ -214,7 +214,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   result.variable = variable;
   const std::optional<Shape> formula = formula_of(variable, effect);
   if (!formula) return result;
-  Bins bins = bins_of(*formula, fit, tests);
+  Bins bins = bins_of(*formula, fit, tests, variable == kPlace);
   if (bins.bins.empty()) return result;
   Effect probe;
   probe.name = std::string(facts.name) + " along " + variable;
@@ -229,7 +229,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   result.rivals.pop_back();
   if (result.bins.empty()) return result;
   const bool round = variable == "heading";
-  const double low = round ? 0.0 : result.bins.front().at;
+  const double low = round || variable == kPlace ? 0.0 : result.bins.front().at;
   const double high = round ? kTurn : result.bins.back().at;
   result.curve = levelled(effect_curve(effect, variable, low, high), effect, variable, projected);
   for (std::size_t k = 0; k < rivals.size(); ++k) {

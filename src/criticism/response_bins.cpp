@@ -11,7 +11,7 @@
 namespace trussmap {
 namespace {
 
-constexpr int kBins = 9;
+constexpr std::size_t kBins = 9;
 constexpr int kHeadingBins = 12;
 constexpr std::size_t kFewValues = 9;
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -42,8 +42,23 @@ std::vector<double> values_of(const Shape& formula, const FitState& fit, const S
   return values;
 }
 
-/// Equally many rows in each; one per value where there are few.
-std::vector<double> edges_of(const std::vector<double>& values) {
+/// How many of the rows lie below each edge between bins: of distances from a place those near it
+/// are told apart.
+std::vector<std::size_t> rows_below(std::size_t rows, bool from_place) {
+  if (from_place) {
+    std::vector<std::size_t> below;
+    for (const std::size_t percent : {1U, 3U, 6U, 11U, 20U, 35U, 55U, 77U}) {
+      below.push_back(rows * percent / 100);
+    }
+    return below;
+  }
+  std::vector<std::size_t> below;
+  for (std::size_t k = 1; k < kBins; ++k) below.push_back(rows * k / kBins);
+  return below;
+}
+
+/// Equally many rows in each, but near a place; one per value where there are few.
+std::vector<double> edges_of(const std::vector<double>& values, bool from_place) {
   const double span = values.back() - values.front();
   std::vector<double> distinct;
   for (const double value : values) {
@@ -56,8 +71,8 @@ std::vector<double> edges_of(const std::vector<double>& values) {
       edges.push_back(0.5 * (distinct[k - 1] + distinct[k]));
     }
   } else {
-    for (int k = 1; k < kBins; ++k) {
-      const double edge = values[values.size() * static_cast<std::size_t>(k) / kBins];
+    for (const std::size_t below : rows_below(values.size(), from_place)) {
+      const double edge = values[below];
       if (edge - edges.back() > 0.02 * span) edges.push_back(edge);
     }
   }
@@ -88,11 +103,11 @@ Bins heading_bins(const std::vector<double>& values) {
   return result;
 }
 
-Bins bins_of(const Shape& variable, const std::vector<double>& values) {
+Bins bins_of(const Shape& variable, const std::vector<double>& values, bool from_place) {
   if (variable == "heading") return heading_bins(values);
   Bins result;
   if (!(values.back() > values.front())) return result;
-  const std::vector<double> edges = edges_of(values);
+  const std::vector<double> edges = edges_of(values, from_place);
   auto from = values.begin();
   for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
     const auto to = std::lower_bound(from, values.end(), edges[k + 1]);
@@ -110,9 +125,9 @@ Bins bins_of(const Shape& variable, const std::vector<double>& values) {
 
 }  // namespace
 
-Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests) {
+Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests, bool from_place) {
   const std::vector<double> values = values_of(formula, fit, tests);
-  return values.empty() ? Bins() : bins_of(formula, values);
+  return values.empty() ? Bins() : bins_of(formula, values, from_place);
 }
 
 }  // namespace trussmap

@@ -18,7 +18,9 @@ struct Bins {
 };
 
 /// Of a formula: equally many rows in each, one per value where there are few; of the heading,
-/// twelve directions. None where the recordings lack a variable, or it does not vary.
-[[nodiscard]] Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests);
+/// twelve directions; of a distance from a place finer near it. None where the recordings lack a
+/// variable, or it does not vary.
+[[nodiscard]] Bins bins_of(const Shape& formula, const FitState& fit, const ScoreTest& tests,
+                           bool from_place);
 
 }  // namespace trussmap
