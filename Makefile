@@ -13,6 +13,7 @@
 #   make package       install what is missing, build the Debian packages into build/package and
 #                      check them (lintian); make dist: the archive of the sources alone
 #   make python        install what is missing, build the Python package into build/python
+#   make notebooks     the same, then execute docs/notebooks into build/notebooks (installs Jupyter's parts)
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
@@ -28,7 +29,8 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test dist package site site-check python fuzz tsan install-deps test-deps site-deps configure build command clean
+PYTHON_TREE ?= build
+.PHONY: all check demo test dist package site site-check python notebooks fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -67,8 +69,12 @@ package: install-deps
 
 python:
 	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev
-	@cmake --preset default $(GENERATOR) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
-	@cmake --build build --parallel $(JOBS) --target trussmap_python_package trussmap_command
+	@cmake --preset default $(GENERATOR) -B $(PYTHON_TREE) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
+	@cmake --build $(PYTHON_TREE) --parallel $(JOBS) --target trussmap_python_package trussmap_command
+
+notebooks: python
+	@.ci/install-deps python3-matplotlib python3-nbclient python3-nbconvert python3-nbformat python3-ipykernel
+	@docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev
