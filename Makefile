@@ -74,7 +74,7 @@ python:
 
 notebooks: python
 	@.ci/install-deps python3-matplotlib python3-nbclient python3-nbconvert python3-nbformat python3-ipykernel
-	@docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
+	@$(firstword $(wildcard /usr/bin/python3) python3) docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev
