@@ -5,8 +5,10 @@
 #   make               configure and build into build/
 #   make demo          install what is missing (Debian), build the command, run the worked example
 #                      (VERBOSE=1: with every command's tables)
-#   make check         install what is missing (Debian), build everything, run the fast tests: those
-#                      of pages in a browser and the slow ones are left to make test
+#   make check         install what is missing (Debian), look whether the sources are formatted, build
+#                      everything, run the fast tests: those of pages in a browser and the slow ones
+#                      are left to make test
+#   make format        format the sources (clang-format)
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too, as are, where there is npm, what checks their scripts' types
 #                      and their accessibility
@@ -30,7 +32,7 @@ endif
 
 MINUTES ?= 1
 PYTHON_TREE ?= build
-.PHONY: all check demo test dist package site site-check python notebooks fuzz tsan install-deps test-deps site-deps configure build command clean
+.PHONY: all check formatted format demo test dist package site site-check python notebooks fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -48,8 +50,18 @@ command: configure
 demo: install-deps command
 	@maps/demo.sh $(if $(VERBOSE),--verbose)
 
-check: install-deps build
+check: install-deps formatted build
 	@.ci/test build --parallel $(JOBS) --label-exclude 'slow|browser'
+
+# In an archive of the sources, which is no repository, there is nothing to look at.
+formatted:
+	@.ci/install-deps clang-format git
+	@git ls-files '*.hpp' '*.cpp' 2>/dev/null | xargs -r clang-format --dry-run -Werror || \
+	  { echo "not as clang-format has it: make format" >&2; exit 1; }
+
+format:
+	@.ci/install-deps clang-format git
+	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
 
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)

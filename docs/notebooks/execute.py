@@ -6,6 +6,7 @@
 # OUT/NAME.html. Ends with status 1 where a cell fails. Usage: execute.py [--package DIR] OUT [PAGE...]
 import argparse
 import os
+import re
 import sys
 import time
 import traceback
@@ -43,7 +44,7 @@ def execute(path, out):
         NotebookClient(notebook, timeout=MOST_SECONDS, kernel_name="python3",
                        resources={"metadata": {"path": str(HERE)}}).execute()
     except Exception:  # what a cell raises, and what becomes of a kernel that dies
-        fault = traceback.format_exc(limit=0)
+        fault = re.sub("\x1b\\[[0-9;]*m", "", traceback.format_exc(limit=0))
     for cell in notebook.cells:  # times of this run, which no diff should show
         cell.metadata.pop("execution", None)
     nbformat.write(notebook, out / f"{path.stem}.ipynb")
@@ -65,6 +66,7 @@ def main():
         sys.exit(f"{options.package} has no package trussmap: make python")
     os.environ["PYTHONPATH"] = str(Path(options.package).resolve())
     os.environ.update(PYTHONDONTWRITEBYTECODE="1", OPENBLAS_NUM_THREADS="1",
+                      PYDEVD_DISABLE_FILE_VALIDATION="1",
                       IPYTHONDIR=str(out / "ipython"), MPLCONFIGDIR=str(out / "matplotlib"))
     pages = [Path(one).resolve() for one in options.pages] or sorted(HERE.glob("*.md"))
     failed = False
