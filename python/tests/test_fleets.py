@@ -17,9 +17,9 @@ class Fleet(unittest.TestCase):
     def setUpClass(cls):
         cls.model = None
         cls.rows = []
-        for robot in range(4):
+        for robot in range(6):
             for day in (1, 2):
-                size = WHEELBASE + (0.03 if robot == 3 else 0.0)
+                size = WHEELBASE + (0.05 if robot == 3 else 0.0)
                 made = trussmap.simulate(trussmap.Effect("wheelbase", [size]), mesh="3x3", tours=2,
                                          seed=10 * robot + day)
                 cls.model = cls.model or made.model
@@ -41,7 +41,7 @@ class Fleet(unittest.TestCase):
         self.assertLess(abs(one.mean - WHEELBASE), 3.0 * one.sd)
         self.assertEqual([robot.robot for robot in one.members if robot.differs], ["R3"])
         self.assertEqual({row["robot"] for row in self.report.table("robots")},
-                         {"R0", "R1", "R2", "R3"})
+                         {f"R{robot}" for robot in range(6)})
         self.assertIn("R3", str(self.report))
         self.assertIn("R3", self.report._repr_html_())
 
@@ -50,15 +50,16 @@ class Fleet(unittest.TestCase):
         g = sum(row.g[column] for row in self.rows)
         S = sum(row.S[column, column] for row in self.rows)
         (test,) = [one for one in self.report.tests if one.effect == "wheelbase"]
-        self.assertAlmostEqual(test.score / (g * g / S), 1.0, places=9)
-        self.assertAlmostEqual(test.coefficients[0] / (g / S), 1.0, places=9)
+        # But for a weak prior on sizes; residuals are predicted less measured.
+        self.assertAlmostEqual(test.score / (g * g / S), 1.0, places=3)
+        self.assertAlmostEqual(test.coefficients[0] / (-g / S), 1.0, places=3)
 
     def test_stores_are_those_of_the_command(self):
         folder = scratch_folder(self)
         for number, row in enumerate(self.rows):
             trussmap.add_to_fleet(folder / f"{number % 2}.db", row)
         merged = folder / "all.db"
-        self.assertEqual(trussmap.merge_fleets(merged, [folder / "1.db", folder / "0.db"]), 8)
+        self.assertEqual(trussmap.merge_fleets(merged, [folder / "1.db", folder / "0.db"]), 12)
         self.assertEqual([row.robot for row in trussmap.read_fleet(merged)],
                          sorted(row.robot for row in self.rows))
         report = trussmap.fleet_report(merged)
