@@ -7,6 +7,7 @@
 #include "page_runtime.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <array>
@@ -128,9 +129,13 @@ std::size_t place_of_effect(const json& asked, const BenchView& view) {
 }
 
 LocalReply explain(const json& asked, const BenchView& view) {
-  const Effect& effect = asked.contains("effect")
-                             ? view.now.fit().effects[place_of_effect(asked, view)].effect
-                             : view.now.diagnosis().findings[finding_of(asked, view)].effect;
+  if (asked.contains("effect")) {
+    const std::size_t effect = place_of_effect(asked, view);
+    return {.body = explanation_json(view.now.fit().effects[effect].effect)};
+  }
+  const Finding& finding = view.now.diagnosis().findings[finding_of(asked, view)];
+  Effect effect = finding.effect;
+  if (!finding.joint.empty()) effect.coefficients = finding.joint;
   return {.body = explanation_json(effect)};
 }
 
@@ -164,33 +169,39 @@ std::size_t place_of_step(const json& asked, const BenchView& view) {
 BenchWork::Step step_of(const json& asked, const BenchView& view) {
   const auto what = asked.at("do").get<std::string>();
   if (what == "add") {
-    return [effect = effect_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
-      bench.add(effect, watch);
-    };
+    const Effect effect = effect_of(asked, view);
+    return {"Adding " + name_in_words(effect),
+            [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.add(effect, watch); }};
   }
   if (what == "remove") {
     const std::size_t effect = place_of_effect(asked, view);
-    return [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.remove(effect, watch); };
+    return {
+        "Taking off " + name_in_words(view.now.fit().effects[effect].effect),
+        [effect](Workbench& bench, const WorkbenchWatch& watch) { bench.remove(effect, watch); }};
   }
   if (what == "name") {
     auto label = asked.at("label").get<std::string>();
     if (label.size() > kLongestName) {
       throw Refusal{400, fmt::format("a step's name has up to {} bytes", kLongestName)};
     }
-    return [step = place_of_step(asked, view), label = std::move(label)](
-               Workbench& bench, const WorkbenchWatch&) { bench.rename(step, label); };
+    return {"Naming a step",
+            [step = place_of_step(asked, view), label = std::move(label)](
+                Workbench& bench, const WorkbenchWatch&) { bench.rename(step, label); }};
   }
   if (what == "exclude") {
-    return [legs = legs_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
-      bench.exclude(legs, watch);
-    };
+    return {"Leaving legs out",
+            [legs = legs_of(asked, view)](Workbench& bench, const WorkbenchWatch& watch) {
+              bench.exclude(legs, watch);
+            }};
   }
   if (what == "include") {
-    return [](Workbench& bench, const WorkbenchWatch& watch) { bench.include_all(watch); };
+    return {"Taking all legs back in",
+            [](Workbench& bench, const WorkbenchWatch& watch) { bench.include_all(watch); }};
   }
   if (what == "go") {
     const std::size_t step = place_of_step(asked, view);
-    return [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); };
+    return {"Going to another step",
+            [step](Workbench& bench, const WorkbenchWatch& watch) { bench.go_to(step, watch); }};
   }
   throw Refusal{400, fmt::format("a step does not do \"{}\", expected add, remove, exclude, "
                                  "include, go or name",
@@ -240,6 +251,10 @@ LocalReply answer_post(const LocalRequest& request, BenchWork& work) {
   if (request.path == "legs") return {.body = selection_json(view->now, legs_of(asked, *view))};
   if (request.path == "noise") return with_noise(asked, *view);
   if (request.path == "step") return step(asked, work, *view);
+  if (request.path == "stop") {
+    work.stop();
+    return {202, "application/json", "{}"};
+  }
   return refusal(404, "there is nothing here");
 }
 

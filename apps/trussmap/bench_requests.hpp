@@ -9,7 +9,8 @@
 //   POST best    {"finding", "values"}            POST shown {"effect"}
 //   POST noise   {"factor"}
 //   POST explain {"finding"} or {"effect": its place in the model}
-//   POST step    {"version", "do": "add" | "remove" | "go" | "name", ...}
+//   POST step    {"version", "do": "add" | "remove" | "exclude" | "include" | "go" | "name", ...}
+//   POST stop    {}
 //
 // A "version" that is not the present one is refused, in any of them. Every answer that is none is
 // {"error": one line}. Formulas are evaluated by the library's parser alone, and only where they

@@ -5,6 +5,7 @@
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/pages.hpp"
+#include "trussmap/stop.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
@@ -76,11 +77,18 @@ BenchWork::Taken BenchWork::begin(std::size_t version, Step step) {
   const std::scoped_lock lock(mutex_);
   if (busy_) return Taken::busy;
   if (!view_ || view_->version != version) return Taken::outdated;
+  title_ = step.title;
   next_ = std::move(step);
+  stop_ = false;
   busy_ = true;
   failed_.clear();
   wake_.notify_all();
   return Taken::yes;
+}
+
+void BenchWork::stop() {
+  const std::scoped_lock lock(mutex_);
+  if (busy_ && bench_) stop_ = true;
 }
 
 double BenchWork::seconds() const {
@@ -89,10 +97,9 @@ double BenchWork::seconds() const {
 
 std::string BenchWork::status() const {
   const std::scoped_lock lock(mutex_);
-  nlohmann::ordered_json result = {{"version", view_ ? view_->version : 0},
-                                   {"busy", busy_},
-                                   {"failed", failed_},
-                                   {"note", note_}};
+  nlohmann::ordered_json result = {
+      {"version", view_ ? view_->version : 0}, {"busy", busy_},     {"step", busy_ ? title_ : ""},
+      {"stops", busy_ && bench_ && !stop_},    {"failed", failed_}, {"note", note_}};
   if (busy_ && clock_) {
     result["doing"] = clock_->line(std::floor(seconds()));
     const std::optional<double> left = clock_->left(std::floor(seconds()));
@@ -140,12 +147,20 @@ void BenchWork::publish(const Workbench& bench) {
 void BenchWork::work(const Step& step) {
   std::string failed;
   const std::shared_ptr<const BenchView> before = view();
+  const auto as_before = [this, &before] {
+    if (before && view() != before) show(before->now, before->log, false);
+  };
   try {
-    step(*bench_, watch());
+    {
+      const StopQuestion question([this] { return stop_.load(); });
+      step.run(*bench_, watch());
+    }
     publish(*bench_);
+  } catch (const StoppedOnRequest&) {
+    as_before();
   } catch (const std::exception& error) {
     failed = error.what();
-    if (before && view() != before) show(before->now, before->log, false);
+    as_before();
   }
   const std::scoped_lock lock(mutex_);
   failed_ = std::move(failed);
@@ -162,7 +177,7 @@ void BenchWork::run() {
     bench_ = log_ ? std::make_unique<Workbench>(job_.recordings, *log_, job_.options, watch)
                   : std::make_unique<Workbench>(job_.recordings, job_.model, job_.options, watch);
   };
-  work(first);
+  work({"", first});
   while (true) {
     std::unique_lock lock(mutex_);
     wake_.wait(lock, [this] { return ends_ || next_; });

@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "trussmap/workbench.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -54,11 +55,18 @@ class BenchWork {
   [[nodiscard]] std::shared_ptr<const BenchView> view() const;
 
   enum class Taken { yes, busy, outdated };
-  using Step = std::function<void(Workbench&, const WorkbenchWatch&)>;
+  /// What is done, and what that is called: "Adding hard iron".
+  struct Step {
+    std::string title;
+    std::function<void(Workbench&, const WorkbenchWatch&)> run;
+  };
   /// A step on what `version` left. What goes wrong in it is said in the next status.
   Taken begin(std::size_t version, Step step);
+  /// Ends the step under way soon, if there is one: everything stays as it was before it. The first
+  /// model is fitted to its end.
+  void stop();
 
-  /// {"version", "busy", "doing", "left" [s], "failed", "note"}.
+  /// {"version", "busy", "step", "stops", "doing", "left" [s], "failed", "note"}.
   [[nodiscard]] std::string status() const;
 
  private:
@@ -78,6 +86,8 @@ class BenchWork {
   std::optional<Step> next_;
   bool busy_ = true;
   bool ends_ = false;
+  std::string title_;  ///< of the step under way
+  std::atomic<bool> stop_ = false;
   std::string failed_;
   std::string note_;
   std::optional<ProgressClock> clock_;

@@ -188,6 +188,10 @@ struct DiagnoseOptions {
 [[nodiscard]] Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,
                                  const DiagnoseOptions& options = {});
 
+/// An unexplained misfit of chi^2 as a whole that noise alone makes in more than one of a thousand
+/// recordings: too little to prefer another model for.
+[[nodiscard]] bool is_slight_misfit(const Diagnosis& diagnosis);
+
 /// Findings that are missing, or there but too small to matter.
 [[nodiscard]] std::vector<const Finding*> found_by(const Diagnosis& diagnosis);
 

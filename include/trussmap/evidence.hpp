@@ -66,10 +66,11 @@ struct TrendEvidence {
   Response response;
 };
 
-/// An effect as fitted, and what the recordings show of it where the model lacks it alone.
+/// An effect as fitted, and what the recordings show of it beside the model's others. Where a fit
+/// has it, by partial residuals about that fit (Larsen & McCleary 1972), else by a fit without it.
 struct EffectEvidence {
   EffectEstimate estimate;
-  Response response;  ///< of the fit without it; no bins where there is nothing to draw
+  Response response;  ///< no bins where there is nothing to draw
   EffectRange range = {};
   std::vector<Effect> rivals = {};  ///< of which the response has curves
 };

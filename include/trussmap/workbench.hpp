@@ -7,7 +7,7 @@
 //                           preview(effect)   its curve, and what it would leave of the error:
 //                                             score tests, no fit
 //                           shown(effect)     one that the model has, as the recordings show it
-//                                             where the model lacks it alone
+//                                             beside the others
 //                           legs()            where, when, whether they count; both of the above
 //                                             can look at some legs alone
 //
@@ -38,7 +38,10 @@ struct Explanation {
   std::string does;   ///< what it does to the robot
   std::string look;   ///< what to look at on the robot
   std::string drive;  ///< what to drive to be sure
+  /// Its coefficients have the sign that such effects seldom have, and the drawing does not show.
+  bool unusual = false;
 };
+/// By the sign of its coefficients, where it has any.
 [[nodiscard]] Explanation explanation_of(const Effect& effect);
 
 /// What an effect does to a robot, as SVG of 320 x 170: dashed as the robot believes it to be, blue
@@ -129,7 +132,7 @@ class TriedModel {
   [[nodiscard]] EffectPreview preview(const Effect& effect, const std::vector<Effect>& rivals = {},
                                       const std::vector<std::size_t>& legs = {}) const;
 
-  /// An effect of the model by its place there. One more fit, kept until another is asked for.
+  /// An effect of the model by its place there, as the measurements show it beside the others.
   /// Throws std::out_of_range.
   [[nodiscard]] EffectEvidence shown(std::size_t effect,
                                      const std::vector<std::size_t>& legs = {}) const;

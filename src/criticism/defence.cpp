@@ -7,6 +7,7 @@
 #include "fit/process_columns.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,17 +33,37 @@ bool is_of_catalogue(const Candidate& one) {
   return one.form == Form::catalogue && one.family.empty();
 }
 
-/// The question of one recording's effects.
+/// A fit as it would be laid out with some of its effects, from `first` on, known to be 0.
+FitState lacking(const FitState& with, std::size_t first, const std::vector<bool>& has) {
+  FitState fit = with;
+  const std::vector<int> unknown = unknown_coefficients(with.columns.border);
+  std::vector<double> kept;
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    const std::size_t effect = with.columns.coefficients[idx(unknown[k])].effect;
+    if (effect < first || has[effect - first]) {
+      kept.push_back(with.adjustment.coefficients[static_cast<Eigen::Index>(k)]);
+      continue;
+    }
+    fit.columns.border[idx(unknown[k])].held = 0.0;
+  }
+  fit.adjustment.coefficients =
+      Eigen::Map<const Eigen::VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
+  return fit;
+}
+
+/// The question of one recording's effects. Likelihoods are asked for where the fit with all of
+/// them is: large effects bend the rows, and what a plane leaves of them would pass for noise.
 class Defence {
  public:
-  Defence(const FitWithNoise& found, const std::vector<Effect>& effects,
+  /// `with`: the fit with the effects, its last ones.
+  Defence(const FitWithNoise& found, const ModelFit& with, const std::vector<Effect>& effects,
           const DefenceOptions& options)
       : fit_(*found.fit.state),
+        with_(*with.state),
         noise_(found.fit.model.noise),
         effects_(effects),
         options_(options),
         tests_(fit_),
-        reml_(fit_, options.stated),
         stand_(effects.size(), true) {
     for (const Effect& one : effects) columns_.push_back(tests_.columns(one));
     fit_options_.errors = false;
@@ -55,7 +76,7 @@ class Defence {
 
   /// Without those that do not stand.
   FittedNoise likeliest_noise() {
-    FittedNoise result = fit_noise(reml_, together(stand_), fit_options_);
+    FittedNoise result = noise_with(stand_);
     for (const NoiseSource& rival : rivals_) {
       const bool is_there = std::any_of(result.noise.processes.begin(),
                                         result.noise.processes.end(), [&](const NoiseProcess& one) {
@@ -88,16 +109,43 @@ class Defence {
     return together(wanted);
   }
 
+  [[nodiscard]] std::size_t first() const { return with_.model.effects.size() - effects_.size(); }
+
+  [[nodiscard]] FittedNoise noise_with(const std::vector<bool>& wanted) const {
+    const FitState fit = lacking(with_, first(), wanted);
+    NoiseReml reml(fit, options_.stated);
+    return fit_noise(reml, {}, fit_options_);
+  }
+
+  /// With the wanted effects' coefficients at their likeliest, and not integrated out.
+  [[nodiscard]] double minus_two_log(const std::vector<bool>& wanted, const Noise& noise) const {
+    const FitState fit = lacking(with_, first(), wanted);
+    NoiseReml reml(fit, options_.stated);
+    const double integrated = minus_two_log_under(reml, noise, {});
+    std::vector<Eigen::Index> own;
+    const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      if (fit.columns.coefficients[idx(unknown[k])].effect >= first()) {
+        own.push_back(static_cast<Eigen::Index>(k));
+      }
+    }
+    if (own.empty()) return integrated;
+    const Eigen::MatrixXd covariance = reml.system().coefficient_covariance()(own, own);
+    return integrated + DenseLdlt(covariance).log_determinant();
+  }
+
   [[nodiscard]] bool stands(std::size_t k) {
     std::optional<FittedNoise> without;
-    if (!options_.as_stated) without = fit_noise(reml_, others(k), fit_options_);
+    std::vector<bool> others_alone(effects_.size(), true);
+    others_alone[k] = false;
+    if (!options_.as_stated) without = noise_with(others_alone);
     if (const std::optional<NoiseProcess> rival = rival_of(effects_[k], without)) {
       if (const std::optional<bool> answer = stands_against(k, *rival)) return *answer;
     }
     if (!without || without->noise == noise_) return true;
     const std::vector<bool> all(effects_.size(), true);
-    const double with_all = minus_two_log_under(reml_, noise_, together(all));
-    const double alone = minus_two_log_under(reml_, without->noise, others(k));
+    const double with_all = minus_two_log(all, noise_);
+    const double alone = minus_two_log(others_alone, without->noise);
     const double p =
         chi2_p_value(std::max(0.0, alone - with_all), static_cast<int>(columns_[k].cols()));
     return options_.tried * p < options_.level;
@@ -166,11 +214,11 @@ class Defence {
   }
 
   const FitState& fit_;
+  const FitState& with_;
   const Noise& noise_;
   const std::vector<Effect>& effects_;
   const DefenceOptions& options_;
   ScoreTest tests_;
-  NoiseReml reml_;
   NoiseFitOptions fit_options_;
   std::vector<Eigen::MatrixXd> columns_;
   std::vector<bool> stand_;
@@ -181,14 +229,23 @@ class Defence {
 
 Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
                                 const std::vector<Effect>& effects, const DefenceOptions& options) {
-  Defence defence(found, effects, options);
   Defended result;
+  Model model = found.fit.model;
+  model.effects.insert(model.effects.end(), effects.begin(), effects.end());
+  std::optional<ModelFit> with;
+  try {
+    with = refit(recordings, model, found.fit);
+  } catch (const SolveError&) {  // nobody knows then
+    result.effects.assign(effects.size(), true);
+    return result;
+  }
+  Defence defence(found, *with, effects, options);
   result.effects = defence.run();
   if (std::find(result.effects.begin(), result.effects.end(), false) == result.effects.end()) {
     return result;
   }
   FitWithNoise otherwise{found.fit, defence.likeliest_noise()};
-  Model model = found.fit.model;
+  model = found.fit.model;
   model.noise = otherwise.noise.noise;
   otherwise.fit = refit(recordings, model, found.fit);
   result.otherwise = std::move(otherwise);

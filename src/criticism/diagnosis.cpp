@@ -346,6 +346,12 @@ Diagnosis diagnose(const std::vector<Recording>& recordings, const Model& model,
   return diagnose(recordings, fit_model(recordings, model, options.fit), options);
 }
 
+bool is_slight_misfit(const Diagnosis& diagnosis) {
+  constexpr double kSlight = 0.001;  // p
+  return diagnosis.verdict == Diagnosis::Verdict::unexplained_misfit &&
+         diagnosis.objection == Objection::chi2 && diagnosis.p_value > kSlight;
+}
+
 std::vector<const Finding*> found_by(const Diagnosis& diagnosis) {
   std::vector<const Finding*> found;
   for (const Finding& one : diagnosis.findings) {

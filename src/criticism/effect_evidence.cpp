@@ -51,7 +51,9 @@ std::vector<FindingSize> sizes_of(const Diagnosis& diagnosis, const ShapeContext
   ShapeRanges ranges(context);
   std::vector<FindingSize> sizes;
   for (const Finding& one : diagnosis.findings) {
-    sizes.push_back({ranges.of(one.effect), seen_from(one, ranges)});
+    Effect effect = one.effect;
+    if (!one.joint.empty()) effect.coefficients = one.joint;
+    sizes.push_back({ranges.of(effect), seen_from(one, ranges)});
   }
   return sizes;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/effect_search.hpp"
 
+#include "criticism/known_causes.hpp"
 #include "linalg/dense.hpp"
 
 #include <algorithm>
@@ -15,38 +16,9 @@ namespace {
 constexpr double kSecondLevel = 0.02;   // of the level
 constexpr double kSecondShare = 0.002;  // of the chi^2 that the first explain
 constexpr std::size_t kFamiliesRefined = 3;
-constexpr double kWorthALook = 0.01;  // p
 constexpr double kLawLevel = 0.01;
 constexpr double kStays = 0.001;  // p, with the others there
 constexpr std::size_t kMostEvents = 8;
-
-double dispersion_of(const Score& score, const LocalDispersion& local) {
-  return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
-}
-
-/// Tests again those for which `wanted` holds.
-template <typename Wanted>
-void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
-                const Wanted& wanted) {
-  std::vector<std::size_t> places;
-  std::vector<Candidate> candidates;
-  for (std::size_t k = 0; k < still.size(); ++k) {
-    if (!wanted(still[k])) continue;
-    places.push_back(k);
-    candidates.push_back(still[k].candidate);
-  }
-  const LocalDispersion local(fit, left);
-  visit_scores(left, candidates, Resolution::screening, [&](std::size_t k, Score& score) {
-    Tested& one = still[places[k]];
-    one.dispersion = dispersion_of(score, local);
-    drop_columns(score);
-    one.score = score;
-  });
-}
-
-bool all(const Tested&) {
-  return true;
-}
 
 }  // namespace
 
@@ -175,7 +147,7 @@ void EffectSearch::let_others_claim(ScoreTest& left, const FitState& ground,
   };
   int dof = fit_.adjustment.dof;
   if (&ground != &fit_) {
-    test_again(ground, left, still, all);
+    test_again(ground, left, still);
     judge(still, left.residuals().squaredNorm(), dof, tried_);
   }
   Eigen::MatrixXd nuisance(left.residuals().size(), 0);
@@ -211,7 +183,9 @@ void EffectSearch::find_missing() {
     tested_[k].p_value = still[k].p_value;
     tested_[k].p_adjusted = still[k].p_adjusted;
   }
+  const ScoreTest at_first = left;
   select(left, ground, still);
+  take_known_causes(ground, at_first);
   std::stable_sort(
       missing_.begin(), missing_.end(), [this](const MissingEffect& a, const MissingEffect& b) {
         return plausible_evidence(tested_[a.tested]) > plausible_evidence(tested_[b.tested]);
@@ -238,8 +212,30 @@ void EffectSearch::select(ScoreTest& left, const FitState& ground, std::vector<T
     append_columns(nuisance_, whole.projected);
     dof -= whole.dof;
     if (missing_.size() == options_.most_missing) break;
-    test_again(ground, left, still, all);
+    test_again(ground, left, still);
     judge(still, left.residuals().squaredNorm(), dof, tried_);
+  }
+}
+
+/// Known effects come in the place of a free form that they explain together.
+void EffectSearch::take_known_causes(const FitState& ground, const ScoreTest& left) {
+  std::vector<std::size_t> found;
+  for (const MissingEffect& one : missing_) found.push_back(one.tested);
+  const std::vector<KnownCause> causes =
+      known_causes_of(found, tested_,
+                      {ground, left, fit_.adjustment.dof, tried_, options_.level,
+                       kSecondLevel * options_.level, kSecondShare, options_.most_missing});
+  if (causes.empty()) return;
+  missing_.clear();
+  nuisance_.resize(nuisance_.rows(), 0);
+  for (const KnownCause& one : causes) {
+    Tested& tested = tested_[one.tested];
+    Score score = tests_.test({one.candidate.effect}).front();
+    append_columns(nuisance_, score.projected);
+    if (one.candidate.parameters != tested.candidate.parameters) {
+      take(tested, one.candidate, score);
+    }
+    missing_.push_back({one.tested, {}});
   }
 }
 

@@ -77,11 +77,34 @@ struct Seen {
   std::vector<LookAlike> rivals;
 };
 
-/// Of effects that a fit lacks, each conditioned on the others.
-std::vector<EffectEvidence> effect_evidence(const FitState& without,
+/// Place among a model's effects, as fitted.
+std::optional<std::size_t> place_among(const std::vector<EffectEstimate>& effects,
+                                       const Effect& effect) {
+  const auto same = [&effect](const EffectEstimate& one) {
+    return one.effect.name == effect.name && one.effect.shape == effect.shape &&
+           one.effect.coefficients == effect.coefficients;
+  };
+  const auto found = std::find_if(effects.begin(), effects.end(), same);
+  if (found == effects.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - effects.begin());
+}
+
+/// Of effects that a fit lacks: by the fit that has them where there is one, else by the one that
+/// lacks them; each with the others there.
+std::vector<EffectEvidence> effect_evidence(const FitState& without, const ModelFit* with,
                                             const std::vector<Seen>& effects) {
   std::vector<EffectEvidence> result;
+  std::optional<ScoreTest> there;
+  if (with != nullptr) there.emplace(*with->state);
   for (const Seen& seen : effects) {
+    const auto place =
+        with != nullptr ? place_among(with->effects, seen.estimate.effect) : std::nullopt;
+    if (place) {
+      const ScoreTest tests = there->lacking(*place, seen.estimate.effect);
+      result.push_back(
+          seen_effect(seen.estimate, drawn_rivals(seen.rivals, tests), *with->state, tests));
+      continue;
+    }
     ScoreTest tests(without);
     for (const Seen& other : effects) {
       if (&other != &seen) tests.condition_on(tests.columns(other.estimate.effect));
@@ -170,7 +193,7 @@ FitEvidence evidence_of(const std::vector<Recording>& recordings, const EffectGa
   evidence.with = model_evidence(recordings, gain.with, ScoreTest(*gain.with.state), options);
   std::vector<Seen> effects;
   for (const EffectEstimate& one : gain.with.effects) effects.push_back({one, {}});
-  evidence.effects = effect_evidence(*gain.without.state, effects);
+  evidence.effects = effect_evidence(*gain.without.state, &gain.with, effects);
   return evidence;
 }
 
@@ -188,7 +211,8 @@ DiagnosisEvidence evidence_of(const std::vector<Recording>& recordings, const Mo
   }
   const std::vector<const Finding*> missing = found_by(diagnosis);
   const std::optional<ModelFit> with = fit_with(missing, recordings, fit);
-  evidence.effects = effect_evidence(*fit.state, seen_in(missing, fit.effects.size(), with));
+  evidence.effects = effect_evidence(*fit.state, with ? &*with : nullptr,
+                                     seen_in(missing, fit.effects.size(), with));
   if (with) {
     evidence.with = model_evidence(recordings, *with, ScoreTest(*with->state), compared);
   }
@@ -207,7 +231,7 @@ DiscoveryEvidence evidence_of(const std::vector<Recording>& recordings, const Di
   evidence.found =
       model_evidence(recordings, discovery.found, found, compared, discovery.last.missing);
   const std::vector<Seen> added = added_by(discovery);
-  evidence.effects = effect_evidence(*discovery.given.state, added);
+  evidence.effects = effect_evidence(*discovery.given.state, &discovery.found, added);
   const std::vector<std::string> slow = slow_covariates(recordings);
   for (const Seen& one : added) {
     evidence.look_alikes.push_back(one.rivals);

@@ -4,8 +4,8 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/tested_candidate.hpp"
-#include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
+#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -24,32 +24,57 @@ std::vector<Candidate> plain_candidates(const FitState& fit, const ScoreTest& te
   return candidates;
 }
 
-/// Whitened columns of what explains most, each conditioned on those before it.
-Eigen::MatrixXd suspects(const FitState& fit) {
+/// What explains most, each conditioned on those before it.
+std::vector<Effect> suspects(const FitState& fit) {
   ScoreTest tests(fit);
   const std::vector<Candidate> candidates = plain_candidates(fit, tests);
-  Eigen::MatrixXd columns(tests.system().rows(), 0);
+  std::vector<Effect> found;
   int dof = fit.adjustment.dof;
   for (std::size_t round = 0; round < kMostSuspects; ++round) {
     const double chi2 = tests.residuals().squaredNorm();
     std::optional<std::size_t> best;
-    double least = kSuspicious / static_cast<double>(candidates.size());
-    visit_scores(tests, candidates, Resolution::quick, [&](std::size_t k, const Score& score) {
+    double most = 0.0;
+    visit_scores(tests, candidates, Resolution::quick, [&](std::size_t k, Score& score) {
       if (score.dof == 0 || dof <= score.dof) return;
       const double left = std::max(1.0, (chi2 - score.score) / (dof - score.dof));
-      const double p = chi2_p_value(score.score / left, score.dof);
-      if (p >= least) return;
-      least = p;
+      const double net = score.score / left;
+      if (chi2_p_value(net, score.dof) * static_cast<double>(candidates.size()) >= kSuspicious) {
+        return;
+      }
+      // By evidence: p of what is large is 0 for many.
+      Tested one;
+      one.candidate = candidates[k];
+      one.score.dof = score.dof;
+      const double evidence = evidence_at(one, net);
+      if (best && evidence <= most) return;
+      most = evidence;
       best = k;
     });
     if (!best) break;
-    const Score found = tests.test({candidates[*best].effect}).front();
-    if (found.dof == 0) break;
-    append_columns(columns, found.columns);
-    tests.condition_on(found.columns);
-    dof -= found.dof;
+    const Effect& suspect = candidates[*best].effect;
+    const int count = tests.test({suspect}).front().dof;
+    if (count == 0) break;
+    found.push_back(suspect);
+    tests.condition_on(tests.columns(suspect));
+    dof -= count;
   }
-  return columns;
+  return found;
+}
+
+/// The fit with its suspects as effects: large ones bend the rows, and what a plane leaves of them
+/// would look like noise. Those that cannot be fitted together are left out from the last on.
+ModelFit with_suspects(const std::vector<Recording>& recordings, const ModelFit& fit) {
+  std::vector<Effect> found = suspects(*fit.state);
+  for (; !found.empty(); found.pop_back()) {
+    Model model = fit.model;
+    model.effects.insert(model.effects.end(), found.begin(), found.end());
+    try {
+      return refit(recordings, model, fit);
+    } catch (const SolveError&) {
+      continue;
+    }
+  }
+  return fit;
 }
 
 }  // namespace
@@ -67,8 +92,9 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
   for (int round = 0; round < kMostRounds; ++round) {
     // Which processes there are is asked once.
     if (round > 0) options.most_processes = 0;
-    NoiseReml reml(*result.fit.state, stated);
-    FittedNoise next = fit_noise(reml, suspects(*result.fit.state), options);
+    const ModelFit beside = with_suspects(recordings, result.fit);
+    NoiseReml reml(*beside.state, stated);
+    FittedNoise next = fit_noise(reml, {}, options);
     if (round > 0 && next.gain < gain + kStillBetter) break;
     next.tried = std::max(next.tried, result.noise.tried);
     result.noise = std::move(next);

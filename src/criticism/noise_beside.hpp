@@ -4,8 +4,8 @@
 // Noise estimated beside the effects that a model may lack: what is missing looks like noise that
 // lasts, and too much noise hides what is missing.
 //
-//   fit --> the few plain effects that explain most, as suspects --> their columns set aside
-//       --> fit_noise --> fitted again under that noise
+//   fit --> the few plain effects that explain most, as suspects --> fitted with them
+//       --> fit_noise --> fitted again under that noise, without them
 //
 // Only where the errors are larger than the present noise allows (p < 0.05 of chi^2): noise that is
 // stated too large costs power, but names nothing that is not there.

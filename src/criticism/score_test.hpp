@@ -62,6 +62,11 @@ class ScoreTest {
   /// Keeps a reference to the fit. A copy shares all but what it is conditioned on.
   explicit ScoreTest(const FitState& fit);
 
+  /// The same of the model without one of its effects, to first order about this very fit: what the
+  /// effect does there is put back into the residuals, and nothing of it is present. A fit without
+  /// it would be elsewhere, as far off as the effect is large. The effect has coefficients.
+  [[nodiscard]] ScoreTest lacking(std::size_t effect, const Effect& fitted) const;
+
   /// Tests several candidates at once (their coefficients at 0). Throws
   /// std::invalid_argument like effect_columns.
   [[nodiscard]] std::vector<Score> test(const std::vector<Effect>& candidates,

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kLargestPriorSd = 3.0;
 constexpr double kNoEvidence = -1e300;
+constexpr double kWorthALook = 0.01;  // p
 
 /// Log of what an effect of unknown size pays for having been fitted: sizes from the smallest that
 /// shows to a hundred times that are equally likely on a logarithmic scale, so that no unit and no
@@ -102,11 +103,36 @@ void judge(std::vector<Tested>& tested, double chi2, int dof, int tried) {
   for (Tested& one : tested) {
     // What noise in these very rows would claim is a matter of p: an effect whose rows another
     // effect moves as well is as large as it is.
-    const double net = one.score.score / least;
-    one.evidence = 0.5 * net - penalty(net, one.score.dof) + one.candidate.log_prior;
-    if (!one.candidate.parameters.empty()) one.evidence -= parameter_penalty(net, one);
-    if (one.score.dof == 0) one.evidence = kNoEvidence;
+    one.evidence = evidence_at(one, one.score.score / least);
   }
+}
+
+double evidence_at(const Tested& one, double net) {
+  if (one.score.dof == 0) return kNoEvidence;
+  const double evidence = 0.5 * net - penalty(net, one.score.dof) + one.candidate.log_prior;
+  return one.candidate.parameters.empty() ? evidence : evidence - parameter_penalty(net, one);
+}
+
+double dispersion_of(const Score& score, const LocalDispersion& local) {
+  return score.dof > 0 && score.p_value < kWorthALook ? local(score) : 1.0;
+}
+
+void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
+                const std::function<bool(const Tested&)>& wanted) {
+  std::vector<std::size_t> places;
+  std::vector<Candidate> candidates;
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    if (wanted && !wanted(still[k])) continue;
+    places.push_back(k);
+    candidates.push_back(still[k].candidate);
+  }
+  const LocalDispersion local(fit, left);
+  visit_scores(left, candidates, Resolution::screening, [&](std::size_t k, Score& score) {
+    Tested& one = still[places[k]];
+    one.dispersion = dispersion_of(score, local);
+    drop_columns(score);
+    one.score = score;
+  });
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "criticism/candidates.hpp"
+#include "criticism/local_dispersion.hpp"
 #include "criticism/score_test.hpp"
 
 #include <cstddef>
@@ -38,6 +39,17 @@ void drop_columns(Score& score);
 /// Of a fit with this chi^2 and dof: p-values against the dispersion that each would leave, as a
 /// whole and where it acts; evidence against the least there is. `tried`: tests in all.
 void judge(std::vector<Tested>& tested, double chi2, int dof, int tried);
+
+/// What speaks for a candidate that explains so much, in units of the noise: less what its
+/// coefficients, parameters and oddness cost.
+[[nodiscard]] double evidence_at(const Tested& one, double net);
+
+/// Tests again, of what is left, those for which `wanted` holds; all of them without it.
+void test_again(const FitState& fit, const ScoreTest& left, std::vector<Tested>& still,
+                const std::function<bool(const Tested&)>& wanted = {});
+
+/// How the rows scatter that speak for this score; 1 where hardly anything does.
+[[nodiscard]] double dispersion_of(const Score& score, const LocalDispersion& local);
 
 /// Whether it would have to be far larger than anything known; never so a plain factor: a wheelbase
 /// may be given quite wrong.

@@ -21,7 +21,8 @@ namespace trussmap {
 namespace {
 
 constexpr double kMostDispersion = 4.0;  // chi^2/dof
-constexpr int kShortStretch = 20;        // poses
+constexpr int kMisfitRounds = 4;
+constexpr int kShortStretch = 20;  // poses
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::map<std::string, Vector2> places_in(const RecordingProblem& problem,
@@ -60,6 +61,7 @@ class Fitter {
     lay_out();
     start(StartKind::common_errors);
     for (int round = 0; round < options_.max_rounds; ++round) {
+      round_ = round;
       const bool again = round > 0 && layout_moved();
       if (again) lay_out_again();
       build_columns();
@@ -479,9 +481,11 @@ class Fitter {
 
   /// The largest change of a measurement's value by it, in standard deviations.
   double relinearised() {
-    // The residuals of a misfit are no estimate of noise.
+    // The residuals of a misfit are no estimate of noise, and need not come to rest; but where they
+    // are is where the rows have to be linear, or what is missing explains too little of them.
     const bool noise = options_.relinearise &&
-                       fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof);
+                       (round_ < kMisfitRounds ||
+                        fit_.adjustment.chi2 < kMostDispersion * std::max(1, fit_.adjustment.dof));
     const EffectParameters& border = fit_.columns.border;
     const Eigen::VectorXd offsets = offsets_of(fit_);
     const double tails = take_tails(fit_.problem, border, offsets, state_);
@@ -573,7 +577,8 @@ class Fitter {
   std::vector<Effect> laid_out_;  ///< with those by which delays and steering are laid out
   /// Per effect and place; nothing where fitted.
   std::vector<std::vector<std::optional<UnfittedCoefficient>>> not_fitted_;
-  double change_ = 0.0;         ///< of the coefficients, in what is negligible
+  double change_ = 0.0;  ///< of the coefficients, in what is negligible
+  int round_ = 0;
   double offset_change_ = 0.0;  ///< of the linearisation offsets, in sds
   double moved_ = 0.0;          ///< of the path, m and rad
 };

@@ -66,7 +66,7 @@ Chart route_chart(const std::string& id, const std::string& title, const FittedM
                    {"off by [mm]"},
                    {"too long by [mm]"},
                    {"to the left by [mm]"}}};
-  bars.key = {"", "0 mm", fmt::format("{:.3g} mm", 1e3 * worst)};
+  bars.key = {"", "by wheels alone 0 mm off", fmt::format("{:.3g} mm off", 1e3 * worst)};
   std::vector<Vector2> net;
   const std::size_t drawn = std::min(kMostBars, routes.size());
   for (std::size_t k = drawn; k < routes.size(); ++k) {

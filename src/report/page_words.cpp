@@ -79,7 +79,7 @@ std::string counted_legs(std::size_t legs) {
 }
 
 std::string chance_text(double p) {
-  return p < 1e-12 ? "next to 0" : probability_text(p);
+  return p < 1e-12 ? "below 10\u207b\u00b9\u00b2" : probability_text(p);
 }
 
 std::string listed(const std::vector<std::string>& names, const std::string& last) {
@@ -255,13 +255,13 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
   return open.empty() ? told : open + " " + told;
 }
 
-std::vector<std::string> others_notes(const Diagnosis& diagnosis) {
+std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::string& who_states) {
   std::vector<std::string> notes;
   if (noise_is_wrong(diagnosis)) {
     notes.push_back(
         fmt::format("The noise is not as the model states it: {}. All is judged by the "
-                    "noise as estimated; fit --noise and discover write it with --out.",
-                    typeset(in_words(diagnosis.under->noise))));
+                    "noise as estimated; {}.",
+                    typeset(in_words(diagnosis.under->noise)), who_states));
   }
   for (const NoiseTest& one : diagnosis.noise) {
     if (one.p_adjusted >= kSignificance || !notes.empty()) continue;

@@ -29,7 +29,7 @@ namespace trussmap {
 /// "1 leg", "12 legs".
 [[nodiscard]] std::string counted_legs(std::size_t legs);
 
-/// A p-value for people: "0.004", "next to 0".
+/// A p-value for people: "0.004", "below 10^-12".
 [[nodiscard]] std::string chance_text(double p);
 
 /// What a trend goes with: "heading", "everything alike".
@@ -83,7 +83,10 @@ struct SizeText {
 /// "It could also be ...", or that it could not.
 [[nodiscard]] std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals);
 
-/// The leading law of noise and the leading single event, those that stand out.
-[[nodiscard]] std::vector<std::string> others_notes(const Diagnosis& diagnosis);
+/// The leading law of noise and the leading single event, those that stand out. `who_states`: where
+/// the noise that was estimated can be had.
+[[nodiscard]] std::vector<std::string> others_notes(
+    const Diagnosis& diagnosis,
+    const std::string& who_states = "fit --noise and discover write it with --out");
 
 }  // namespace trussmap

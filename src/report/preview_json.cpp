@@ -85,6 +85,7 @@ std::string explanation_json(const Effect& effect) {
   ordered_json result = effect_view(effect);
   result["explanation"] = {
       {"does", explanation.does}, {"look", explanation.look}, {"drive", explanation.drive}};
+  result["unusual"] = explanation.unusual;
   result["drawing"] = effect_drawing(effect);
   return safe_text(result);
 }

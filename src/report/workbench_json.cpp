@@ -9,6 +9,7 @@
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 #include "trussmap/workbench.hpp"
+#include "wording/channel_words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -209,12 +210,34 @@ std::string disappointment(const WorkbenchLog& log) {
       distance_text(before));
 }
 
+/// The verdict in words of this page alone: names as its cards have them, and no other command.
+std::string headline(const TriedModel& now) {
+  const Diagnosis& diagnosis = now.diagnosis();
+  if (diagnosis.verdict == Diagnosis::Verdict::missing) {
+    std::vector<std::string> names;
+    for (const Finding* one : found_by(diagnosis)) names.push_back(name_in_words(one->effect));
+    return "missing: " + listed(names, "and");
+  }
+  const std::vector<Trend>& trends = now.comparison().trends;
+  if (diagnosis.objection == Objection::trend && !trends.empty()) {
+    const Trend& first = trends.front();
+    return fmt::format(
+        "unexplained misfit: the {} error {}, and none of {} effects tried explains it", first.kind,
+        first.against == "all" ? std::string("is everywhere alike")
+                               : "goes with " + variable_in_words(first.against),
+        diagnosis.tried);
+  }
+  return typeset(verdict_in_words(diagnosis));
+}
+
 /// What is said above all else.
 ordered_json verdict_json(const TriedModel& now) {
   const Diagnosis& diagnosis = now.diagnosis();
-  ordered_json result = {
-      {"text", capitalised(typeset(verdict_in_words(diagnosis)))},
-      {"tone", diagnosis.verdict == Diagnosis::Verdict::nothing_missing ? "good" : "bad"}};
+  const bool slight = is_slight_misfit(diagnosis);
+  ordered_json result = {{"text", capitalised(headline(now))},
+                         {"tone", diagnosis.verdict == Diagnosis::Verdict::nothing_missing ? "good"
+                                  : slight ? "neutral"
+                                           : "bad"}};
   if (diagnosis.verdict == Diagnosis::Verdict::missing) {
     const Finding& first = diagnosis.findings.front();
     result["unsure"] =
@@ -224,7 +247,12 @@ ordered_json verdict_json(const TriedModel& now) {
                         ? "To tell them apart, " + in_words(diagnosis.next_drive) + "."
                     : !diagnosis.lacks.empty() ? advised_drive(advice_on(diagnosis.lacks.front()))
                                                : "";
-  result["others"] = others_notes(diagnosis);
+  result["others"] = others_notes(diagnosis, "the model that is taken along states it");
+  if (slight) {
+    result["others"].push_back(
+        "A misfit as slight as this speaks against no model: prefer the one whose legs end less "
+        "far off.");
+  }
   ordered_json warnings = ordered_json::array();
   for (const std::string& one : diagnosis.warnings) {
     warnings.push_back(capitalised(typeset(one)) + ".");
@@ -277,7 +305,7 @@ std::string workbench_json(const TriedModel& now, const WorkbenchLog& log,
   for (std::size_t k = 0; k < log.steps.size(); ++k) steps.push_back(step_json(log, k, way));
   ordered_json verdict = verdict_json(now);
   if (provisional) {
-    verdict["text"] = "So far: " + typeset(verdict_in_words(now.diagnosis()));
+    verdict["text"] = "So far: " + headline(now);
   } else if (const std::string said = disappointment(log); !said.empty()) {
     verdict["others"].insert(verdict["others"].begin(), said);
   }

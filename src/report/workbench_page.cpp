@@ -16,7 +16,8 @@ constexpr const char* kBody = R"html(<header id="head">
 <p id="unsure" hidden></p>
 <p id="drive" hidden></p>
 <ul id="others" class="notes" hidden></ul>
-<div id="doing" role="status" hidden><progress aria-label="Step under way"></progress> <span></span></div>
+<div id="doing" role="status" hidden><progress aria-label="Step under way"></progress> <span></span>
+<button type="button" id="stop" hidden>Stop it</button></div>
 <p id="failed" class="failed" role="alert" hidden></p>
 <div class="acts">
 <button type="button" id="undo" disabled>Undo</button>

@@ -18,6 +18,11 @@ std::optional<double> threshold_of(const Effect& effect) {
   return effect.shape.size() == 1 ? effect.shape.front().parameter("speed") : std::nullopt;
 }
 
+/// The left wheel's has no wheel in its name, for the sake of models that have it.
+std::string known_name(const CatalogueEntry& entry) {
+  return entry.name == "missed ticks" ? "missed ticks of the left wheel" : std::string(entry.name);
+}
+
 }  // namespace
 
 std::string formula_of(const Effect& effect) {
@@ -26,7 +31,7 @@ std::string formula_of(const Effect& effect) {
 
 std::string short_name(const Effect& effect) {
   const CatalogueEntry* entry = find_entry(effect.name);
-  return entry == nullptr ? name_in_words(effect) : std::string(entry->name);
+  return entry == nullptr ? name_in_words(effect) : known_name(*entry);
 }
 
 std::string name_in_words(const Effect& effect) {
@@ -39,7 +44,7 @@ std::string name_in_words(const Effect& effect) {
       return fmt::format("{} with {}", entry->name, variables_in_words(rest));
     }
     if (const std::optional<double> v0 = threshold_of(effect); v0 && entry->has_parameters()) {
-      return fmt::format("{} above {} m/s", entry->name, two_digits(*v0));
+      return fmt::format("{} above {} m/s", known_name(*entry), two_digits(*v0));
     }
     const std::optional<Vector2> place = place_of(effect);
     const std::optional<double> r = place ? effect.shape.front().parameter("r") : std::nullopt;

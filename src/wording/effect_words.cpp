@@ -104,6 +104,45 @@ bool counts_events(const Shape& shape) {
   return event_of(shape) != "each event";
 }
 
+/// A curve of bells over one variable: what it comes to at each bell's middle. Single coefficients
+/// say little, for bells overlap.
+std::optional<std::string> curve_in_words(const Effect& effect) {
+  constexpr std::size_t kFewest = 3;
+  if (effect.shape.size() < kFewest || effect.per_session) return std::nullopt;
+  const std::vector<std::string>& variables = effect.shape.front().variables();
+  if (variables.size() != 1) return std::nullopt;
+  const std::string& u = variables.front();
+  std::vector<double> middles;
+  for (const Shape& one : effect.shape) {
+    const std::optional<double> middle = one.parameter(u);
+    if (!one.text().starts_with("exp(") || one.variables() != variables || !middle) {
+      return std::nullopt;
+    }
+    middles.push_back(*middle);
+  }
+  std::vector<double> values(middles.size(), 0.0);
+  for (std::size_t k = 0; k < effect.shape.size(); ++k) {
+    const std::vector<double> bell = effect.shape[k].values({{u, middles}});
+    for (std::size_t j = 0; j < bell.size(); ++j) values[j] += effect.coefficients[k] * bell[j];
+  }
+  const Scale scale = scale_of(effect.channel);
+  const Phrase phrase = phrase_of(effect.channel);
+  constexpr double kNothing = 1e-3;  // of the most
+  double most = 0.0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  std::string text = phrase.subject;
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    const std::string size =
+        std::abs(values[j]) < kNothing * most
+            ? std::string("nothing")
+            : fmt::format("{}{} {}", two_digits(scale.factor * std::abs(values[j])), scale.unit,
+                          values[j] < 0.0 ? phrase.less : phrase.more);
+    text += fmt::format("{} {} at {} {:.3g}", j == 0 ? "" : ",", size, variable_in_words(u),
+                        middles[j]);
+  }
+  return text;
+}
+
 bool is_plain_factor(const Effect& effect) {
   return effect.is_constant() && !effect.per_session;
 }
@@ -163,6 +202,7 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
         "{} up to {} {}, and as much the other way, as {} goes round", phrase.subject,
         with_error(scale.factor * size, scale.factor * error, scale.unit), phrase.more, *round);
   }
+  if (const std::optional<std::string> curve = curve_in_words(effect)) return *curve;
   std::string text;
   const std::optional<Vector2> place = place_of(effect);
   for (std::size_t k = 0; k < effect.coefficients.size(); ++k) {

@@ -65,22 +65,34 @@ constexpr ExplanationText kTexts[] = {
     {"centrifugal side-slip",
      "In bends the tyres give outwards, the more the faster and the tighter the bend.",
      "Look for soft or narrow tyres, a high load, and a smooth or dusty floor.",
-     "The same circle slowly and fast, to both sides."},
+     "The same circle slowly and fast, to both sides.", -1,
+     "In bends the robot comes out further inwards than it says, the more the faster and "
+     "the tighter the bend. Tyres give outwards, so it is no slip of theirs: headings may "
+     "be stamped late, or the point that is tracked may lie off the axle."},
     {"slope",
      "Wheels slip while they push uphill and run on downhill: distances depend on the heading.",
      "Put a level on the floor; compare the motors' currents up and down.",
      "The same line up and down several times, then across the slope."},
     {"slip with speed", "The faster the robot, the more of its wheels' turning is lost in slip.",
      "Look at the tyres' tread, at dust on the floor, and at the load on the driven wheels.",
-     "One straight line at three clearly different speeds."},
+     "One straight line at three clearly different speeds.", -1,
+     "The faster the robot, the further it goes than its wheels say. Slip loses way, so it "
+     "is none: tyres may grow with speed, ticks of both wheels may be lost, or a speed may "
+     "be read from a filter that lags."},
     {"loss per start",
      "At every start the wheels slip before they grip: each start loses the same bit of way, "
      "however long the leg.",
      "Watch the wheels at a start; compare the acceleration with what the floor holds.",
-     "One line driven in one go, then the same with many stops."},
+     "One line driven in one go, then the same with many stops.", -1,
+     "Each start wins the same bit of way, however long the leg: the robot moves before "
+     "its wheels count. It may roll while the encoders wake, or be pushed by a load that "
+     "swings."},
     {"arc loss", "In arcs the wheels scrub: for every angle turned while driving some way is lost.",
      "Look for castors that drag, and tyres with wide treads.",
-     "The same distance straight, in wide arcs and in tight ones."},
+     "The same distance straight, in wide arcs and in tight ones.", -1,
+     "In arcs the robot goes further than its wheels say, with every angle turned. "
+     "Scrubbing loses way, so it is none: the point that is tracked may lie off the axle, "
+     "or the wheels may slip outwards in bends."},
     {"spin loss",
      "The robot turns about a point that is not under its axle's middle: each turn on the spot "
      "moves it.",
@@ -90,7 +102,10 @@ constexpr ExplanationText kTexts[] = {
     {"turn scrub",
      "The faster it turns, the more the tyres scrub: fast turns come out smaller than slow ones.",
      "Look for wide or soft tyres, and castors that resist.",
-     "Full turns on the spot at three clearly different rates."},
+     "Full turns on the spot at three clearly different rates.", -1,
+     "The faster it turns, the further it turns than its wheels say. Scrub makes turns "
+     "smaller, so it is none: the robot may swing on when a fast turn ends, or ticks may "
+     "be lost."},
     {"turn asymmetry", "Turns to one side come out larger, to the other side smaller.",
      "Look for a castor that sticks, a load to one side, or unequal tyre pressure.",
      "Ten full turns to the left, then ten to the right, at the same rate."},
@@ -103,11 +118,17 @@ constexpr ExplanationText kTexts[] = {
      "The larger {} is, the flatter the tyres and the smaller both wheels: distances are "
      "overstated under load.",
      "Measure the axle's height without and with the load; check the pressure.",
-     "The same line empty, half loaded and fully loaded."},
+     "The same line empty, half loaded and fully loaded.", -1,
+     "The larger {} is, the larger both wheels seem. Tyres under load grow flatter, so "
+     "look for what else goes with {}: ticks that are lost, wheels that skid on, warmth "
+     "that raises the pressure."},
     {"load on one wheel",
      "The larger {} is, the flatter one tyre: the robot bends to its side under load.",
      "Look at where the load lies; measure each side's height without and with it.",
-     "A straight line with the load in the middle, then to the left, then to the right."},
+     "A straight line with the load in the middle, then to the left, then to the right.", -1,
+     "The larger {} is, the larger one wheel seems. A tyre under load grows flatter, so "
+     "look for what else goes with {} on that side: ticks that are lost, or the other "
+     "wheel that carries the load."},
     {"tyre drift",
      "The wheels' size changes with {}: distances are right at first and wrong later.",
      "Check tread, pressure and warmth of the tyres before and after a drive.",
@@ -135,12 +156,18 @@ constexpr ExplanationText kTexts[] = {
      "Above some speed the left encoder loses ticks: the robot thinks that it bends left although "
      "it drives straight.",
      "Look at the left encoder's signal, cable and counter at full speed.",
-     "A straight line at speeds below and above the threshold, there and back."},
+     "A straight line at speeds below and above the threshold, there and back.", 1,
+     "Above some speed the left encoder counts too many ticks: the robot thinks that it "
+     "bends right although it drives straight. Look for interference that is counted, and "
+     "for a left wheel that spins."},
     {"missed ticks of the right wheel",
      "Above some speed the right encoder loses ticks: the robot thinks that it bends right "
      "although it drives straight.",
      "Look at the right encoder's signal, cable and counter at full speed.",
-     "A straight line at speeds below and above the threshold, there and back."},
+     "A straight line at speeds below and above the threshold, there and back.", 1,
+     "Above some speed the right encoder counts too many ticks: the robot thinks that it "
+     "bends left although it drives straight. Look for interference that is counted, and "
+     "for a right wheel that spins."},
     {"sampling skew",
      "One wheel is read a moment after the other: whenever the robot speeds up or brakes, a turn "
      "is seen that was none.",
@@ -200,7 +227,9 @@ constexpr ExplanationText kTexts[] = {
      "The same tour with it off and with it on."},
     {"slippery patch", "At one place the wheels slip: distances driven across it are overstated.",
      "Look at the floor there: water, dust, polish, a mat.",
-     "Across the place and round it, several times."},
+     "Across the place and round it, several times.", -1,
+     "At one place the robot goes further than its wheels say: they skid, or count "
+     "nothing, while it rolls on. Slip of driven wheels would lose way."},
     {"lever arm",
      "The sensor sits ahead of where it is believed (or behind): landmarks shift towards where the "
      "robot points.",
@@ -229,7 +258,9 @@ constexpr ExplanationText kTexts[] = {
      "The rollers slip as the robot moves sideways: it gets less far to the side than its wheels "
      "say.",
      "Look at the rollers: worn, dusty, stiff?",
-     "A measured way to the side, both ways, then the same ahead."},
+     "A measured way to the side, both ways, then the same ahead.", -1,
+     "The robot gets further to the side than its wheels say. Slip would lose way: the "
+     "wheels may be larger than believed, or the floor may slope."},
     {"steering offset",
      "The wheel points a little to one side when the angle reads zero: the robot bends when it is "
      "told to go straight.",

@@ -14,6 +14,9 @@ struct ExplanationText {
   std::string_view does;   ///< to the robot
   std::string_view look;   ///< at what, on the robot or round it
   std::string_view drive;  ///< what, to be sure
+  /// Sign of the coefficients that the text is about, and what the other sign does; 0: either.
+  int sign = 0;
+  std::string_view otherwise = {};
 };
 
 /// nullptr where there is none: the radii of single wheels, which are all alike.

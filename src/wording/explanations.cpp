@@ -94,6 +94,11 @@ Explanation explanation_of(const Effect& effect) {
   const ExplanationText* known = explanation_text(entry->name);
   if (known == nullptr) return of_own(effect);
   const std::string covariate = goes_with(effect);
+  const auto against = [known](double value) { return value * known->sign < 0.0; };
+  if (!effect.coefficients.empty() && std::ranges::all_of(effect.coefficients, against)) {
+    return {with(known->otherwise, covariate), with(known->look, covariate),
+            with(known->drive, covariate), true};
+  }
   return {with(known->does, covariate), with(known->look, covariate),
           with(known->drive, covariate)};
 }

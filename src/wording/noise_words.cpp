@@ -72,7 +72,7 @@ std::string lasting_of(const NoiseProcess& process) {
 }
 
 std::string changed_in_words(const NoiseSource& source) {
-  constexpr double kSame = 1.005;
+  constexpr double kSame = 1.05;  // of an amount that two digits tell apart
   if (source.lasts && source.process.channel == Channel::compass &&
       source.process.process == ProcessKind::walk_in_t) {
     return "compass errors that only grow: it looks like a heading integrated from a gyro, whose "

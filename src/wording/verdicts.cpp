@@ -120,6 +120,12 @@ std::string verdict_in_words(const Diagnosis& result) {
                       "tried explains it",
                       result.tried);
   }
+  if (is_slight_misfit(result)) {
+    return text + fmt::format(
+                      ", a slight one: noise alone makes such errors in one of {:.0f} recordings, "
+                      "and none of {} effects tried explains them",
+                      1.0 / result.p_value, result.tried);
+  }
   return text + fmt::format(
                     ": the model's noise does not allow these errors (p {}), and none of {} "
                     "effects tried explains them",
@@ -162,7 +168,12 @@ std::string stop_in_words(const Discovery& result) {
     }
     return std::string("nothing more is significant");
   }();
-  return result.consistent ? why : why + ", but the misfit is not explained";
+  if (result.consistent) return why;
+  return why + (is_slight_misfit(result.last)
+                    ? fmt::format(", but a slight misfit is not explained (noise alone makes as "
+                                  "much in one of {:.0f} recordings)",
+                                  1.0 / result.last.p_value)
+                    : ", but the misfit is not explained");
 }
 
 std::string in_words(const HeldOut& held_out) {

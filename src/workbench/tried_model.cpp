@@ -43,16 +43,6 @@ void say(const std::function<void(TryingStage)>& progress, TryingStage stage) {
 }  // namespace
 
 struct TriedModel::Tried {
-  /// The model without one of its effects.
-  struct Without {
-    Without(std::size_t which, ModelFit lacking)
-        : effect(which), fit(std::move(lacking)), tests(*fit.state) {}
-
-    std::size_t effect;
-    ModelFit fit;
-    ScoreTest tests;
-  };
-
   Tried(std::shared_ptr<const std::vector<Recording>> recordings_given, const Model& model,
         const DiagnoseOptions& how, const std::function<void(TryingStage)>& progress)
       : recordings(std::move(recordings_given)), options(how) {
@@ -91,7 +81,6 @@ struct TriedModel::Tried {
   mutable std::mutex mutex;
   std::optional<ScoreTest> tests;
   std::optional<HeldOutLegs> legs;
-  mutable std::unique_ptr<const Without> without;
 };
 
 TriedModel::TriedModel(std::shared_ptr<const std::vector<Recording>> recordings, const Model& model,
@@ -198,20 +187,12 @@ double p_with_noise(const Diagnosis& diagnosis, std::size_t finding, double fact
 }
 
 EffectEvidence TriedModel::shown(std::size_t effect, const std::vector<std::size_t>& legs) const {
-  const ModelFit& fit = tried_->fit;
-  const EffectEstimate& estimate = fit.effects.at(effect);
+  const FitState& fit = *tried_->fit.state;
+  const EffectEstimate& estimate = tried_->fit.effects.at(effect);
   const std::scoped_lock lock(tried_->mutex);
-  if (!tried_->without || tried_->without->effect != effect) {
-    Model model = fit.model;
-    model.effects.erase(model.effects.begin() + static_cast<std::ptrdiff_t>(effect));
-    tried_->without =
-        std::make_unique<const Tried::Without>(effect, refit(*tried_->recordings, model, fit));
-  }
-  const auto& [which, without, tests] = *tried_->without;
-  const std::vector<LegSpan> spans =
-      legs.empty() ? std::vector<LegSpan>() : leg_spans(*without.state, tried_->options.legs);
-  return seen_effect(estimate, {}, *without.state, tests,
-                     rows_of_legs(legs, spans, *without.state, tests.system()));
+  const ScoreTest tests = tried_->tests->lacking(effect, estimate.effect);
+  return seen_effect(estimate, {}, fit, tests,
+                     rows_of_legs(legs, tried_->spans, fit, tests.system()));
 }
 
 }  // namespace trussmap

@@ -73,6 +73,30 @@ TEST(ServeCommand, FromMisfitToModelByRequests) {
   EXPECT_EQ(bench.get("export/../../etc/passwd").status, 404);
 }
 
+TEST(ServeCommand, AStepThatIsStoppedLeavesAllAsItWas) {
+  const ScratchFolder scratch;
+  const ServedBench bench(riddle(scratch));
+  const json first = bench.settled();
+  EXPECT_FALSE(first.at("stops").get<bool>());
+  const json given = bench.state();
+  const std::size_t finding = finding_named(given, "hard iron");
+  const json add = {{"version", first.at("version")}, {"do", "add"}, {"finding", finding}};
+  ASSERT_EQ(bench.post("step", add.dump()).status, 202);
+  EXPECT_EQ(bench.status().at("step"), "Adding hard iron");
+  ASSERT_EQ(bench.post("stop", "{}").status, 202);
+  const json after = bench.settled();
+  EXPECT_EQ(after.at("failed"), "");
+  EXPECT_EQ(after.at("step"), "");
+  EXPECT_EQ(bench.state().at("steps"), given.at("steps"));
+  // And it can be made then; nothing is there to stop any more.
+  ASSERT_EQ(bench.post("stop", "{}").status, 202);
+  json again = add;
+  again["version"] = after.at("version");
+  ASSERT_EQ(bench.post("step", again.dump()).status, 202);
+  EXPECT_EQ(bench.settled().at("failed"), "");
+  EXPECT_EQ(bench.state().at("steps").size(), 2U);
+}
+
 TEST(ServeCommand, ItsCommandsDoTheSameWorkAgain) {
   const ScratchFolder scratch;
   const ServedBench bench(riddle(scratch));

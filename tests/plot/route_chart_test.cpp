@@ -59,7 +59,7 @@ TEST(RouteChart, ColoursFromNothingToTheWorst) {
   }
   ASSERT_NE(bars, nullptr);
   EXPECT_EQ(bars->shade, (std::vector<double>{0.0, 1.0}));  // the worst is drawn last
-  EXPECT_EQ(bars->key, (std::vector<std::string>{"", "0 mm", "100 mm"}));
+  EXPECT_EQ(bars->key, (std::vector<std::string>{"", "by wheels alone 0 mm off", "100 mm off"}));
   EXPECT_NO_THROW(static_cast<void>(chart_json(chart)));
 }
 

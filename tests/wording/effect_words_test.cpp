@@ -23,7 +23,8 @@ TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {
 }
 
 TEST(EffectWords, NamesSayWhatIsOpenInThem) {
-  EXPECT_EQ(name_in_words(catalogue_effect("missed ticks (v0=0.4)")), "missed ticks above 0.4 m/s");
+  EXPECT_EQ(name_in_words(catalogue_effect("missed ticks (v0=0.4)")),
+            "missed ticks of the left wheel above 0.4 m/s");
   EXPECT_EQ(name_in_words(catalogue_effect("tyre drift (t)")), "tyre drift with time");
   EXPECT_EQ(name_in_words({"turn with turn_rate", Channel::turn, {"turn_rate"}, {}}),
             "turning error with turn rate");
@@ -31,6 +32,18 @@ TEST(EffectWords, NamesSayWhatIsOpenInThem) {
                 {"creep at a place", Channel::creep, {"exp(-((x-1)^2+(y-2)^2)/(2*0.5^2))"}, {}}),
             "sideways slip at x 1.0 m, y 2.0 m");
   EXPECT_EQ(name_in_words({"my own", Channel::turn, {"x"}, {}}), "my own");
+}
+
+TEST(EffectWords, ACurveIsWhatItComesToAndNotItsCoefficients) {
+  // Bells that overlap: their sum at each middle, by hand.
+  Effect curve{
+      "left with a curve of speed",
+      Channel::left,
+      {"exp(-((speed-0.2)/0.2)^2)", "exp(-((speed-0.4)/0.2)^2)", "exp(-((speed-0.6)/0.2)^2)"},
+      {0.01, 0.0, -0.01}};
+  EXPECT_EQ(in_words(curve, {0.001, 0.001, 0.001}),
+            "the left wheel rolls 0.98 % further than it says at speed 0.2, nothing at speed 0.4, "
+            "0.98 % less far than it says at speed 0.6");
 }
 
 TEST(EffectWords, AWaveGoesRoundWithWhatIsInIt) {

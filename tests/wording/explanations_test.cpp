@@ -52,6 +52,26 @@ TEST(Explanation, NamesWhatItGoesWith) {
             std::string::npos);
 }
 
+TEST(Explanation, OfTheOtherSignIsNotOfTheUsualOne) {
+  // Slip loses way; ticks that are missed make a wheel say too little.
+  for (const auto& [name, usual] :
+       {std::pair("slip with speed", -0.01), std::pair("missed ticks (v0=0.5)", 0.05)}) {
+    Effect effect = catalogue_effect(name);
+    const std::string unsized = explanation_of(effect).does;
+    effect.coefficients = {usual};
+    EXPECT_EQ(explanation_of(effect).does, unsized);
+    EXPECT_FALSE(explanation_of(effect).unusual);
+    effect.coefficients = {-usual};
+    EXPECT_NE(explanation_of(effect).does, unsized);
+    EXPECT_TRUE(explanation_of(effect).unusual);
+    EXPECT_EQ(explanation_of(effect).does.find("lost in slip"), std::string::npos);
+  }
+  // A wheelbase may be wrong either way.
+  Effect wheelbase = catalogue_effect("wheelbase");
+  wheelbase.coefficients = {-0.02};
+  EXPECT_FALSE(explanation_of(wheelbase).unusual);
+}
+
 TEST(Explanation, OfOnesOwnEffectNamesItsPartAndItsCauses) {
   Effect own;
   own.name = "my effect";

@@ -65,7 +65,7 @@ function tagOf(one) {
   if (one.status === 'missing') return tag('missing', 'bad');
   if (one.implausible) return tag('implausibly large', 'plain');
   if (one.status === 'negligible') return tag('too small to matter', 'plain');
-  return one.significant ? tag('goes with it', 'plain') : tag('as chance', 'plain');
+  return one.significant ? tag('fits less well', 'plain') : tag('no more than chance', 'plain');
 }
 
 /**
@@ -98,20 +98,20 @@ export function showOn(list, state, does) {
   if (!state.on.length) list.append(make('li', {className: 'none', textContent: 'No effect yet.'}));
 }
 
-/** @param {Stacked} one @param {Acts} does @returns {HTMLElement} */
-function candidate(one, does) {
+/** @param {Stacked} one @param {Acts} does @param {boolean} [rival] of the card it is stacked in */
+function candidate(one, does, rival = false) {
   const item = card(one.name, [
-    make('span', {className: 'save', textContent:
-      one.status === 'missing' && one.saves_mm < 0 ? 'when fitted' : saving(one.saves_mm)}),
+    make('span', {className: 'save', textContent: saving(one.saves_mm) +
+      (one.status === 'missing' && one.saves_mm < 0 ? ' alone' : '')}),
     act('Add', `Add ${one.name}`, does.busy(), () => does.add(one))], {
       look: () => does.look(one), leave: does.leave, pin: () => does.pin(one)});
   item.dataset.effect = one.id;
   item.dataset.finding = String(one.finding);
   within(item, '.line').append(explainButton(item, one, () => does.explain({finding: one.finding})));
-  item.append(make('p', {}, tagOf(one), ' ' + one.words));
+  item.append(make('p', {}, rival ? '' : tagOf(one), ' ' + one.words));
   if (one.stack?.length) {
     item.append(make('p', {className: 'or', textContent: 'or, told apart by no data here:'}),
-                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does))));
+                make('ul', {className: 'cards'}, ...one.stack.map(inner => candidate(inner, does, true))));
   }
   return item;
 }
@@ -131,7 +131,7 @@ export function showCandidates(box, state, does) {
     section.dataset.part = part;
     if (all.length > shown.length) {
       const count = all.length - shown.length;
-      const text = count + (shown.length < telling.length ? ' more' : ' that are as chance would have them');
+      const text = count + (shown.length < telling.length ? ' more' : ' more, no more than chance');
       section.append(act(text, `${text}, ${part}`, false, () => { open.add(part); again(); }));
     }
     return section;

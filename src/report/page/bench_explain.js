@@ -16,11 +16,12 @@ const drawn = text => document.importNode(
 
 /** @param {ExplainReply} reply */
 function explanationOf(reply) {
-  const {explanation, cause, remedy, drawing} = reply;
+  const {explanation, unusual, cause, remedy, drawing} = reply;
   const box = make('div', {className: 'explanation'});
   if (drawing) {
     box.append(make('figure', {}, drawn(drawing), make('figcaption', {
-      textContent: 'Dashed: as the robot believes it to be. Blue: as it is. Orange: the cause.'})));
+      textContent: 'Dashed: as the robot believes it to be. Blue: as it is. Orange: the cause.' +
+                   (unusual ? ' Drawn as it mostly is; here it goes the other way.' : '')})));
   }
   const lines = [['What it does', explanation.does], ['What makes it', cause && cause + '.'],
                  ['Look at', explanation.look], ['Drive to be sure', explanation.drive],
@@ -38,7 +39,7 @@ function explanationOf(reply) {
 /**
  * The button that explains an effect in its card; what was open stays open when a card is made anew.
  * @param {HTMLElement} item the card
- * @param {{id: string, name: string}} one
+ * @param {{id: string, name: string, words: string}} one
  * @param {() => Promise<ExplainReply>} ask
  */
 export function explainButton(item, one, ask) {
@@ -49,8 +50,9 @@ export function explainButton(item, one, ask) {
     item.querySelector(':scope > .explanation')?.remove();
     if (!open.has(one.id)) return;
     try {
-      const reply = known.get(one.id) || await ask();
-      known.set(one.id, reply);
+      const key = `${one.id}: ${one.words}`;  // by the sign that it has here
+      const reply = known.get(key) || await ask();
+      known.set(key, reply);
       if (!open.has(one.id) || item.querySelector(':scope > .explanation')) return;
       const alike = item.querySelector(':scope > .or');  // comes last
       item.insertBefore(explanationOf(reply), alike);

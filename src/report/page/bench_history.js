@@ -27,7 +27,8 @@ function figuresOf(state, step) {
       : ` (${less > 0 ? '+' : '\u2212'}${Math.abs(less).toFixed(1)} mm against here)`;
   const foretold = step.predicted_mm === null ? '' : `, ${step.predicted_mm.toFixed(1)} predicted`;
   const roughly = here && state.provisional ? '\u2248 ' : '';
-  return `${step.label ? step.name + ': ' : ''}${roughly}${step.mm.toFixed(1)} mm${foretold}${against}`;
+  const branches = step.step > 0 && step.from !== step.step - 1 ? `from ${step.from + 1}: ` : '';
+  return `${branches}${step.label ? step.name + ': ' : ''}${roughly}${step.mm.toFixed(1)} mm${foretold}${against}`;
 }
 
 /** @param {BenchStep} step @param {HistoryActs} does @param {() => void} again */

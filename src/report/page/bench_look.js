@@ -3,7 +3,7 @@
 //
 // The effect that is looked at: its curve and what it would leave, before any fit. Pointing looks
 // for a while, pressing pins; sliders move its place, radius, threshold, and let go they snap to the
-// best value near; a duel sets it against another.
+// best value near, where that is wanted; a duel sets it against another.
 import {lastOnly, Refused} from './bench_api.js';
 import {showFigure} from './bench_view.js';
 import {by, make, messageOf, selectBy} from './dom.js';
@@ -43,6 +43,7 @@ let byDefault = false;  // nobody chose it
 /** @type {Target | null} */
 let looked = null;   // what is shown
 let asked = 0;
+let snaps = true;    // sliders, to the best value near
 /** @type {object | null} */
 let choice = null;   // of legs; null: all
 /** @type {Map<string, Preview>} */
@@ -129,6 +130,7 @@ function sliderOf(target, one, k, values) {
     showPinned(withValues());
   });
   input.addEventListener('change', async () => {
+    if (!snaps) return;
     const reply = await best({version, finding: target.ask.finding, values}).catch(() => null);
     if (!reply) return;
     reply.values.forEach((at, j) => { values[j] = at; });
@@ -140,19 +142,33 @@ function sliderOf(target, one, k, values) {
 
 /** @param {Target} target @param {number[]} values */
 function showSliders(target, values) {
+  const parameters = target.card?.parameters || [];
+  const snap = make('input', {type: 'checkbox', checked: snaps});
+  snap.addEventListener('change', () => { snaps = snap.checked; });
   by('sliders').replaceChildren(
-      ...(target.card?.parameters || []).map((one, k) => sliderOf(target, one, k, values)));
+      ...parameters.map((one, k) => sliderOf(target, one, k, values)),
+      ...(parameters.length ? [make('label', {className: 'snap'}, snap, ' let go, snap to the best fit near')] : []));
 }
+
+/** @param {string} label @param {Card[]} cards */
+const groupOf = (label, cards) => make('optgroup', {label}, ...cards.map(one => make('option', {
+  value: String(one.finding),
+  textContent: one.saves_mm > 0 ? `${one.name} (\u2212${one.saves_mm.toFixed(1)} mm)` : one.name})));
 
 /** @param {Card} [card] */
 function showDuel(card) {
   const rivals = card ? state.cards.filter(one => one.id !== card.id) : [];
   const alike = card?.looks_like || [];
   const first = rivals.filter(one => alike.includes(one.id));
-  const rest = rivals.filter(one => !alike.includes(one.id)).slice(0, 40);
+  const same = rivals.filter(one => !alike.includes(one.id) && one.part === card?.part);
+  const rest = rivals.filter(one => !alike.includes(one.id) && one.part !== card?.part);
+  const bySaving = (/** @type {Card} */ a, /** @type {Card} */ b) => b.saves_mm - a.saves_mm;
   by('duel').replaceChildren(
       make('option', {value: '', textContent: 'nothing'}),
-      ...[...first, ...rest].map(one => make('option', {value: String(one.finding), textContent: one.name})));
+      ...[{label: 'told apart by no data here', cards: first},
+          {label: `of the same part (${card?.part})`, cards: same.sort(bySaving).slice(0, 20)},
+          {label: 'of other parts', cards: rest.sort(bySaving).slice(0, 20)}]
+          .filter(group => group.cards.length).map(group => groupOf(group.label, group.cards)));
   by('duel-line').hidden = !rivals.length;
 }
 

@@ -46,7 +46,7 @@ function showError({figure, legs}) {
   by('figure-more').textContent = figure
       ? `at the end of a leg that no fit has seen (root mean square of ${figure.legs}` +
         (some ? ' among the chosen' : '') + '). ' +
-        `The middle one ${figure.median}, the worst ${figure.worst}` +
+        `Median ${figure.median}, worst ${figure.worst}` +
         (figure.worst_leg ? ` (${figure.worst_leg})` : '') +
         `. Noise alone would leave ${figure.floor}.`
       : some ? 'None of the chosen legs is held out.' : 'There are no legs to be held out of the fit.';

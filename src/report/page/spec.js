@@ -346,7 +346,7 @@ export function specOf(chart, width) {
     legends: legend.length
         ? [{fill: 'colour', stroke: 'colour', shape: 'shape', strokeDash: 'dash', strokeWidth: 'width', size: 'size',
             orient: 'top', direction: 'horizontal', aria: false,
-            columns: Math.max(1, Math.floor((width - 60) /
+            columns: Math.max(1, Math.floor((width - 60 - (isCategory(chart.y) ? limit.y : 0)) /
                 (36 + 7 * Math.max(...legend.map(key => Math.min(37, key.name.length))))))}]
         : [],
     marks: chart.layers.flatMap((layer, k) => marksOf(layer, k, chart))};

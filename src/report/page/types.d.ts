@@ -63,7 +63,7 @@ interface BenchStep {
 
 interface BenchVerdict {
   text: string;
-  tone: 'good' | 'bad';
+  tone: 'good' | 'bad' | 'neutral';
   unsure?: string;
   drive: string;
   others: string[];
@@ -233,6 +233,7 @@ interface ExplainReply {
   cause?: string;
   remedy?: string;
   explanation: ExplanationWords;
+  unusual: boolean;
   drawing: string;
 }
 
@@ -248,6 +249,8 @@ interface NoiseReply {
 interface BenchStatus {
   version: number;
   busy: boolean;
+  step: string;
+  stops: boolean;
   failed: string;
   note: string;
   doing?: string;

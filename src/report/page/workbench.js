@@ -105,7 +105,9 @@ let renewing = Promise.resolve();
 /** @param {BenchStatus} status */
 function onStatus(status) {
   if (status.busy) {
-    within(by('doing'), 'span').textContent = [status.note, status.doing].filter(Boolean).join(' ');
+    const step = status.step && `${status.step}: `;
+    within(by('doing'), 'span').textContent = step + [status.note, status.doing].filter(Boolean).join(' ');
+    by('stop').hidden = !status.stops;
     by('doing').hidden = false;
   }
   if (status.failed) fail(status.failed);
@@ -116,6 +118,10 @@ function onStatus(status) {
   }).catch(error => fail(messageOf(error)));
 }
 
+by('stop').addEventListener('click', () => {
+  by('stop').hidden = true;
+  tell('stop', {}).catch(error => fail(messageOf(error)));
+});
 by('undo').addEventListener('click', () => {
   if (!state) return;
   const back = state.steps[state.at].from;

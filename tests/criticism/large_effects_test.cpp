@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Effects so large that legs end a tenth of a metre off, on tours of a mesh, against what was
+// simulated.
+#include "criticism/diagnosis.hpp"
+#include "criticism/score_test.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/discover.hpp"
+#include "trussmap/simulated_recording.hpp"
+#include "trussmap/workbench.hpp"
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap {
+namespace {
+
+Effect sized(Effect effect, double coefficient) {
+  effect.coefficients = {coefficient};
+  return effect;
+}
+
+/// A wheel that says too little by a share that grows with the square of the speed.
+Effect left_with_speed_squared(double coefficient) {
+  Effect effect;
+  effect.name = "mine";
+  effect.channel = Channel::left;
+  effect.shape = {Shape("speed^2")};
+  return sized(effect, coefficient);
+}
+
+SimulatedRecording toured(std::uint64_t seed, const std::vector<Effect>& effects) {
+  SimulationSettings settings;
+  settings.seed = seed;
+  return simulate(settings, effects);
+}
+
+std::vector<std::string> missing_in(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const Finding* one : found_by(diagnosis)) names.push_back(one->effect.name);
+  return names;
+}
+
+/// Which alone look like the left wheel's error "with a curve of speed".
+struct TwoCauses {
+  Effect ticks = sized(catalogue_effect("missed ticks (v0=0.5)"), -0.05);
+  Effect scale = sized(catalogue_effect("travel scale"), 0.005);
+};
+
+TEST(KnownCauses, ComeBeforeOneOddCurve) {
+  const TwoCauses truth;
+  const SimulatedRecording one = toured(11, {truth.ticks, truth.scale});
+  const Diagnosis result = diagnose({one.drive.recording}, one.model);
+  const std::vector<std::string> names = missing_in(result);
+  ASSERT_EQ(names.size(), 2U) << testing::PrintToString(names);
+  EXPECT_EQ(names[0].rfind("missed ticks (v0=", 0), 0U) << names[0];
+  EXPECT_EQ(names[1], "travel scale");
+  const std::vector<const Finding*> found = found_by(result);
+  EXPECT_NEAR(found[0]->effect.shape.front().parameter("speed").value_or(0.0), 0.5, 0.03);
+  EXPECT_NEAR(found[0]->joint.at(0), -0.05, 0.006);
+  EXPECT_NEAR(found[1]->joint.at(0), 0.005, 4.0 * found[1]->joint_sd.at(0));
+}
+
+TEST(KnownCauses, LeaveAFormAloneThatIsTheOnlyCause) {
+  const SimulatedRecording one = toured(12, {left_with_speed_squared(0.02)});
+  const Diagnosis result = diagnose({one.drive.recording}, one.model);
+  EXPECT_EQ(missing_in(result), std::vector<std::string>{"left with speed squared"});
+}
+
+TEST(LargeEffects, AreForetoldAsTheFitThenFindsThem) {
+  // chi^2 per degree of freedom of about 7 without it.
+  const SimulatedRecording one = toured(12, {left_with_speed_squared(0.02)});
+  const ModelFit without = fit_model({one.drive.recording}, one.model);
+  ASSERT_GT(without.chi2, 4.0 * without.dof);
+  Effect mine = left_with_speed_squared(0.0);
+  mine.coefficients.clear();
+  const Score score = ScoreTest(*without.state).test({mine}).front();
+  Model model = one.model;
+  model.effects = {mine};
+  const ModelFit with = refit({one.drive.recording}, model, without);
+  EXPECT_NEAR(score.score, without.chi2 - with.chi2, 0.01 * (without.chi2 - with.chi2));
+  EXPECT_NEAR(score.coefficients.at(0), 0.02, 0.001);
+}
+
+TEST(LargeEffects, PassForNoNoiseThatLasts) {
+  const SimulatedRecording one = toured(13, {left_with_speed_squared(0.02)});
+  const Diagnosis result = diagnose({one.drive.recording}, one.model);
+  EXPECT_EQ(missing_in(result), std::vector<std::string>{"left with speed squared"});
+  ASSERT_TRUE(result.under);
+  for (const NoiseProcess& process : result.under->noise.noise.processes) {
+    EXPECT_NE(process.channel, Channel::left);
+    EXPECT_NE(process.channel, Channel::difference);
+  }
+  EXPECT_LT(result.under->noise.noise.left, 1.2 * one.model.noise.left);
+}
+
+TEST(LargeEffects, AreShownOnTheirCurve) {
+  const TwoCauses truth;
+  const SimulatedRecording one = toured(11, {truth.ticks, truth.scale});
+  Model model = one.model;
+  for (Effect effect : {truth.ticks, truth.scale}) {
+    effect.coefficients.clear();
+    model.effects.push_back(effect);
+  }
+  const TriedModel tried(
+      std::make_shared<const std::vector<Recording>>(std::vector{one.drive.recording}), model);
+  const Response shown = tried.shown(0).response;
+  ASSERT_GT(shown.bins.size(), 6U);
+  int far = 0;
+  for (const ResponseBin& bin : shown.bins) {
+    // A bin across the threshold has a mean of both sides.
+    if (bin.low < 0.5 && bin.high > 0.5) continue;
+    const double g = -0.05 * std::max(0.0, bin.at - 0.5);
+    far += std::abs(bin.estimate - g) > 3.0 * bin.sd ? 1 : 0;
+  }
+  EXPECT_EQ(far, 0);
+}
+
+}  // namespace
+}  // namespace trussmap
