@@ -5,14 +5,17 @@
 #   make               configure and build into build/
 #   make demo          install what is missing (Debian), build the command, run the worked example
 #                      (VERBOSE=1: with every command's tables)
-#   make check         install what is missing (Debian), build everything, run the fast tests: those
-#                      of pages in a browser and the slow ones are left to make test
+#   make check         install what is missing (Debian), look whether the sources are formatted, build
+#                      everything, run the fast tests: those of pages in a browser and the slow ones
+#                      are left to make test
+#   make format        format the sources (clang-format)
 #   make test          the same with all tests; pages are tested in a browser (Chromium), which is
 #                      installed too, as are, where there is npm, what checks their scripts' types
 #                      and their accessibility
 #   make package       install what is missing, build the Debian packages into build/package and
 #                      check them (lintian); make dist: the archive of the sources alone
 #   make python        install what is missing, build the Python package into build/python
+#   make notebooks     the same, then execute docs/notebooks into build/notebooks (installs Jupyter's parts)
 #   make fuzz          every reader under a fuzzer for MINUTES=1 each (clang); what fails is kept in
 #                      tests/fuzz/found, where make test replays it
 #   make tsan          the tests of threads under ThreadSanitizer
@@ -28,7 +31,8 @@ GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja)
 endif
 
 MINUTES ?= 1
-.PHONY: all check demo test dist package site site-check python fuzz tsan install-deps test-deps site-deps configure build command clean
+PYTHON_TREE ?= build
+.PHONY: all check formatted format demo test dist package site site-check python notebooks fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
 all: build
@@ -46,8 +50,18 @@ command: configure
 demo: install-deps command
 	@maps/demo.sh $(if $(VERBOSE),--verbose)
 
-check: install-deps build
+check: install-deps formatted build
 	@.ci/test build --parallel $(JOBS) --label-exclude 'slow|browser'
+
+# In an archive of the sources, which is no repository, there is nothing to look at.
+formatted:
+	@.ci/install-deps clang-format git
+	@git ls-files '*.hpp' '*.cpp' 2>/dev/null | xargs -r clang-format --dry-run -Werror || \
+	  { echo "not as clang-format has it: make format" >&2; exit 1; }
+
+format:
+	@.ci/install-deps clang-format git
+	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
 
 test: test-deps build
 	@.ci/test build --parallel $(JOBS)
@@ -67,8 +81,12 @@ package: install-deps
 
 python:
 	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev
-	@cmake --preset default $(GENERATOR) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
-	@cmake --build build --parallel $(JOBS) --target trussmap_python_package trussmap_command
+	@cmake --preset default $(GENERATOR) -B $(PYTHON_TREE) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
+	@cmake --build $(PYTHON_TREE) --parallel $(JOBS) --target trussmap_python_package trussmap_command
+
+notebooks: python
+	@.ci/install-deps python3-matplotlib python3-nbclient python3-nbconvert python3-nbformat python3-ipykernel
+	@$(firstword $(wildcard /usr/bin/python3) python3) docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev

@@ -63,7 +63,7 @@ def main():
     contents = pages.Contents()
     spelling.check(contents)
     done("spelling")
-    stage = pages.Stage(out / "source", contents)
+    stage = pages.Stage(out / "source", contents, out.parent / "notebooks")
     for name, path in contents.files.items():
         stage.page(name, path)
     commands.write(stage, command)

@@ -10,6 +10,8 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+import notebook_cells
+
 HERE = Path(__file__).resolve().parent
 TOP = HERE.parents[1]
 LINK = re.compile(r'(\]\(|<img src=")([^)"\s]+)')
@@ -76,9 +78,10 @@ def without_code(text):
 class Stage:
     """A folder of pages as Sphinx reads them: copies, made at every build, with links that fit."""
 
-    def __init__(self, folder, contents):
+    def __init__(self, folder, contents, notebooks):
         self.folder = folder
         self.contents = contents
+        self.notebooks = notebooks  # where the executed ones are, if they are
         self.made = set()
 
     def forget(self):
@@ -156,6 +159,8 @@ class Stage:
         if name == "effects":  # the catalogue's rows lead to the gallery
             text = re.sub(r"^\| (`([a-z][a-z0-9 -]+)(?: \([^`]*\))?`) \|(?=[^|]*\| `[a-z_0-9]+` ×)",
                           lambda m: f"| [{m[1]}](gallery/{slug_of(m[2])}.md) |", text, flags=re.M)
+        if path.startswith("docs/notebooks/"):
+            text = self.notebook(name, text)
         below = self.contents.below(name)
         if below:
             text += tree([os.path.relpath(one, os.path.dirname(name)) for one in below])
@@ -163,6 +168,23 @@ class Stage:
             for caption, names in self.contents.parts:
                 text += tree(names, caption)
         self.write(name, text)
+
+    def notebook(self, name, text):
+        """The page with what it printed and drew when it was executed, as it is now."""
+        pictures = []
+
+        def keep(picture):
+            path = self.folder / f"{name}-{len(pictures) + 1}.png"
+            pictures.append(path)
+            self.made.add(path)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(picture)
+            return path.name
+
+        cells = notebook_cells.executed_cells(self.notebooks / f"{Path(name).name}.ipynb")
+        return notebook_cells.shown(text, cells, keep) or text + (
+            "\n\n*Not executed when this site was built: `make notebooks` before it shows what the cells print and "
+            "draw.*\n")
 
 
 def tree(names, caption=None):

@@ -7,7 +7,7 @@
 #
 #   ```sh                     run by bash; must end with status 0. What builds (make, cmake) is not run
 #   ``` with "$ " lines       each run, and must print what stands below it, up to "..."
-#   ```python                 run, where the package trussmap can be imported
+#   ```python                 run, all of a page as one program, where the package trussmap can be imported
 #   ```diff                   must apply to the project as it is, after those before it on the page
 #   <!-- file: NAME -->       the block below is written to NAME
 #   <!-- not run: WHY -->     the block below is not run
@@ -81,14 +81,21 @@ class Page:
         if ran.returncode != 0:
             self.fault(line, f"the diff does not apply\n{ran.stdout}{ran.stderr}")
 
-    def python(self, text, line, folder):
-        ran = subprocess.run([sys.executable, "-c", text], cwd=folder, text=True,
-                             capture_output=True, timeout=580)
+    def python(self, blocks, folder):
+        """All of a page, after everything else of it: later blocks use what earlier ones have named."""
+        text = "\n".join(body for _, body in blocks)
+        try:
+            ran = subprocess.run([sys.executable, "-c", text], cwd=folder, text=True,
+                                 capture_output=True, timeout=580)
+        except subprocess.TimeoutExpired:
+            self.fault(blocks[0][0], "takes too long")
+            return
         if ran.returncode != 0:
-            self.fault(line, f"status {ran.returncode}\n{ran.stderr[-800:]}")
+            self.fault(blocks[0][0], f"status {ran.returncode}\n{ran.stderr[-800:]}")
 
     def run(self, python_there):
         text = self.path.read_text()
+        programs = []  # (line, block) of Python
         with tempfile.TemporaryDirectory(prefix="trussmap-page-") as name:
             folder = Path(name)
             (folder / "build").mkdir()
@@ -103,7 +110,7 @@ class Page:
                     target.parent.mkdir(parents=True, exist_ok=True)
                     target.write_text(body)
                     continue
-                job = {"sh": self.shell, "diff": self.diff, "python": self.python}.get(kind)
+                job = {"sh": self.shell, "diff": self.diff, "python": programs.append}.get(kind)
                 if kind in ("", "console") and re.search(r"^\$ ", body, re.M):
                     job = self.prompts
                 if job is None:
@@ -115,11 +122,16 @@ class Page:
                     why = mark[2] if mark else "the Python package is not there"
                     self.skipped.append(f"{self.path.relative_to(TOP)}:{line}: {why}")
                     continue
+                self.ran += 1
+                if kind == "python":
+                    programs.append((line, body))
+                    continue
                 try:
                     job(body, line, folder)
                 except subprocess.TimeoutExpired:
                     self.fault(line, "takes too long")
-                self.ran += 1
+            if programs:
+                self.python(programs, folder)
         return self
 
 
@@ -132,7 +144,8 @@ def main():
     paths = [Path(one).resolve() for one in options.pages]
     if not paths:
         paths = [TOP / path for name, path in Contents().files.items()
-                 if path.startswith("docs/") or path == "README.md"]
+                 if path.startswith("docs/") and not path.startswith("docs/notebooks/")
+                 or path in ("README.md", "CONTRIBUTING.md")]  # notebooks: make notebooks
     python_there = subprocess.run([sys.executable, "-c", "import trussmap"],
                                   capture_output=True).returncode == 0
     began = time.monotonic()

@@ -173,12 +173,14 @@ void add_map_builder(py::module_& module) {
                               "Corrects the map at every landmark that the robot reaches. A leg is "
                               "a displacement [m, map axes] with its covariance [m^2, 2 x 2].");
   type.def(py::init([](const std::string& method, const py::object& eta, double gain_limit,
-                       double gate) {
-             return std::make_unique<MapBuilder>(options_of(method, eta, gain_limit, gate));
+                       double gate, bool refine) {
+             MapBuilderOptions options = options_of(method, eta, gain_limit, gate);
+             options.refine = refine;
+             return std::make_unique<MapBuilder>(options);
            }),
            py::arg("method") = "elastic", py::kw_only(), py::arg("eta") = 50,
            py::arg("gain_limit") = MapBuilderOptions().gain_limit,
-           py::arg("gate") = MapBuilderOptions().gate)
+           py::arg("gate") = MapBuilderOptions().gate, py::arg("refine") = true)
       .def("__repr__", [](const MapBuilder& self) {
         return "<trussmap.MapBuilder of " + std::to_string(self.landmarks()) + " landmarks>";
       });

@@ -25,12 +25,13 @@ struct ComparisonResult {
 };
 
 ComparisonResult run_compare(const py::object& recordings, const py::object& model,
-                             const std::vector<std::string>& without, double gate,
-                             std::optional<double> every, double level, double holdout,
+                             const std::vector<std::string>& without, const py::object& exclude,
+                             double gate, std::optional<double> every, double level, double holdout,
                              double min_drive, double leg, std::size_t worst,
                              const py::object& progress) {
   const Given given = python::given(recordings, model);
-  const UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  use.fit.excluded = excluded_of(exclude, given.held.size());
   ComparisonResult result;
   result.worst = worst;
   CallProgress told(progress, {{"reading", 1}, {"fitting the map", 4}, {"comparing", 40}});
@@ -182,8 +183,8 @@ void add_comparison(py::module_& module) {
       });
   module.def(
       "compare", run_compare, py::arg("recordings"), py::arg("model"), py::kw_only(),
-      py::arg("without") = std::vector<std::string>(), py::arg("gate") = kModelGate,
-      py::arg("every") = py::none(), py::arg("level") = kSignificance,
+      py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
+      py::arg("gate") = kModelGate, py::arg("every") = py::none(), py::arg("level") = kSignificance,
       py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
       py::arg("leg") = LegOptions().leg, py::arg("worst") = 5, py::arg("progress") = py::none(),
       doc("Is a model consistent with recordings, and where does it fail?", "compare").c_str());

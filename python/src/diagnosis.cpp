@@ -18,11 +18,12 @@ namespace {
 
 DiagnosisResult run_diagnose(const py::object& recordings, const py::object& model,
                              bool stated_noise, const std::vector<std::string>& without,
-                             double gate, std::optional<double> every, double level, double holdout,
-                             double min_drive, double leg, std::size_t list,
-                             const py::object& progress) {
+                             const py::object& exclude, double gate, std::optional<double> every,
+                             double level, double holdout, double min_drive, double leg,
+                             std::size_t list, const py::object& progress) {
   const Given given = python::given(recordings, model);
-  const UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  use.fit.excluded = excluded_of(exclude, given.held.size());
   DiagnosisResult result;
   result.list = list;
   result.how.fit = use.fit;
@@ -77,7 +78,11 @@ py::list table(const DiagnosisResult& self, const std::string& what) {
 void add_rows(py::module_& module) {
   RowClass<LookAlike>(module, "LookAlike", "LookAlike")
       .field("effect", &LookAlike::effect)
-      .field("cosine", &LookAlike::cosine);
+      .field("cosine", &LookAlike::cosine)
+      .field("behind", &LookAlike::behind)
+      .value(
+          "told_apart", [](const LookAlike& self) { return self.told_apart(); },
+          "Whether all measurements together tell the two apart.");
   RowClass<Finding>(module, "Finding", "Finding")
       .field("effect", &Finding::effect)
       .value(
@@ -212,10 +217,11 @@ void add_diagnosis(py::module_& module) {
       });
   module.def("diagnose", run_diagnose, py::arg("recordings"), py::arg("model"), py::kw_only(),
              py::arg("stated_noise") = false, py::arg("without") = std::vector<std::string>(),
-             py::arg("gate") = kModelGate, py::arg("every") = py::none(),
-             py::arg("level") = kSignificance, py::arg("holdout") = LegOptions().share,
-             py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
-             py::arg("list") = 8, py::arg("progress") = py::none(),
+             py::arg("exclude") = py::tuple(), py::arg("gate") = kModelGate,
+             py::arg("every") = py::none(), py::arg("level") = kSignificance,
+             py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
+             py::arg("leg") = LegOptions().leg, py::arg("list") = 8,
+             py::arg("progress") = py::none(),
              doc("Which physical effect is a model missing?", "diagnose").c_str());
 }
 

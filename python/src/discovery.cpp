@@ -26,11 +26,12 @@ struct DiscoveryResult {
 
 DiscoveryResult run_discover(const py::object& recordings, const py::object& model,
                              std::size_t most, bool stated_noise,
-                             const std::vector<std::string>& without, double gate,
-                             std::optional<double> every, double level, double holdout,
+                             const std::vector<std::string>& without, const py::object& exclude,
+                             double gate, std::optional<double> every, double level, double holdout,
                              double min_drive, double leg, const py::object& progress) {
   const Given given = python::given(recordings, model);
-  const UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  UseOptions use = use_options(without, gate, every, holdout, min_drive, leg, level);
+  use.fit.excluded = excluded_of(exclude, given.held.size());
   DiscoveryResult result;
   result.how.fit = use.fit;
   result.how.legs = use.legs;
@@ -192,10 +193,11 @@ void add_discovery(py::module_& module) {
       });
   module.def("discover", run_discover, py::arg("recordings"), py::arg("model"), py::kw_only(),
              py::arg("most") = 6, py::arg("stated_noise") = false,
-             py::arg("without") = std::vector<std::string>(), py::arg("gate") = kModelGate,
-             py::arg("every") = py::none(), py::arg("level") = kSignificance,
-             py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
-             py::arg("leg") = LegOptions().leg, py::arg("progress") = py::none(),
+             py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
+             py::arg("gate") = kModelGate, py::arg("every") = py::none(),
+             py::arg("level") = kSignificance, py::arg("holdout") = LegOptions().share,
+             py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
+             py::arg("progress") = py::none(),
              doc("Diagnoses, adds and fits effects, one by one, for as long as that is justified.",
                  "discover")
                  .c_str());

@@ -27,11 +27,13 @@ struct FitResult {
 };
 
 FitResult run_fit(const py::object& recordings, const py::object& model, bool noise,
-                  const std::vector<std::string>& without, double gate, std::optional<double> every,
-                  double holdout, double min_drive, double leg, const py::object& progress) {
+                  const std::vector<std::string>& without, const py::object& exclude, double gate,
+                  std::optional<double> every, double holdout, double min_drive, double leg,
+                  const py::object& progress) {
   const Given given = python::given(recordings, model);
   FitResult result;
   result.use = use_options(without, gate, every, holdout, min_drive, leg, kSignificance);
+  result.use.fit.excluded = excluded_of(exclude, given.held.size());
   std::vector<CallStep> steps{{"reading", 0.5},
                               {"fitting without effects", 2.5},
                               {"fitting the effects", 5},
@@ -268,9 +270,10 @@ void add_fits(py::module_& module) {
       });
   module.def("fit", run_fit, py::arg("recordings"), py::arg("model"), py::kw_only(),
              py::arg("noise") = false, py::arg("without") = std::vector<std::string>(),
-             py::arg("gate") = kModelGate, py::arg("every") = py::none(),
-             py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
-             py::arg("leg") = LegOptions().leg, py::arg("progress") = py::none(),
+             py::arg("exclude") = py::tuple(), py::arg("gate") = kModelGate,
+             py::arg("every") = py::none(), py::arg("holdout") = LegOptions().share,
+             py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
+             py::arg("progress") = py::none(),
              doc("Estimates the coefficients of a model's effects; with `noise` the noise, too.",
                  "fit_model")
                  .c_str());

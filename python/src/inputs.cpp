@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "inputs.hpp"
 
+#include "arrays.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/prepared_recordings.hpp"
 #include "trussmap/recording_files.hpp"
@@ -9,7 +10,10 @@
 #include <algorithm>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace trussmap::python {
 namespace {
@@ -36,6 +40,35 @@ std::string name_of_recording(const Given& given, std::size_t k) {
 
 void require(bool right, const char* what) {
   if (!right) throw py::value_error(what);
+}
+
+TimeSpan span_of(py::handle pair) {
+  const std::vector<double> times = numbers(pair, "exclude");
+  if (times.size() != 2 || !(times[0] < times[1])) {
+    throw py::value_error("exclude: " + py::repr(pair).cast<std::string>() +
+                          ", expected (from, to) in s, the earlier first");
+  }
+  return {times[0], times[1]};
+}
+
+std::vector<TimeSpan> spans_of(py::handle spans) {
+  std::vector<TimeSpan> result;
+  for (const py::handle one : py::iter(spans)) result.push_back(span_of(one));
+  return result;
+}
+
+/// Times to leave out have to be times of the drive: a wrong unit must not be ignored in silence.
+void check_excluded(const std::vector<Recording>& recordings, const FitOptions& fit) {
+  for (std::size_t k = 0; k < fit.excluded.size(); ++k) {
+    const Drive& drive = recordings[k].drive;
+    if (drive.rows() == 0) continue;
+    for (const TimeSpan& one : fit.excluded[k]) {
+      if (one.from < drive.t.back() && one.to > drive.start()) continue;
+      throw std::invalid_argument(fmt::format(
+          "exclude: {} lasts from {:g} s to {:g} s, and {:g} to {:g} s is no part of it",
+          recordings[k].name, drive.start(), drive.t.back(), one.from, one.to));
+    }
+  }
 }
 
 }  // namespace
@@ -102,8 +135,19 @@ UseOptions use_options(const std::vector<std::string>& without, double gate,
   return use;
 }
 
+std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude, std::size_t recordings) {
+  if (exclude.is_none() || py::len(exclude) == 0) return {};
+  if (recordings == 1) return {spans_of(exclude)};
+  std::vector<std::vector<TimeSpan>> result;
+  require(py::len(exclude) == recordings,
+          "exclude: expected a list of (from, to) for each of the recordings");
+  for (const py::handle one : py::iter(exclude)) result.push_back(spans_of(one));
+  return result;
+}
+
 Prepared prepared(const Given& given, const UseOptions& use) {
   Read input = read(given);
+  check_excluded(input.recordings, use.fit);
   for (Recording& one : input.recordings) one = with_wheels(std::move(one), input.model.robot);
   Prepared result;
   for (const CheckFinding& one :

@@ -11,6 +11,7 @@
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -65,7 +66,12 @@ struct UseOptions {
                                      std::optional<double> every, double holdout, double min_drive,
                                      double leg, double level);
 
-/// Touches no Python.
+/// Times that a fit leaves out: of one recording pairs (from, to) [s], of several a list of such
+/// lists, one per recording; None: none. TypeError, ValueError on another form.
+[[nodiscard]] std::vector<std::vector<TimeSpan>> excluded_of(py::handle exclude,
+                                                             std::size_t recordings);
+
+/// Touches no Python. std::invalid_argument where times to leave out are none of the recording's.
 [[nodiscard]] Prepared prepared(const Given& given, const UseOptions& use);
 
 /// As Python warnings, of the category trussmap.RecordingWarning.

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, module) {
   trussmap::python::add_discovery(module);
   trussmap::python::add_map(module);
   trussmap::python::add_poses(module);
+  trussmap::python::add_fleets(module);
   trussmap::python::add_check(module);
   trussmap::python::add_simulation(module);
   trussmap::python::add_calibration(module);

@@ -17,6 +17,7 @@ void add_diagnosis(pybind11::module_& module);
 void add_discovery(pybind11::module_& module);
 void add_map(pybind11::module_& module);
 void add_poses(pybind11::module_& module);
+void add_fleets(pybind11::module_& module);
 void add_check(pybind11::module_& module);
 void add_simulation(pybind11::module_& module);
 void add_calibration(pybind11::module_& module);

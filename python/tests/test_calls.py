@@ -138,6 +138,16 @@ class Errors(unittest.TestCase):
         with self.assertRaises(trussmap.InputError):
             trussmap.compare("nowhere", MODEL)
 
+    def test_of_times_to_leave_out(self):
+        for wrong, words in (([(1.0, 2.0, 3.0)], "from, to"), ([(9.0, 5.0)], "the earlier first"),
+                             ([(1e6, 2e6)], "no part of it"), ([("a", "b")], "exclude")):
+            with self.assertRaisesRegex(ValueError, words):
+                trussmap.compare(RIDDLE, MODEL, exclude=wrong)
+        with self.assertRaisesRegex(ValueError, "each of the recordings"):
+            trussmap.compare([RIDDLE, RIDDLE], MODEL, exclude=[(10.0, 20.0)])
+        with self.assertRaises(TypeError):
+            trussmap.compare(RIDDLE, MODEL, exclude=3.0)
+
     def test_mistakes_in_recordings_are_warnings(self):
         recording = trussmap.Recording.read(RIDDLE)
         columns = dict(recording.drive)

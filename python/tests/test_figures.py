@@ -5,6 +5,8 @@ must not part."""
 import unittest
 import warnings
 
+import numpy
+
 import trussmap
 from places import MAPS, SHARED, printed_and_json, run_command, scratch_folder
 
@@ -68,6 +70,22 @@ class TheSame(unittest.TestCase):
     def test_the_riddle(self):
         self.check_comparison(RIDDLE)
         self.check_diagnosis(RIDDLE)
+
+    def test_times_left_out(self):
+        printed, told = printed_and_json(scratch_folder(self), "compare", RIDDLE, "--model",
+                                         model_of(RIDDLE), "--exclude", "20:60,100:110")
+        result = trussmap.compare(RIDDLE, model_of(RIDDLE), exclude=[(20.0, 60.0), (100.0, 110.0)])
+        self.assert_printed(result, printed)
+        self.assertEqual(result.chi2, told["chi2"])
+        self.assertLess(result.dof, trussmap.compare(RIDDLE, model_of(RIDDLE)).dof)
+        printed, told = printed_and_json(scratch_folder(self), "diagnose", RIDDLE, "--model",
+                                         model_of(RIDDLE), "--exclude", "20:60")
+        result = trussmap.diagnose(RIDDLE, model_of(RIDDLE), exclude=numpy.array([[20.0, 60.0]]))
+        self.assert_printed(result, printed)
+        self.assertEqual([(one.effect.name, one.cosine, one.behind)
+                          for one in result.findings[0].look_alikes],
+                         [(one["effect"], one["cosine"], one["chi2_behind"])
+                          for one in told["candidates"][0]["indistinguishable_from"]])
 
     def test_maps_by_every_method(self):
         for method in ("adjustment", "elastic", "elastic-printed", "gauss-markov"):

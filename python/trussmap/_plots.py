@@ -86,6 +86,25 @@ def plot_fit(self, axes=None):
                  "held-out legs end off by [mm, rms]")
 
 
+def plot_fleet(self, axes=None, finding=0):
+    """Of one finding every robot's own estimate; those that differ in black."""
+    axes = _axes(axes)
+    if not self.findings:
+        axes.text(0.5, 0.5, "nothing found", ha="center", transform=axes.transAxes)
+        return axes
+    one = self.findings[finding]
+    for place, robot in enumerate(one.coefficients[0].members):
+        axes.errorbar(place, robot.value, yerr=robot.sd, fmt="o", markersize=3,
+                      color="k" if robot.differs or robot.drifts else "0.6")
+        if robot.differs or robot.drifts:
+            axes.annotate(robot.robot, (place, robot.value), textcoords="offset points",
+                          xytext=(4, 4))
+    axes.axhline(0.0, color="0.5", linestyle=":")
+    axes.set_xlabel("robot")
+    axes.set_ylabel(one.effect)
+    return axes
+
+
 def plot_pose_graph(self, axes=None):
     """The vertices where they were adjusted to."""
     axes = _axes(axes)
@@ -112,6 +131,6 @@ def add_plots():
     for kind, plot in ((_core.Map, plot_map), (_core.Poses, plot_poses),
                        (_core.Comparison, plot_comparison), (_core.Diagnosis, plot_diagnosis),
                        (_core.Discovery, plot_discovery), (_core.Fit, plot_fit),
-                       (_core.PoseGraphFit, plot_pose_graph), (_core.Calibration, plot_table),
-                       (_core.Umbmark, plot_table)):
+                       (_core.PoseGraphFit, plot_pose_graph), (_core.FleetReport, plot_fleet),
+                       (_core.Calibration, plot_table), (_core.Umbmark, plot_table)):
         kind.plot = plot

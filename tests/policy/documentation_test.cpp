@@ -24,7 +24,7 @@ using testing::text_of;
 
 /// The README first, then docs/ and the notes beside benches and examples.
 std::vector<fs::path> pages() {
-  std::vector<fs::path> result{"README.md"};
+  std::vector<fs::path> result{"README.md", "CONTRIBUTING.md"};
   const std::vector<fs::path> others = source_files({"docs", "bench", "maps"}, {".md"});
   result.insert(result.end(), others.begin(), others.end());
   return result;
