@@ -1,47 +1,55 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# Four sets of targets, five with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
+# Four sets of static targets, five with MPI, so that find_package(trussmap COMPONENTS map) needs only what maps need.
 include(CMakePackageConfigHelpers)
 
 set(TRUSSMAP_ZSH_FOLDER site-functions CACHE STRING "Where zsh looks for completions, below share/zsh")
 mark_as_advanced(TRUSSMAP_ZSH_FOLDER)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/trussmap)
-install(TARGETS trussmap_map EXPORT trussmapMapTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS trussmap_store EXPORT trussmapStoreTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS trussmap_logs EXPORT trussmapLogsTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-if(TRUSSMAP_WITH_MPI)
-  install(TARGETS trussmap_distributed EXPORT trussmapDistributedTargets
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT trussmapDistributedTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
-  install(FILES cmake/FindPetsc.cmake DESTINATION ${config_dir})
+if(BUILD_SHARED_LIBS)
+  # One library, one set.
+  list(TRANSFORM trussmap_parts REPLACE "(.+)" "trussmap_\\1_name" OUTPUT_VARIABLE names)
+  install(TARGETS trussmap ${names} EXPORT trussmapTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+else()
+  install(TARGETS trussmap EXPORT trussmapTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  foreach(part IN LISTS trussmap_parts)
+    string(SUBSTRING ${part} 0 1 first)
+    string(SUBSTRING ${part} 1 -1 set)
+    string(TOUPPER ${first} first)
+    string(PREPEND set ${first})
+    install(TARGETS trussmap_${part} EXPORT trussmap${set}Targets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT trussmap${set}Targets NAMESPACE trussmap:: DESTINATION ${config_dir})
+  endforeach()
+  if(TRUSSMAP_WITH_MPI)
+    install(FILES cmake/FindPetsc.cmake DESTINATION ${config_dir})
+  endif()
 endif()
-install(TARGETS trussmap EXPORT trussmapTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT trussmapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
 install(DIRECTORY include/trussmap DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(EXPORT trussmapMapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
-install(EXPORT trussmapStoreTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
-install(EXPORT trussmapLogsTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
-install(EXPORT trussmapTargets NAMESPACE trussmap:: DESTINATION ${config_dir})
-configure_package_config_file(cmake/trussmapConfig.cmake.in
-                              ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
+if(BUILD_SHARED_LIBS)
+  set(config cmake/trussmapSharedConfig.cmake.in)
+else()
+  set(config cmake/trussmapConfig.cmake.in)
+endif()
+configure_package_config_file(${config} ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
                               INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
-              cmake/FindCholmod.cmake
-        cmake/FindLz4.cmake
         DESTINATION ${config_dir})
+if(BUILD_SHARED_LIBS)  # brings what it needs
+  set(pkgconfig_requires eigen3)
+  set(pkgconfig_libs "-ltrussmap")
+else()  # their users link what they need
+  install(FILES cmake/FindCholmod.cmake cmake/FindLz4.cmake DESTINATION ${config_dir})
+  set(pkgconfig_requires
+      "eigen3 lapack fmt muparser liblzma expat tomlplusplus sqlite3 liblz4 libzstd yaml-cpp")
+  set(pkgconfig_libs "-ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -pthread")
+endif()
 configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 if(TARGET trussmap_command)

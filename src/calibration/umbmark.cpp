@@ -19,21 +19,21 @@ using Eigen::Vector2d;
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 /// A number and its derivatives by the two centres.
-struct Response {
+struct Sensitivity {
   double value = 0.0;
   Vector2d by_cw = Vector2d::Zero();
   Vector2d by_ccw = Vector2d::Zero();
 
-  [[nodiscard]] Response mapped(double new_value, double slope) const {
+  [[nodiscard]] Sensitivity mapped(double new_value, double slope) const {
     return {new_value, slope * by_cw, slope * by_ccw};
   }
 };
 
-Response mean(const Response& a, const Response& b) {
+Sensitivity mean(const Sensitivity& a, const Sensitivity& b) {
   return {0.5 * (a.value + b.value), 0.5 * (a.by_cw + b.by_cw), 0.5 * (a.by_ccw + b.by_ccw)};
 }
 
-Response linear(const SquareClusters& at, const Vector2d& by_cw, const Vector2d& by_ccw) {
+Sensitivity linear(const SquareClusters& at, const Vector2d& by_cw, const Vector2d& by_ccw) {
   return {by_cw.dot(at.cw.mean) + by_ccw.dot(at.ccw.mean), by_cw, by_ccw};
 }
 
@@ -46,16 +46,16 @@ struct AngleResponses {
 
   const Vector2d x = Vector2d::UnitX();
   const Vector2d y = Vector2d::UnitY();
-  Response alpha_x, alpha_y, beta_x, beta_y;
+  Sensitivity alpha_x, alpha_y, beta_x, beta_y;
 };
 
-Estimate estimate(const Response& response, const SquareClusters& at) {
+Estimate estimate(const Sensitivity& response, const SquareClusters& at) {
   return welch_estimate(response.value, response.by_cw, at.cw, response.by_ccw, at.ccw);
 }
 
 /// What follows from E_d and E_b.
-SquareSolution solution(const Response& alpha, const Response& beta, const Response& e_d,
-                        const Response& e_b, const SquareClusters& at, double wheelbase) {
+SquareSolution solution(const Sensitivity& alpha, const Sensitivity& beta, const Sensitivity& e_d,
+                        const Sensitivity& e_b, const SquareClusters& at, double wheelbase) {
   const GeometryErrors errors{e_d.value, e_b.value};
   const double slope = 2.0 / std::pow(e_d.value + 1.0, 2);
   SquareSolution result;
@@ -176,8 +176,8 @@ SquareAngles square_angles(const SquareClusters& clusters, double side) {
 SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup) {
   check(setup);
   const AngleResponses angles(clusters, setup.side);
-  const Response alpha = mean(angles.alpha_x, angles.alpha_y);
-  const Response beta = mean(angles.beta_x, angles.beta_y);
+  const Sensitivity alpha = mean(angles.alpha_x, angles.alpha_y);
+  const Sensitivity beta = mean(angles.beta_x, angles.beta_y);
   const double side = setup.side;
   const double s = setup.wheelbase * std::sin(0.5 * beta.value);
   if (alpha.value >= kQuarterTurn || std::abs(s) >= side) {
@@ -188,8 +188,8 @@ SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup)
   const double lacking = kQuarterTurn - alpha.value;
   const double slope_d =
       side * setup.wheelbase * std::cos(0.5 * beta.value) / ((side - s) * (side - s));
-  const Response e_d = beta.mapped((side + s) / (side - s), slope_d);
-  const Response e_b = alpha.mapped(kQuarterTurn / lacking, kQuarterTurn / (lacking * lacking));
+  const Sensitivity e_d = beta.mapped((side + s) / (side - s), slope_d);
+  const Sensitivity e_b = alpha.mapped(kQuarterTurn / lacking, kQuarterTurn / (lacking * lacking));
   return solution(alpha, beta, e_d, e_b, clusters, setup.wheelbase);
 }
 
@@ -198,18 +198,18 @@ SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& s
   const ExactFit fit = fit_exactly(clusters, setup);
   const Eigen::Matrix<double, 2, 4> gain =
       (fit.jacobian.transpose() * fit.jacobian).ldlt().solve(fit.jacobian.transpose());
-  const Response e_d{fit.at.diameter_ratio, gain.block<1, 2>(0, 0).transpose(),
-                     gain.block<1, 2>(0, 2).transpose()};
-  const Response e_b{fit.at.wheelbase_ratio, gain.block<1, 2>(1, 0).transpose(),
-                     gain.block<1, 2>(1, 2).transpose()};
-  const Response alpha =
+  const Sensitivity e_d{fit.at.diameter_ratio, gain.block<1, 2>(0, 0).transpose(),
+                        gain.block<1, 2>(0, 2).transpose()};
+  const Sensitivity e_b{fit.at.wheelbase_ratio, gain.block<1, 2>(1, 0).transpose(),
+                        gain.block<1, 2>(1, 2).transpose()};
+  const Sensitivity alpha =
       e_b.mapped(kQuarterTurn * (1.0 - 1.0 / e_b.value), kQuarterTurn / (e_b.value * e_b.value));
   const double per_ratio = setup.side / (setup.wheelbase * e_b.value);
   const double beta = (fit.at.right_factor() - fit.at.left_factor()) * per_ratio;
   const double by_d = 4.0 / std::pow(e_d.value + 1.0, 2) * per_ratio;
   const double by_b = -beta / e_b.value;
-  const Response beta_response{beta, by_d * e_d.by_cw + by_b * e_b.by_cw,
-                               by_d * e_d.by_ccw + by_b * e_b.by_ccw};
+  const Sensitivity beta_response{beta, by_d * e_d.by_cw + by_b * e_b.by_cw,
+                                  by_d * e_d.by_ccw + by_b * e_b.by_ccw};
   return solution(alpha, beta_response, e_d, e_b, clusters, setup.wheelbase);
 }
 

@@ -45,16 +45,16 @@ bool all_tell(const std::vector<Misfit>& first, const std::vector<Misfit>& secon
   });
 }
 
-struct Explanation {
+struct MistakeExplanation {
   ColumnMistake mistake;
   double misfit = 0.0;  ///< of the witness that agrees least
 };
 
-std::vector<Explanation> explanations(const Checked& checked, const MisfitFrame& frame,
-                                      const std::vector<Misfit>& recorded, double misfit) {
+std::vector<MistakeExplanation> explanations(const Checked& checked, const MisfitFrame& frame,
+                                             const std::vector<Misfit>& recorded, double misfit) {
   const Recording& recording = checked.recording;
   const Drive& drive = recording.drive;
-  std::vector<Explanation> result;
+  std::vector<MistakeExplanation> result;
   const double limit = std::min(kFits, kBetter * misfit);
   double best = limit;
   for (ColumnMistake& mistake : column_mistakes(*checked.robot)) {
@@ -66,13 +66,14 @@ std::vector<Explanation> explanations(const Checked& checked, const MisfitFrame&
     best = std::min(best, worst);
     result.push_back({std::move(mistake), worst});
   }
-  std::erase_if(result, [best](const Explanation& one) {
+  std::erase_if(result, [best](const MistakeExplanation& one) {
     return one.misfit > std::max(kAsGood * best, best + kAsGoodBy);
   });
   // The likeliest first, the simple ones of those that are as likely.
   constexpr double kEqual = 0.01;
-  std::stable_partition(result.begin(), result.end(),
-                        [best](const Explanation& one) { return one.misfit < best + kEqual; });
+  std::stable_partition(result.begin(), result.end(), [best](const MistakeExplanation& one) {
+    return one.misfit < best + kEqual;
+  });
   return result;
 }
 
@@ -108,13 +109,14 @@ void check_columns(Checked& checked) {
   const std::vector<Misfit> recorded = misfits(checked.recording, drive, frame);
   const Worst worst = worst_of(recorded, &Misfit::best);
   if (worst.misfit < kDisagrees) return;
-  const std::vector<Explanation> found = explanations(checked, frame, recorded, worst.misfit);
+  const std::vector<MistakeExplanation> found =
+      explanations(checked, frame, recorded, worst.misfit);
   if (found.empty()) return;
   const Robot& robot = *checked.robot;
   std::set<std::size_t> which;
   std::string words;
   std::string remedy;
-  for (const Explanation& one : found) {
+  for (const MistakeExplanation& one : found) {
     for (const std::size_t k : one.mistake.columns()) which.insert(k);
     words += (words.empty() ? "with " : ", or with ") + in_words(one.mistake, robot);
     remedy += (remedy.empty() ? "" : ", or ") + remedy_of(one.mistake, robot);

@@ -96,7 +96,7 @@ LawScore score_of(const NoiseLaw& law, const RecordingProblem& problem,
 }
 
 /// Statistics of residuals that no overall factor changes.
-struct NoiseShape {
+struct ResidualShape {
   double tails = 0.0;        ///< log of the mean fourth power, of measurements, by its expectation
   double correlation = 0.0;  ///< of successive drives
 };
@@ -123,7 +123,7 @@ class ShapeStatistics {
 
   [[nodiscard]] std::size_t pairs() const { return successive_.size(); }
 
-  [[nodiscard]] NoiseShape of(const Eigen::VectorXd& r) const {
+  [[nodiscard]] ResidualShape of(const Eigen::VectorXd& r) const {
     double squares = 0.0;
     double fourths = 0.0;
     double dof = 0.0;
@@ -136,7 +136,7 @@ class ShapeStatistics {
       dof += c;
       expected += c * (c + 2.0);
     }
-    NoiseShape shape;
+    ResidualShape shape;
     if (squares > 0.0) {
       shape.tails = std::log(fourths / expected) - 2.0 * std::log(squares / dof);
     }
@@ -204,12 +204,12 @@ void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<
     for (double& value : draws.reshaped()) value = normal(random);
     draws = P.times(std::move(draws));
     for (Eigen::Index k = 0; k < kAtOnce; ++k) {
-      const NoiseShape shape = statistics.of(draws.col(k));
+      const ResidualShape shape = statistics.of(draws.col(k));
       tails[first + k] = shape.tails;
       correlation[first + k] = shape.correlation;
     }
   }
-  const NoiseShape found = statistics.of(P.times(under.system().residuals()));
+  const ResidualShape found = statistics.of(P.times(under.system().residuals()));
   tests.push_back(shape_test("heavy tails", found.tails, tails));
   if (statistics.pairs() < 3) return;
   tests.push_back(shape_test("autocorrelation", found.correlation, correlation));

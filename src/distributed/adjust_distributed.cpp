@@ -62,7 +62,7 @@ double chi2_of(const Communicator& all, const Placing& placing, const std::vecto
 
 std::int64_t count_free(const Communicator& all, const Placing& placing) {
   std::int64_t count = 0;
-  for (const Landmark& one : placing.own()) count += one.fixed == 1 ? 0 : 1;
+  for (const PlacedLandmark& one : placing.own()) count += one.fixed == 1 ? 0 : 1;
   return all.sum(count);
 }
 

@@ -19,7 +19,7 @@ namespace {
 /// A landmark on its way to its process.
 struct Placed {
   std::uint64_t place;
-  Landmark landmark;
+  PlacedLandmark landmark;
 };
 
 bool before(const Placed& a, const Placed& b) {
@@ -131,7 +131,7 @@ int Placing::owner(std::int64_t number) const {
 void Placing::make_directory(const std::string& file) {
   std::vector<std::vector<Known>> letters(idx(all_.count()));
   for (std::size_t k = 0; k < own_.size(); ++k) {
-    const Landmark& one = own_[k];
+    const PlacedLandmark& one = own_[k];
     const Entry entry{first_ + static_cast<std::int64_t>(k), one.x, one.y, 0};
     letters[idx(who_knows(one.id, all_.count()))].push_back({one.id, entry, one.line});
   }
@@ -190,14 +190,14 @@ void Placing::fix(const TrussLines& lines, const std::string& file) {
 
 void Placing::fix_first() {
   std::int64_t line = std::numeric_limits<std::int64_t>::max();
-  for (const Landmark& one : own_) line = std::min(line, one.line);
+  for (const PlacedLandmark& one : own_) line = std::min(line, one.line);
   line = all_.least(line);
-  for (Landmark& one : own_) one.fixed = one.line == line ? 1 : 0;
+  for (PlacedLandmark& one : own_) one.fixed = one.line == line ? 1 : 0;
 }
 
 void Placing::tell_directory() {
   std::vector<std::vector<std::int64_t>> letters(idx(all_.count()));
-  for (const Landmark& one : own_) {
+  for (const PlacedLandmark& one : own_) {
     if (one.fixed == 1) letters[idx(who_knows(one.id, all_.count()))].push_back(one.id);
   }
   for (const std::int64_t id : all_.exchange(letters)) find(id)->entry.fixed = 1;

@@ -12,7 +12,7 @@
 
 namespace trussmap {
 
-struct Landmark {
+struct PlacedLandmark {
   std::int64_t id = 0;
   double x = 0.0;  ///< of the file, m
   double y = 0.0;
@@ -35,7 +35,7 @@ class Placing {
   Placing(const Communicator& all, const TrussLines& lines, const std::string& file);
 
   /// Of this process, in the order of their numbers.
-  [[nodiscard]] const std::vector<Landmark>& own() const { return own_; }
+  [[nodiscard]] const std::vector<PlacedLandmark>& own() const { return own_; }
   [[nodiscard]] std::int64_t first() const { return first_; }  ///< number of the first of these
   [[nodiscard]] std::int64_t count() const { return starts_.back(); }  ///< of all processes
   /// The process that has it.
@@ -67,7 +67,7 @@ class Placing {
   [[nodiscard]] std::vector<Known>::iterator find(std::int64_t id);
 
   const Communicator& all_;
-  std::vector<Landmark> own_;
+  std::vector<PlacedLandmark> own_;
   std::int64_t first_ = 0;
   std::vector<std::int64_t> starts_;  ///< number of each process's first landmark, and of all
   std::vector<Known> directory_;      ///< by id: the ids that this process is to know

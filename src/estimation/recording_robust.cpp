@@ -306,7 +306,7 @@ void heed_majority(const RecordingProblem& problem, RecordingState& state) {
 
 RobustFit descend_robustly(RecordingSystem& system, const RecordingProblem& problem,
                            RecordingState state, Eigen::VectorXd coefficients,
-                           const RobustOptions& options) {
+                           const RobustDescentOptions& options) {
   RobustDescent descent(system, problem, {std::move(state), std::move(coefficients), {}, 0.0});
   descent.heed();
   descent.narrow(options.gate, options.most_left_out);

@@ -44,7 +44,7 @@ namespace trussmap {
 /// landmark's: a wrong name is read at a landmark.
 void heed_majority(const RecordingProblem& problem, RecordingState& state);
 
-struct RobustOptions {
+struct RobustDescentOptions {
   double gate = 0.0;           ///< c^2
   double most_left_out = 1.0;  ///< share of the sightings
 };
@@ -60,7 +60,7 @@ struct RobustFit {
 /// system; with them descend once more.
 [[nodiscard]] RobustFit descend_robustly(RecordingSystem& system, const RecordingProblem& problem,
                                          RecordingState state, Eigen::VectorXd coefficients,
-                                         const RobustOptions& options);
+                                         const RobustDescentOptions& options);
 
 /// From a fit by nearly the same system, with its gate: sightings go out and come back in until
 /// nothing changes. One that is out comes back where all of chi^2 would rise by less than c^2.

@@ -36,7 +36,7 @@ struct Reckoning {
 
 }  // namespace
 
-class CorrectedOdometry::State {
+class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
  public:
   State(const Model& model, OdometryInputs inputs)
       : robot_(model.robot),

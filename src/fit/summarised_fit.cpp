@@ -51,7 +51,7 @@ struct Frame {
 
 }  // namespace
 
-class SummarisedFit::Impl {
+class __attribute__((visibility("hidden"))) SummarisedFit::Impl {
  public:
   Impl(Model model, const SummarisedFitOptions& options)
       : options_(options), model_(std::move(model)), sessions_({options.tolerance}) {

@@ -219,7 +219,7 @@ Fitted fitted(const std::vector<Line>& lines, const std::vector<bool>& drifts,
 }
 
 /// What the robots' values go with, and the robots by it.
-struct Explanation {
+struct KeyExplanation {
   std::vector<FleetKey> goes_with;  ///< at most one
   Grouping grouping;
   Fitted fit;
@@ -243,11 +243,11 @@ FleetKey key_of(const std::string& key, double p, const Grouping& by, const Fitt
 }
 
 /// Of keys that both matter the one that leaves fewer robots that differ and the smaller spread.
-Explanation explanation_of(const FleetMembers& seen, const std::vector<Line>& lines,
-                           const std::vector<bool>& drifts, double remainder, double level,
-                           double tests) {
+KeyExplanation key_explanation(const FleetMembers& seen, const std::vector<Line>& lines,
+                               const std::vector<bool>& drifts, double remainder, double level,
+                               double tests) {
   const std::vector<bool> all(lines.size(), true);
-  Explanation best{{}, {{""}, std::vector<int>(lines.size(), 0)}, {}};
+  KeyExplanation best{{}, {{""}, std::vector<int>(lines.size(), 0)}, {}};
   best.fit = fitted(lines, drifts, best.grouping, level / tests);
   const double key_tests = tests * static_cast<double>(std::max<std::size_t>(1, seen.keys.size()));
   double best_p = 1.0;
@@ -286,8 +286,8 @@ double remainder_of(const std::vector<Line>& lines) {
                                              static_cast<double>(remainders.size() - 1))];
 }
 
-void take_means(FleetCoefficient& result, const Explanation& found, double remainder, double level,
-                double tests) {
+void take_means(FleetCoefficient& result, const KeyExplanation& found, double remainder,
+                double level, double tests) {
   const RandomEffects& effects = found.fit.effects;
   result.goes_with = found.goes_with;
   result.mean = effects.mean;
@@ -306,8 +306,8 @@ void take_means(FleetCoefficient& result, const Explanation& found, double remai
   result.Q_dof = effects.Q_dof;
 }
 
-void take_robots(FleetCoefficient& result, const Explanation& found, const std::vector<Line>& lines,
-                 double tests) {
+void take_robots(FleetCoefficient& result, const KeyExplanation& found,
+                 const std::vector<Line>& lines, double tests) {
   const RandomEffects& effects = found.fit.effects;
   for (std::size_t k = 0; k < lines.size(); ++k) {
     FleetRobot& robot = result.members[k];
@@ -388,7 +388,7 @@ FleetCoefficient analyse_coefficient(const FleetMembers& fleet,
   for (;;) {
     std::vector<bool> drifts;
     for (const FleetRobot& one : result.members) drifts.push_back(one.drifts);
-    const Explanation found = explanation_of(seen, lines, drifts, remainder, level, tests);
+    const KeyExplanation found = key_explanation(seen, lines, drifts, remainder, level, tests);
     for (std::size_t at = 0; at < found.fit.of.size(); ++at) {
       if (found.fit.effects.outlying[at]) suspects[found.fit.of[at]] = true;
     }

@@ -42,7 +42,7 @@ struct BuilderCall {
   std::optional<Arrival::Kind> outcome = {};  ///< of arrive and observe
 };
 
-class BuilderAccess {
+class __attribute__((visibility("hidden"))) BuilderAccess {
  public:
   /// A builder with this memory; bars, where `options.method` has them, included.
   [[nodiscard]] static MapBuilder restored(BuilderMemory memory, const MapBuilderOptions& options);

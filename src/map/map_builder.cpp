@@ -92,7 +92,7 @@ BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& optio
 
 }  // namespace
 
-class MapBuilder::State {
+class __attribute__((visibility("hidden"))) MapBuilder::State {
  public:
   explicit State(const MapBuilderOptions& options) : State(options, BuilderMemory(options.gate)) {}
 

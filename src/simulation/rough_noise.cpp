@@ -77,7 +77,7 @@ double WhiteErrors::next() {
   return z * std::sqrt((kTailFreedom - 2.0) / chi_square_(random_tails_));
 }
 
-double LastingErrors::next(double white, double elapsed) {
+double DriftingNoise::next(double white, double elapsed) {
   if (memory_ == 0.0) return white;
   const double kept = std::exp(-elapsed / memory_);
   last_ = begun_ ? kept * last_ + std::sqrt(1.0 - kept * kept) * white : white;
@@ -93,8 +93,8 @@ SensorErrors::SensorErrors(const WheeledRobot& robot, std::uint64_t seed)
       wheel_noise_(std::max<std::size_t>(2, robot.geometry.columns.size()),
                    std::hypot(noise_.left, noise_.right) * std::sqrt(0.5)),
       wheels_(wheel_noise_.size(),
-              {robot.rough.memory ? kWheelMemory : 0.0, LastingErrors::Keeps::sum}),
-      compass_(robot.rough.haze ? kCompassMemory : 0.0, LastingErrors::Keeps::variance),
+              {robot.rough.memory ? kWheelMemory : 0.0, DriftingNoise::Keeps::sum}),
+      compass_(robot.rough.haze ? kCompassMemory : 0.0, DriftingNoise::Keeps::variance),
       random_steering_(random_stream(seed, Stream::steering)) {
   if (robot.geometry.drive == DriveKind::differential) wheel_noise_ = {noise_.left, noise_.right};
 }

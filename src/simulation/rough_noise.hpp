@@ -43,7 +43,7 @@ class WhiteErrors {
 };
 
 /// Errors that last.
-class LastingErrors {
+class DriftingNoise {
  public:
   enum class Keeps {
     variance,  ///< each error is as uncertain as a white one
@@ -51,7 +51,7 @@ class LastingErrors {
   };
 
   /// `memory` in s; 0: white.
-  LastingErrors(double memory, Keeps keeps) : memory_(memory), keeps_(keeps) {}
+  DriftingNoise(double memory, Keeps keeps) : memory_(memory), keeps_(keeps) {}
 
   /// The error that comes `elapsed` s after the last one; `white` is what is new in it.
   double next(double white, double elapsed);
@@ -79,8 +79,8 @@ class SensorErrors {
   WhiteErrors white_wheels_;
   WhiteErrors white_compass_;
   std::vector<double> wheel_noise_;    ///< k, m^(1/2)
-  std::vector<LastingErrors> wheels_;  ///< one per column
-  LastingErrors compass_;
+  std::vector<DriftingNoise> wheels_;  ///< one per column
+  DriftingNoise compass_;
   std::mt19937_64 random_steering_;
   std::normal_distribution<double> normal_;
 };

@@ -250,7 +250,7 @@ bool is_map_store(const fs::path& file) {
   return ending == ".db" || ending == ".sqlite" || ending == ".sqlite3";
 }
 
-class MapStore::Impl {
+class __attribute__((visibility("hidden"))) MapStore::Impl {
  public:
   /// `first`: what a new store begins with; null: with nothing, or go on.
   Impl(const fs::path& file, const std::optional<MapBuilderOptions>& options,

@@ -1,7 +1,6 @@
 # An overlay port: the sources are those that it lies in (vcpkg install trussmap
 # --overlay-ports=packaging/vcpkg).
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
-vcpkg_check_linkage(ONLY_STATIC_LIBRARY)
 vcpkg_cmake_configure(SOURCE_PATH "${SOURCE_PATH}"
   OPTIONS -D TRUSSMAP_BUILD_APPS=OFF -D TRUSSMAP_BUILD_TESTS=OFF)
 vcpkg_cmake_install()

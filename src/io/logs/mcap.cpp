@@ -72,7 +72,7 @@ struct Schema {
   std::uint32_t crc = 0;   // of the record
 };
 
-struct Channel {
+struct LogChannel {
   std::size_t number = 0;
   std::uint32_t crc = 0;  // of the record
 };
@@ -313,7 +313,7 @@ class McapReader {
       reader.fail("channel " + std::to_string(id) + " has schema " + std::to_string(schema_id) +
                   ", expected one that a record before it describes");
     }
-    channels_.emplace(id, Channel{topics_->add(channel), crc});
+    channels_.emplace(id, LogChannel{topics_->add(channel), crc});
   }
 
   static std::string differs(const std::string& kind, std::uint16_t id) {
@@ -334,7 +334,7 @@ class McapReader {
   bool at_end_ = false;
   std::size_t kept_ = 0;  // bytes of names and definitions
   std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, Channel> channels_;
+  std::map<std::uint16_t, LogChannel> channels_;
   Decompressor decompressor_;
 };
 
