@@ -157,11 +157,11 @@ class TriedModel {
 struct WorkbenchStep {
   enum class Kind { given, add, remove, exclude, include };
   Kind kind = Kind::given;
-  std::string effect;      ///< that was added or removed
-  std::size_t from = 0;    ///< the step that it began at; of the first its own
-  std::string label = {};  ///< what its maker calls it; empty: nothing
+  std::string effect;                 ///< that was added or removed
+  std::size_t from = 0;               ///< the step that it began at; of the first its own
+  std::string label = {};             ///< what its maker calls it; empty: nothing
   std::vector<Effect> could_be = {};  ///< that recordings could not tell from what was added then
-  Model model;             ///< what was added has no coefficients
+  Model model;                        ///< what was added has no coefficients
   /// FitOptions::excluded here.
   std::vector<std::vector<TimeSpan>> excluded = {};
   std::size_t excluded_legs = 0;

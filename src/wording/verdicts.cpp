@@ -154,7 +154,7 @@ std::string in_words(const Finding& finding) {
 }
 
 std::string stop_in_words(const Discovery& result) {
-  const std::string why = [&] {
+  std::string why = [&] {
     const Stopped& stopped = result.stopped;
     switch (stopped.reason) {
       case StopReason::limit_reached:
