@@ -88,7 +88,7 @@ BenchWork::Taken BenchWork::begin(std::size_t version, Step step) {
 
 void BenchWork::stop() {
   const std::scoped_lock lock(mutex_);
-  if (busy_ && bench_) stop_ = true;
+  if (busy_ && !title_.empty()) stop_ = true;
 }
 
 double BenchWork::seconds() const {
@@ -97,9 +97,12 @@ double BenchWork::seconds() const {
 
 std::string BenchWork::status() const {
   const std::scoped_lock lock(mutex_);
-  nlohmann::ordered_json result = {
-      {"version", view_ ? view_->version : 0}, {"busy", busy_},     {"step", busy_ ? title_ : ""},
-      {"stops", busy_ && bench_ && !stop_},    {"failed", failed_}, {"note", note_}};
+  nlohmann::ordered_json result = {{"version", view_ ? view_->version : 0},
+                                   {"busy", busy_},
+                                   {"step", busy_ ? title_ : ""},
+                                   {"stops", busy_ && !title_.empty() && !stop_},
+                                   {"failed", failed_},
+                                   {"note", note_}};
   if (busy_ && clock_) {
     result["doing"] = clock_->line(std::floor(seconds()));
     const std::optional<double> left = clock_->left(std::floor(seconds()));

@@ -86,7 +86,7 @@ class BenchWork {
   std::optional<Step> next_;
   bool busy_ = true;
   bool ends_ = false;
-  std::string title_;  ///< of the step under way
+  std::string title_;  ///< of the step under way, or the last; empty: the first model
   std::atomic<bool> stop_ = false;
   std::string failed_;
   std::string note_;

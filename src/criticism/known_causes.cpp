@@ -3,7 +3,6 @@
 #include "criticism/known_causes.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace trussmap {
@@ -21,7 +20,6 @@ struct Set {
   std::vector<Score> scores;  ///< each with those before it there; without columns
   double left = 0.0;          ///< chi^2 with all of them
   int dof = 0;                ///< then
-  bool implausible = false;
 };
 
 Set set_of(std::vector<KnownCause> causes, const SearchGround& ground) {
@@ -63,28 +61,28 @@ double noise_left(const Set& set) {
   return std::max(1.0, set.left / std::max(1, set.dof));
 }
 
+/// Asked of what these leave, but for one of them.
+ScoreTest beside(const ScoreTest& tests, const std::vector<KnownCause>& causes,
+                 const KnownCause* but = nullptr) {
+  ScoreTest left = tests;
+  for (const KnownCause& one : causes) {
+    if (&one != but) left.condition_on(tests.columns(one.candidate.effect));
+  }
+  return left;
+}
+
 /// Each one's parameters anew, with the others there, until they stay.
 void refine_jointly(std::vector<KnownCause>& causes, const ScoreTest& tests) {
   for (int round = 0; round < kRounds; ++round) {
     bool moved = false;
     for (KnownCause& one : causes) {
       if (one.candidate.parameters.empty()) continue;
-      ScoreTest others = tests;
-      for (const KnownCause& other : causes) {
-        if (&other != &one) others.condition_on(tests.columns(other.candidate.effect));
-      }
-      Candidate better = refined(others, one.candidate);
+      Candidate better = refined(beside(tests, causes, &one), one.candidate);
       moved = moved || better.parameters != one.candidate.parameters;
       one.candidate = std::move(better);
     }
     if (!moved) return;
   }
-}
-
-ScoreTest conditioned(const ScoreTest& tests, const std::vector<KnownCause>& causes) {
-  ScoreTest left = tests;
-  for (const KnownCause& one : causes) left.condition_on(left.columns(one.candidate.effect));
-  return left;
 }
 
 /// Begun with one, and each next the best beside those before it.
@@ -94,7 +92,7 @@ Set begun_with(std::size_t first, const std::vector<std::size_t>& places,
   std::vector<Tested> still = known;
   const double at_first = ground.tests.residuals().squaredNorm();
   while (causes.size() < ground.most) {
-    const ScoreTest left = conditioned(ground.tests, causes);
+    const ScoreTest left = beside(ground.tests, causes);
     test_again(ground.fit, left, still);
     const int dof = ground.dof - static_cast<int>(causes.size());
     const double chi2 = left.residuals().squaredNorm();
@@ -121,13 +119,9 @@ Set without(const Set& set, std::size_t cause, const SearchGround& ground) {
 /// Whether each, with the others there, is of a possible size and does something.
 bool all_plausible(const Set& set, const ScoreTest& tests) {
   return std::all_of(set.causes.begin(), set.causes.end(), [&](const KnownCause& one) {
-    ScoreTest others = tests;
-    for (const KnownCause& other : set.causes) {
-      if (&other != &one) others.condition_on(tests.columns(other.candidate.effect));
-    }
     Tested alone;
     alone.candidate = one.candidate;
-    alone.score = others.test({one.candidate.effect}).front();
+    alone.score = beside(tests, set.causes, &one).test({one.candidate.effect}).front();
     return alone.score.dof > 0 && !is_implausible(alone);
   });
 }
