@@ -19,6 +19,9 @@ if(NOT licence)
   message(FATAL_ERROR "the licence was not installed")
 endif()
 
+# Flags that a packager's environment gives are the packager's, and no leak of ours.
+unset(ENV{CXXFLAGS})
+
 # CLI11 serves the command alone: who uses the library must not need it.
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${consumer} -D CMAKE_PREFIX_PATH=${prefix}
     -D CMAKE_CXX_COMPILER=${CXX_COMPILER} -D CMAKE_BUILD_TYPE=Debug
