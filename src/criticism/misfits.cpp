@@ -56,8 +56,8 @@ class Legs {
           system_.residuals().segment(system_.first_row(found->second), segment.rows);
       const Eigen::MatrixXd W = segment.whitener.topLeftCorner(segment.rows, segment.rows);
       // As the wheels have it, and not as it is linearised at the noise believed.
-      const Eigen::VectorXd raw = W.triangularView<Eigen::Lower>().solve(error) +
-                                  segment.value_offset.head(segment.rows);
+      const Eigen::VectorXd raw =
+          W.triangularView<Eigen::Lower>().solve(error) + segment.value_offset.head(segment.rows);
       const Pose measured = relative(a, pose(segment.to));
       reckoned =
           compose(reckoned, {measured.x - raw[0], measured.y - raw[1], measured.heading - raw[2]});
