@@ -143,11 +143,10 @@ class Defence {
       if (const std::optional<bool> answer = stands_against(k, *rival)) return *answer;
     }
     if (!without || without->noise == noise_) return true;
-    const std::vector<bool> all(effects_.size(), true);
-    const double with_all = minus_two_log(all, noise_);
+    if (!with_all_) with_all_ = minus_two_log(std::vector<bool>(effects_.size(), true), noise_);
     const double alone = minus_two_log(others_alone, without->noise);
     const double p =
-        chi2_p_value(std::max(0.0, alone - with_all), static_cast<int>(columns_[k].cols()));
+        chi2_p_value(std::max(0.0, alone - *with_all_), static_cast<int>(columns_[k].cols()));
     return options_.tried * p < options_.level;
   }
 
@@ -222,6 +221,7 @@ class Defence {
   NoiseFitOptions fit_options_;
   std::vector<Eigen::MatrixXd> columns_;
   std::vector<bool> stand_;
+  std::optional<double> with_all_;   ///< -2 log likelihood; once asked for
   std::vector<NoiseSource> rivals_;  ///< that stand for an effect
 };
 

@@ -29,7 +29,7 @@ Set set_of(std::vector<KnownCause> causes, const SearchGround& ground) {
   set.dof = ground.dof;
   for (const KnownCause& one : set.causes) {
     Score score = left.test({one.candidate.effect}).front();
-    left.condition_on(left.columns(one.candidate.effect));
+    left.condition_on(score.columns);
     set.dof -= score.dof;
     drop_columns(score);
     set.scores.push_back(std::move(score));

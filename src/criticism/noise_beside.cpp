@@ -52,11 +52,11 @@ std::vector<Effect> suspects(const FitState& fit) {
     });
     if (!best) break;
     const Effect& suspect = candidates[*best].effect;
-    const int count = tests.test({suspect}).front().dof;
-    if (count == 0) break;
+    const Score score = tests.test({suspect}).front();
+    if (score.dof == 0) break;
     found.push_back(suspect);
-    tests.condition_on(tests.columns(suspect));
-    dof -= count;
+    tests.condition_on(score.columns);
+    dof -= score.dof;
   }
   return found;
 }

@@ -45,14 +45,13 @@ std::vector<double> values_of(const Shape& formula, const FitState& fit, const S
 /// How many of the rows lie below each edge between bins: of distances from a place those near it
 /// are told apart.
 std::vector<std::size_t> rows_below(std::size_t rows, bool from_place) {
+  std::vector<std::size_t> below;
   if (from_place) {
-    std::vector<std::size_t> below;
     for (const std::size_t percent : {1U, 3U, 6U, 11U, 20U, 35U, 55U, 77U}) {
       below.push_back(rows * percent / 100);
     }
     return below;
   }
-  std::vector<std::size_t> below;
   for (std::size_t k = 1; k < kBins; ++k) below.push_back(rows * k / kBins);
   return below;
 }

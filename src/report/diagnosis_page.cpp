@@ -60,23 +60,14 @@ std::string legs_end(const Diagnosis& diagnosis) {
                      as_good_as_noise(legs) ? ", as good as this robot's noise allows" : "");
 }
 
-std::string faultless_verdict(const Diagnosis& diagnosis) {
-  if (noise_is_wrong(diagnosis)) {
-    return fmt::format("The noise is not as the model states it: {}. No effect is missing.{}",
-                       found_and_stated(diagnosis.under->noise), slight_misfit_note(diagnosis));
-  }
-  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}{}",
-                     diagnosis.tried, legs_end(diagnosis), slight_misfit_note(diagnosis));
-}
-
 std::string page_verdict(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   switch (diagnosis.verdict) {
     case Diagnosis::Verdict::missing:
       return missing_verdict(diagnosis, evidence);
     case Diagnosis::Verdict::nothing_missing:
-      return faultless_verdict(diagnosis);
+      return faultless_verdict(diagnosis, legs_end(diagnosis));
     case Diagnosis::Verdict::unexplained_misfit:
-      if (is_slight_misfit(diagnosis)) return faultless_verdict(diagnosis);
+      if (is_slight_misfit(diagnosis)) return faultless_verdict(diagnosis, legs_end(diagnosis));
       break;
   }
   const std::string text = "Something is wrong that no effect explains: " +

@@ -115,13 +115,7 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
     return fmt::format("Nothing found, and something is unexplained: {}.{}",
                        objection_in_words(now), off);
   }
-  if (noise) {
-    return fmt::format("The noise is not as the model states it: {}. No effect is missing.{}",
-                       found_and_stated(discovery.last.under->noise),
-                       slight_misfit_note(discovery.last));
-  }
-  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}{}",
-                     discovery.last.tried, off, slight_misfit_note(discovery.last));
+  return faultless_verdict(discovery.last, off);
 }
 
 /// What held-out legs cannot tell from the first effect found.

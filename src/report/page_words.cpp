@@ -255,11 +255,19 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
   return open.empty() ? told : open + " " + told;
 }
 
-std::string slight_misfit_note(const Diagnosis& diagnosis) {
-  if (!is_slight_misfit(diagnosis)) return "";
-  return fmt::format(
-      " A slight misfit is left, as much as noise alone makes in one of {:.0f} recordings.",
-      1.0 / diagnosis.p_value);
+std::string faultless_verdict(const Diagnosis& diagnosis, const std::string& off) {
+  std::string slight;
+  if (is_slight_misfit(diagnosis)) {
+    slight = fmt::format(
+        " A slight misfit is left, as much as noise alone makes in one of {:.0f} recordings.",
+        1.0 / diagnosis.p_value);
+  }
+  if (noise_is_wrong(diagnosis)) {
+    return fmt::format("The noise is not as the model states it: {}. No effect is missing.{}",
+                       found_and_stated(diagnosis.under->noise), slight);
+  }
+  return fmt::format("Nothing is missing: none of {} changes tried explains more than chance.{}{}",
+                     diagnosis.tried, off, slight);
 }
 
 std::vector<std::string> others_notes(const Diagnosis& diagnosis, const std::string& who_states) {

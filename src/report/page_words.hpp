@@ -83,8 +83,9 @@ struct SizeText {
 /// "It could also be ...", or that it could not.
 [[nodiscard]] std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& rivals);
 
-/// " A slight misfit is left, as much as ..."; empty where none is.
-[[nodiscard]] std::string slight_misfit_note(const Diagnosis& diagnosis);
+/// Of a model that lacks no effect: whether its noise is wrong, or how far `off` legs end (" Legs
+/// end ..."), and that a slight misfit is left.
+[[nodiscard]] std::string faultless_verdict(const Diagnosis& diagnosis, const std::string& off);
 
 /// The leading law of noise and the leading single event, those that stand out. `who_states`: where
 /// the noise that was estimated can be had.
