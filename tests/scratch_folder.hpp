@@ -4,6 +4,8 @@
 // A folder of the test's own that goes when the test does, and the command run from a test.
 #pragma once
 
+#include "command_path.hpp"
+
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -68,7 +70,7 @@ struct Ran {
 /// Runs the trussmap command.
 inline Ran run_trussmap(const std::string& arguments) {
   Ran ran;
-  FILE* pipe = ::popen((std::string(TRUSSMAP_COMMAND) + " " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = ::popen((command_path() + " " + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return ran;
   std::array<char, 4096> buffer{};
   while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The command as its users meet it: exit status, one line for a mistake, files whole or absent.
+#include "command_path.hpp"
 #include "pose_graph/synthetic_graph.hpp"
 #include "trussmap/map_files.hpp"
 
@@ -23,7 +24,7 @@ struct Outcome {
 };
 
 Outcome run(const std::string& arguments) {
-  const std::string line = std::string(TRUSSMAP_COMMAND) + " adjust " + arguments + " 2>&1";
+  const std::string line = testing::command_path() + " adjust " + arguments + " 2>&1";
   FILE* pipe = popen(line.c_str(), "r");
   Outcome outcome;
   std::array<char, 4096> buffer{};

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "apps/served_bench.hpp"
+#include "command_path.hpp"
 #include "formula_limits.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/model_file.hpp"
@@ -110,8 +111,9 @@ TEST(ServeCommand, ItsCommandsDoTheSameWorkAgain) {
   ASSERT_EQ(bench.post("step", own.dump()).status, 202);
   ASSERT_EQ(bench.settled().at("failed"), "");
   const auto script = scratch.write("commands.sh", bench.get("export/commands.sh").body);
-  const std::string command = "cd " + scratch.path().string() + " && ln -s " + TRUSSMAP_COMMAND +
-                              " trussmap && PATH=.:$PATH sh " + script.string() + " > out 2>&1";
+  const std::string command = "cd " + scratch.path().string() + " && ln -s " +
+                              testing::command_path() + " trussmap && PATH=.:$PATH sh " +
+                              script.string() + " > out 2>&1";
   ASSERT_EQ(std::system(command.c_str()), 0);
   const Model again = read_model(scratch.path() / "model.toml");
   const Model here = read_model(scratch.write("here.toml", bench.get("export/model.toml").body));

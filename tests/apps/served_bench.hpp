@@ -5,6 +5,7 @@
 #pragma once
 
 #include "child_process.hpp"
+#include "command_path.hpp"
 
 #include <arpa/inet.h>
 #include <array>
@@ -77,12 +78,12 @@ class ServedBench {
     child_ = std::make_unique<ChildProcess>([&] {
       ::dup2(out[1], 1);
       ::close(out[0]);
-      std::vector<std::string> words{TRUSSMAP_COMMAND, "serve", "--no-browser"};
+      std::vector<std::string> words{command_path(), "serve", "--no-browser"};
       words.insert(words.end(), arguments.begin(), arguments.end());
       std::vector<char*> pointers;
       for (std::string& word : words) pointers.push_back(word.data());
       pointers.push_back(nullptr);
-      ::execv(TRUSSMAP_COMMAND, pointers.data());
+      ::execv(pointers.front(), pointers.data());
     });
     ::close(out[1]);
     address_ = first_line(out[0]);

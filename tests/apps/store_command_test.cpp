@@ -3,6 +3,7 @@
 //
 // build --store and convert with a store, as a user meets them.
 #include "child_process.hpp"
+#include "command_path.hpp"
 #include "json_file.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/map_files.hpp"
@@ -106,7 +107,7 @@ std::string content_of(const fs::path& file) {
 std::string output_until_killed(const std::vector<std::string>& arguments, const fs::path& output,
                                 int lines, int microseconds) {
   std::vector<char*> argv;
-  std::string command = TRUSSMAP_COMMAND;
+  std::string command = testing::command_path();
   argv.push_back(command.data());
   std::vector<std::string> copies = arguments;
   for (std::string& one : copies) argv.push_back(one.data());

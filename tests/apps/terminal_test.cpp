@@ -6,6 +6,7 @@
 #include "terminal.hpp"
 
 #include "child_process.hpp"
+#include "command_path.hpp"
 #include "progress.hpp"
 #include "scratch_folder.hpp"
 
@@ -58,7 +59,7 @@ class Running {
   explicit Running(const std::string& arguments, bool on_terminal = false,
                    const std::string& environment = "TERM=xterm") {
     const std::string line =
-        "exec env -u NO_COLOR " + environment + " " + TRUSSMAP_COMMAND + " " + arguments;
+        "exec env -u NO_COLOR " + environment + " " + testing::command_path() + " " + arguments;
     pid_ = on_terminal ? ::forkpty(&terminal_, nullptr, nullptr, nullptr) : ::fork();
     if (pid_ < 0) throw std::runtime_error(std::string("no process: ") + std::strerror(errno));
     if (pid_ > 0) return;

@@ -58,7 +58,7 @@ TEST(KnownCauses, ComeBeforeOneOddCurve) {
   const SimulatedRecording one = toured(11, {truth.ticks, truth.scale});
   const Diagnosis result = diagnose({one.drive.recording}, one.model);
   const std::vector<std::string> names = missing_in(result);
-  ASSERT_EQ(names.size(), 2U) << testing::PrintToString(names);
+  ASSERT_EQ(names.size(), 2U) << ::testing::PrintToString(names);
   EXPECT_EQ(names[0].rfind("missed ticks (v0=", 0), 0U) << names[0];
   EXPECT_EQ(names[1], "travel scale");
   const std::vector<const Finding*> found = found_by(result);

@@ -67,10 +67,10 @@ Ran run_on(int processes, const std::string& arguments) {
   ::setenv("OMPI_MCA_mpi_yield_when_idle", "1", 1);
   ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
   Ran ran;
-  FILE* pipe = ::popen(
-      fmt::format("{} -n {} {} {} 2>&1", TRUSSMAP_MPIEXEC, processes, TRUSSMAP_COMMAND, arguments)
-          .c_str(),
-      "r");
+  FILE* pipe = ::popen(fmt::format("{} -n {} {} {} 2>&1", TRUSSMAP_MPIEXEC, processes,
+                                   testing::command_path(), arguments)
+                           .c_str(),
+                       "r");
   std::array<char, 4096> buffer{};
   while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
     ran.output.append(buffer.data(), count);

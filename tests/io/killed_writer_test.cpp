@@ -4,6 +4,7 @@
 // A writer that is killed: files and folders are old or new, and the next run leaves nothing
 // behind. TRUSSMAP_KILLS is how often it is killed at random (100 where it is not set).
 #include "child_process.hpp"
+#include "command_path.hpp"
 #include "scratch_folder.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -380,7 +381,7 @@ TEST(SlowKilledWriter, LeavesASimulatedRecordingOldOrNew) {
   std::size_t there = 1;
   for (int k = 0; k < wanted_kills(); ++k) {
     const std::string line =
-        std::string("exec ") + TRUSSMAP_COMMAND + " " + arguments + std::to_string(1 - there);
+        "exec " + testing::command_path() + " " + arguments + std::to_string(1 - there);
     const pid_t child = begin_child([&line] {
       static_cast<void>(std::freopen("/dev/null", "w", stdout));
       ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
