@@ -32,6 +32,8 @@ endif
 
 MINUTES ?= 1
 PYTHON_TREE ?= build
+# Debian's, where there is one: its packages are installed for it, whatever else the PATH has.
+PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
 .PHONY: all check formatted format demo test dist package site site-check python notebooks fuzz tsan install-deps test-deps site-deps configure build command clean
 .NOTPARALLEL:
 
@@ -81,12 +83,12 @@ package: install-deps
 
 python:
 	@.ci/install-deps python3-dev python3-numpy python3-pybind11 pybind11-dev
-	@cmake --preset default $(GENERATOR) -B $(PYTHON_TREE) -D TRUSSMAP_BUILD_PYTHON=ON >/dev/null
+	@cmake --preset default $(GENERATOR) -B $(PYTHON_TREE) -D TRUSSMAP_BUILD_PYTHON=ON -D Python_EXECUTABLE=$(PYTHON) >/dev/null
 	@cmake --build $(PYTHON_TREE) --parallel $(JOBS) --target trussmap_python_package trussmap_command
 
 notebooks: python
 	@.ci/install-deps python3-matplotlib python3-nbclient python3-nbconvert python3-nbformat python3-ipykernel
-	@$(firstword $(wildcard /usr/bin/python3) python3) docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
+	@$(PYTHON) docs/notebooks/execute.py --package $(PYTHON_TREE)/python build/notebooks
 
 fuzz:
 	@.ci/install-deps clang libclang-rt-dev
