@@ -193,7 +193,8 @@ void add_effect(py::module_& module) {
             sd.resize(self.coefficients.size());
             return in_words(self, sd);
           },
-          py::arg("sd") = std::vector<double>(), doc("in_words"))
+          py::arg("sd") = std::vector<double>(),
+          "What it does to the robot, in words; `sd`: the coefficients' standard errors, SI units.")
       .def("__eq__", same, py::is_operator())
       .def("__hash__", [](const Effect& self) { return py::hash(py::str(self.name)); })
       .def("__str__",

@@ -562,7 +562,9 @@ class Fitter {
     }
     if (!fit_.settled) {
       fit_.adjustment.warnings.push_back(
-          joined("shapes and path did not settle in ", options_.max_rounds, " rounds"));
+          joined("shapes and path did not settle in ", options_.max_rounds,
+                 " rounds; in the last the path moved by up to ", moved_,
+                 " m or rad, a measurement by up to ", offset_change_, " standard deviations"));
     }
   }
 

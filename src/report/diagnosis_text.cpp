@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
+#include "trussmap/workbench.hpp"
 
 #include <algorithm>
 
@@ -27,6 +28,8 @@ std::string missing_text(const Diagnosis& result, TextStyle style) {
     const Finding& one = *found;
     const Mood mood = one.status == Status::missing ? Mood::bad : Mood::doubt;
     text += fmt::format("{}\n", verdict_text(mood, in_words(one), style));
+    const Explanation explained = explanation_of(one.effect);
+    if (explained.unusual) text += fmt::format("  not its usual sign: {}\n", explained.does);
     for (const LookAlike& rival : one.look_alikes) {
       const std::string alike = fmt::format("{} ({}), cosine {:.3f}", rival.effect.name,
                                             formula_of(rival.effect), rival.cosine);
@@ -118,7 +121,12 @@ std::string diagnosis_text(const Diagnosis& result, const std::vector<NoiseBudge
   if (!result.lacks.empty()) text += "\nWhat these data lack\n";
   for (const std::string& line : in_words(result.lacks)) text += fmt::format("  {}\n", line);
   for (const std::string& warning : result.warnings) text += warning_text(warning, style);
-  if (result.under) text += "\n" + noise_text(result.under->noise, style);
+  if (result.under) {
+    const FittedNoise& noise = result.under->noise;
+    text += noise.changed() || result.missing.empty()
+                ? "\n" + noise_text(noise, style)
+                : "\nBeside what is missing, noise is as the model states it.\n";
+  }
   return text + budget_text(budget, style);
 }
 

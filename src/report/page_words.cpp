@@ -6,6 +6,7 @@
 #include "report/noise_verdict.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/table.hpp"
+#include "trussmap/workbench.hpp"
 #include "wording/channel_words.hpp"
 
 #include <algorithm>
@@ -201,14 +202,17 @@ std::string capitalised(std::string text) {
 }
 
 std::string what_it_is(const Effect& effect) {
+  const std::string name = capitalised(name_in_words(effect));
+  const Explanation explained = explanation_of(effect);
+  if (explained.unusual)
+    return fmt::format("{}, not with its usual sign: {}", name, explained.does);
   const CatalogueEntry* entry = find_entry(effect.name);
-  return fmt::format("{}{}.", capitalised(name_in_words(effect)),
-                     entry == nullptr ? "" : ": " + std::string(entry->cause));
+  return fmt::format("{}{}.", name, entry == nullptr ? "" : ": " + std::string(entry->cause));
 }
 
 std::string what_helps(const Effect& effect) {
   const CatalogueEntry* entry = find_entry(effect.name);
-  if (entry == nullptr) return "";
+  if (entry == nullptr || explanation_of(effect).unusual) return "";
   return fmt::format("Against {} for good: {}.", short_name(effect), entry->remedy);
 }
 

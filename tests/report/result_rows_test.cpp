@@ -9,6 +9,7 @@
 #include "report/noise_verdict.hpp"
 #include "report/rivals.hpp"
 #include "report/robot_off.hpp"
+#include "trussmap/texts.hpp"
 
 #include <algorithm>
 #include <set>
@@ -254,6 +255,37 @@ TEST(ResultRows, NoiseThatTookUpWhatIsMissingIsNoFloor) {
   EXPECT_TRUE(says(off, "as good as its noise allows (2 cm)")) << off;
   // Legs that end far nearer than expected speak of too much noise, not of a good model.
   EXPECT_FALSE(as_good_as_noise(legs_off(std::vector<double>(20, 0.02), 0.09)));
+}
+
+/// Slip with speed is missing, by so much of the way per m/s.
+Case slip_missing(double slip) {
+  Case one = wheelbase_missing();
+  Finding& found = one.diagnosis.findings.front();
+  found.effect = {"slip with speed", Channel::travel, {"speed"}, {slip}};
+  one.diagnosis.missing = found.effect.name;
+  one.diagnosis.under = std::make_shared<const FitWithNoise>();
+  one.evidence.effects = {evidence_of(found)};
+  return one;
+}
+
+TEST(ResultRows, WhatHasNotItsUsualSignIsNotPutDownToTheUsualCause) {
+  Case loses = slip_missing(-0.008);
+  Case gains = slip_missing(0.008);
+  EXPECT_FALSE(says(diagnosis_text(loses.diagnosis, {}, 5), "not its usual sign"));
+  EXPECT_TRUE(says(diagnosis_text(gains.diagnosis, {}, 5), "not its usual sign: The faster"));
+  const std::string cause = "tyres that slip more when fast";
+  EXPECT_TRUE(says(answers_to(loses.page(), "What is missing?"), cause));
+  EXPECT_FALSE(says(answers_to(gains.page(), "What is missing?"), cause));
+  EXPECT_TRUE(says(answers_to(gains.page(), "What is missing?"), "so it is none"));
+  EXPECT_TRUE(says(answers_to(loses.page(), "What to do next?"), "Against slip with speed"));
+  EXPECT_FALSE(says(answers_to(gains.page(), "What to do next?"), "Against slip with speed"));
+}
+
+TEST(ResultRows, NoiseIsAsStatedOnlyBesideWhatIsMissing) {
+  Case one = slip_missing(-0.008);
+  EXPECT_TRUE(says(diagnosis_text(one.diagnosis, {}, 5), "Beside what is missing, noise is as"));
+  one.diagnosis.missing.clear();
+  EXPECT_TRUE(says(diagnosis_text(one.diagnosis, {}, 5), "\nNoise is as the model states it."));
 }
 
 TEST(ResultRows, NoDriveIsAdvisedForWhatIsRuledOut) {
