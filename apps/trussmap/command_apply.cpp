@@ -10,6 +10,7 @@
 #include "trussmap/gate.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/texts.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <memory>
@@ -46,6 +47,9 @@ void run_apply(ApplyCommand options) {
   if (options.epoch && options.mcap.empty()) throw UsageError("apply: --epoch goes with --mcap");
   options.input.recordings = {options.recording};
   const ModelRecordings input = read_model_recordings(options.input);
+  for (const std::string& one : unfitted_in_words(input.model)) {
+    fmt::print("{}", warning_text(one));
+  }
   const std::vector<TimedPose> poses =
       options.adjusted ? adjusted(input, options)
                        : dead_reckoned_poses(input.recordings.front(), input.model);

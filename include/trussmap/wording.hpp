@@ -37,6 +37,9 @@ struct FleetReport;
 /// "compass x sin(heading), cos(heading)".
 [[nodiscard]] std::string formula_of(const Effect& effect);
 
+/// A warning for every effect that has no coefficients yet: what follows a model does without it.
+[[nodiscard]] std::vector<std::string> unfitted_in_words(const Model& model);
+
 /// The most that an effect does in some recordings, from its least to its largest g there: "the
 /// compass reads up to 2.9 deg too much or too little".
 [[nodiscard]] std::string size_in_words(const Effect& effect, double least, double most);

@@ -9,6 +9,7 @@
 #include "parts.hpp"
 #include "trussmap/recording_files.hpp"
 #include "trussmap/texts.hpp"
+#include "trussmap/wording.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <pybind11/stl.h>
@@ -44,6 +45,7 @@ Poses run_apply(const py::object& recording, const py::object& model, bool adjus
     Prepared input = prepared(given, use);
     mistakes = input.mistakes;
     result.noise = input.model.noise;
+    result.warnings = unfitted_in_words(input.model);
     told.next();
     if (!adjusted) {
       result.rows = dead_reckoned_poses(input.recordings->front(), input.model);
@@ -52,7 +54,7 @@ Poses run_apply(const py::object& recording, const py::object& model, bool adjus
     FitOptions how = use.fit;
     how.fit_effects = false;
     const ModelFit fit = fit_model(*input.recordings, input.model, how);
-    result.warnings = fit.warnings;
+    result.warnings.insert(result.warnings.end(), fit.warnings.begin(), fit.warnings.end());
     result.left_out = fit.left_out;
     result.rows = adjusted_poses(fit);
   });

@@ -177,6 +177,16 @@ std::string size_in_words(const Effect& effect, double least, double most) {
                                      : phrase.more);
 }
 
+std::vector<std::string> unfitted_in_words(const Model& model) {
+  std::vector<std::string> warnings;
+  for (const Effect& effect : model.effects) {
+    if (!effect.coefficients.empty()) continue;
+    warnings.push_back(
+        fmt::format("effect {} has no coefficients yet: left out (see fit)", effect.name));
+  }
+  return warnings;
+}
+
 std::string in_words(const Effect& effect, const std::vector<double>& sd) {
   const Channel channel = effect.channel;
   if (effect.coefficients.empty()) return effect.name + ": not fitted";

@@ -87,6 +87,20 @@ TEST_F(WaysOut, PosesBecomeABagAndAKittiTrajectory) {
   EXPECT_EQ(run_trussmap(apply + " --epoch 1 --tum " + at("t.txt")).status, 2);
 }
 
+TEST_F(WaysOut, PosesSayWhichEffectsTheyAreWithout) {
+  const std::string open = " " + at("open.toml");
+  ASSERT_EQ(run_trussmap("add " + at("rec/model.toml") + " 'slip with speed' --out" + open).status,
+            0);
+  const std::string apply = "apply " + at("rec") + " --out " + at("p.csv") + " --model";
+  const std::string warning = "warning: effect slip with speed has no coefficients yet: left out";
+  for (const char* how : {"", " --adjusted"}) {
+    const Ran ran = run_trussmap(apply + open + how);
+    EXPECT_EQ(ran.output.rfind(warning, 0), 0U) << ran.output;
+    const Ran sound = run_trussmap(apply + " " + at("rec/model.toml") + how);
+    EXPECT_EQ(sound.output.find("no coefficients"), std::string::npos) << sound.output;
+  }
+}
+
 TEST_F(WaysOut, AMapBecomesYaml) {
   const Ran built = run_trussmap("build " + at("rec") + " --model " + at("rec/model.toml") +
                                  " --out " + at("m.graphml"));
