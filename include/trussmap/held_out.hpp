@@ -45,8 +45,8 @@ struct LegPrediction {
 
 struct HeldOutMetrics {
   double arrival_rms = 0.0;        ///< m; 0 without legs
-  double stretch_error = 0.0;      ///< mean
-  double orientation_error = 0.0;  ///< mean, rad
+  double stretch_error = 0.0;      ///< mean of the legs' |s - s0|/s0
+  double orientation_error = 0.0;  ///< mean of their |theta - theta0|, rad
 };
 
 struct HeldOut : HeldOutMetrics {
