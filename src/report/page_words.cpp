@@ -8,6 +8,7 @@
 #include "trussmap/table.hpp"
 #include "trussmap/workbench.hpp"
 #include "wording/channel_words.hpp"
+#include "wording/explanation_texts.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -211,8 +212,8 @@ std::string what_it_is(const Effect& effect) {
 }
 
 std::string what_helps(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  if (entry == nullptr || explanation_of(effect).unusual) return "";
+  const CatalogueEntry* entry = usual_entry(effect);
+  if (entry == nullptr) return "";
   return fmt::format("Against {} for good: {}.", short_name(effect), entry->remedy);
 }
 

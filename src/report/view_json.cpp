@@ -5,7 +5,7 @@
 #include "report/effect_parts.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/workbench.hpp"
+#include "wording/explanation_texts.hpp"
 
 namespace trussmap {
 
@@ -19,8 +19,7 @@ ordered_json effect_view(const Effect& effect) {
                          {"channel", name_of(effect.channel)},
                          {"does", facts_of(effect.channel).does_what},
                          {"shape", texts_of(effect.shape)}};
-  const CatalogueEntry* entry = find_entry(effect.name);
-  if (entry != nullptr && !explanation_of(effect).unusual) {
+  if (const CatalogueEntry* entry = usual_entry(effect)) {
     result["cause"] = entry->cause;
     result["remedy"] = entry->remedy;
   }

@@ -8,6 +8,9 @@
 
 namespace trussmap {
 
+struct CatalogueEntry;
+struct Effect;
+
 /// "{}" stands for the covariate's name in words.
 struct ExplanationText {
   std::string_view name;   ///< of the catalogue
@@ -21,5 +24,9 @@ struct ExplanationText {
 
 /// nullptr where there is none: the radii of single wheels, which are all alike.
 [[nodiscard]] const ExplanationText* explanation_text(std::string_view name);
+
+/// Whose cause and remedy are this effect's; nullptr beyond the catalogue, and for an effect that
+/// has not its usual sign (Explanation::unusual).
+[[nodiscard]] const CatalogueEntry* usual_entry(const Effect& effect);
 
 }  // namespace trussmap

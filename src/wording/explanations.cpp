@@ -102,4 +102,8 @@ Explanation explanation_of(const Effect& effect) {
           with(known->drive, covariate)};
 }
 
+const CatalogueEntry* usual_entry(const Effect& effect) {
+  return explanation_of(effect).unusual ? nullptr : find_entry(effect.name);
+}
+
 }  // namespace trussmap

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // The command as its users meet it: exit status, one line for a mistake, files whole or absent.
-#include "command_path.hpp"
 #include "pose_graph/synthetic_graph.hpp"
+#include "scratch_folder.hpp"
 #include "trussmap/map_files.hpp"
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sys/wait.h>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -18,43 +16,22 @@
 namespace trussmap {
 namespace {
 
-struct Outcome {
-  int status = 0;
-  std::string output;  ///< standard output and standard error
-};
-
-Outcome run(const std::string& arguments) {
-  const std::string line = testing::command_path() + " adjust " + arguments + " 2>&1";
-  FILE* pipe = popen(line.c_str(), "r");
-  Outcome outcome;
-  std::array<char, 4096> buffer{};
-  for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
-    outcome.output.append(buffer.data(), n);
-  }
-  outcome.status = WEXITSTATUS(pclose(pipe));
-  return outcome;
+testing::Ran run(const std::string& arguments) {
+  return testing::run_trussmap("adjust " + arguments);
 }
 
 class AdjustCommand : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::temp_directory_path() / ("trussmap_adjust_" + std::string(test->name()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string path(const std::string& name) const { return scratch_.path() / name; }
 
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-
-  std::filesystem::path folder_;
+ private:
+  testing::ScratchFolder scratch_;
 };
 
 TEST_F(AdjustCommand, WritesTheAdjustedGraphAndItsFigures) {
   const testing::SyntheticGraph world = testing::landmark_walk(80, 4, 9, 3.0, {0.1, 0.02}, 1);
   write_g2o(world.graph, path("in.g2o"));
-  const Outcome outcome =
+  const testing::Ran outcome =
       run(path("in.g2o") + " --out " + path("out.g2o") + " --json " + path("out.json"));
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_EQ(outcome.output.rfind("adjusted: converged to a minimum\n", 0), 0U) << outcome.output;
@@ -77,7 +54,7 @@ TEST_F(AdjustCommand, WritesTheAdjustedGraphAndItsFigures) {
 
 TEST_F(AdjustCommand, SaysWhereBadInputIsAndWritesNothing) {
   std::ofstream(path("bad.g2o")) << "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 one 0 0\n";
-  const Outcome outcome =
+  const testing::Ran outcome =
       run(path("bad.g2o") + " --out " + path("out.g2o") + " --json " + path("out.json"));
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.output,
@@ -89,7 +66,7 @@ TEST_F(AdjustCommand, SaysWhereBadInputIsAndWritesNothing) {
 TEST_F(AdjustCommand, NamesTheVerticesOfAGraphInParts) {
   std::ofstream(path("parts.g2o"))
       << "EDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\nEDGE_SE2 17 18 1 0 0 1 0 0 1 0 1\n";
-  const Outcome outcome = run(path("parts.g2o") + " --out " + path("out.g2o"));
+  const testing::Ran outcome = run(path("parts.g2o") + " --out " + path("out.g2o"));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.output.find("vertices 17, 18 are tied to nothing that is tied to vertex 0"),
             std::string::npos)
