@@ -110,7 +110,7 @@ test-deps:
 
 site-deps:
 	@.ci/install-deps python3-sphinx python3-myst-parser furo python3-breathe doxygen libjs-katex nodejs \
-	  codespell aspell aspell-en patch
+	  codespell aspell aspell-en patch python3-jsonschema
 
 clean:
 	rm -rf build build-*

@@ -54,6 +54,7 @@ configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc @ONL
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 if(TARGET trussmap_command)
   install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES docs/trussmap.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/trussmap)
   # The command says itself what man and shells take.
   if(NOT CMAKE_CROSSCOMPILING)
     install(CODE "

@@ -5,6 +5,8 @@
 #pragma once
 
 #include "command_path.hpp"
+#include "json_file.hpp"
+#include "json_schema.hpp"
 
 #include <array>
 #include <cstdio>
@@ -67,7 +69,7 @@ struct Ran {
   std::string output;  ///< standard output and error together
 };
 
-/// Runs the trussmap command.
+/// Runs the trussmap command. What it writes with --json must be as its schema has it.
 inline Ran run_trussmap(const std::string& arguments) {
   Ran ran;
   FILE* pipe = ::popen((command_path() + " " + arguments + " 2>&1").c_str(), "r");
@@ -78,6 +80,12 @@ inline Ran run_trussmap(const std::string& arguments) {
   }
   const int status = ::pclose(pipe);
   ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  const std::filesystem::path written = json_file_of(arguments);
+  if (ran.status == 0 && std::filesystem::is_regular_file(written)) {
+    for (const std::string& wrong : against_schema(read_json(written), definition_for(arguments))) {
+      ADD_FAILURE() << "trussmap " << arguments << "\n  its JSON: " << wrong;
+    }
+  }
   return ran;
 }
 

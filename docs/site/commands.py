@@ -20,7 +20,7 @@ def names_of(text):
 def write(stage, command):
     overall = help_of(command)
     text = ("# Commands\n\nWhat every command's `--help` says. Files and columns are in [formats](formats.md), what "
-            "`--json` writes in [JSON keys](formats.md#json-keys).\n\n"
+            "`--json` writes in [JSON keys](json.md).\n\n"
             f"```text\n{overall.strip()}\n```\n")
     for name in names_of(overall):
         text += f"\n## {name}\n\n```text\n{help_of(command, name).strip()}\n```\n"
