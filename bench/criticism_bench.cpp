@@ -131,7 +131,7 @@ Outcome identify_subject(const Options& options, double times, std::size_t e) {
       const DiscoveryStep& before = ladder.steps[0];
       const DiscoveryStep& after = ladder.steps[1];
       const double fell = before.chi2 - after.chi2;
-      const bool score_kept = std::abs(after.predicted_chi2 - fell) <= 0.1 * fell;
+      const bool score_kept = std::abs(after.predicted_decrease - fell) <= 0.1 * fell;
       const bool error_kept = std::abs(after.predicted.arrival_rms - after.held_out.arrival_rms) <=
                               0.2 * after.held_out.arrival_rms;
       tally.predicted += score_kept && error_kept ? 1 : 0;

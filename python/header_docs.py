@@ -88,6 +88,17 @@ def docs_of(text):
     return docs
 
 
+# What a reader of Python knows by another name.
+IN_PYTHON = (("std::invalid_argument", "ValueError"), ("std::out_of_range", "IndexError"),
+             ("std::nullopt", "None"), ("nullptr", "None"), ("Throws", "Raises"), ("throws", "raises"))
+
+
+def in_python(said):
+    for of_cpp, of_python in IN_PYTHON:
+        said = said.replace(of_cpp, of_python)
+    return said
+
+
 def main(arguments):
     docs = {}
     for header in arguments[1:]:
@@ -98,7 +109,7 @@ def main(arguments):
              "const std::map<std::string_view, const char*>& header_docs() {",
              "  static const std::map<std::string_view, const char*> docs{"]
     for key in sorted(docs):
-        said = docs[key].replace("\\", "\\\\").replace('"', '\\"')
+        said = in_python(docs[key]).replace("\\", "\\\\").replace('"', '\\"')
         lines.append(f'      {{"{key}", "{said}"}},')
     lines += ["  };", "  return docs;", "}", "", "}  // namespace trussmap::python", ""]
     with open(arguments[0], "w", encoding="utf-8") as file:

@@ -47,7 +47,7 @@ ordered_json json(const DiscoveryStep& step) {
     one["added"] = effect_json(*step.added);
     one["added"]["coefficients"] = step.added->coefficients;
     one["dropped"] = step.dropped;
-    one["promised"] = {{"chi2_decrease", step.predicted_chi2},
+    one["promised"] = {{"chi2_decrease", step.predicted_decrease},
                        {"arrival_rms_m", step.predicted.arrival_rms}};
     one["indistinguishable_from"] = look_alikes_json(step.look_alikes);
   }

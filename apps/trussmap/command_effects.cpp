@@ -43,7 +43,8 @@ std::vector<const CatalogueEntry*> asked_for(const std::string& name) {
     entries.push_back(entry);
   } else {
     throw UsageError(
-        fmt::format("\"{}\" is not in the catalogue, whose names trussmap effects lists", name));
+        fmt::format("\"{}\" is not in the catalogue, whose names trussmap effects lists{}", name,
+                    what_was_meant(name)));
   }
   return entries;
 }

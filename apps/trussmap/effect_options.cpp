@@ -51,8 +51,8 @@ Effect named_effect(const std::string& option) {
   if (find_entry(name) == nullptr) {
     throw UsageError(
         fmt::format("--effect \"{}\": \"{}\" is not in the catalogue, whose names "
-                    "trussmap effects lists",
-                    option, name));
+                    "trussmap effects lists{}",
+                    option, name, what_was_meant(name)));
   }
   try {
     return catalogue_effect(name, std::move(values));

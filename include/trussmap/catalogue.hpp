@@ -54,6 +54,10 @@ struct CatalogueEntry {
 /// The entry of this name, nullptr where there is none. What stands in brackets is not looked at.
 [[nodiscard]] const CatalogueEntry* find_entry(std::string_view name);
 
+/// For messages on a name that is in no catalogue: what may have been meant, `; is "wheelbase"
+/// meant?`. Empty: nothing is like it.
+[[nodiscard]] std::string what_was_meant(std::string_view name);
+
 /// "tyre drift (temperature_C)".
 [[nodiscard]] std::string name_of(const CatalogueEntry& entry, std::string_view covariate);
 

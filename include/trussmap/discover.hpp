@@ -33,8 +33,8 @@ struct DiscoveryStep {
   /// the recordings have no 20 such stretches.
   std::optional<double> reckoned_10 = std::nullopt;
   std::optional<double> reckoned_30 = std::nullopt;
-  double predicted_chi2 = 0.0;  ///< decrease that the diagnosis predicted
-  HeldOutMetrics predicted;     ///< held-out figures that it predicted
+  double predicted_decrease = 0.0;  ///< of chi^2, by the diagnosis before the fit
+  HeldOutMetrics predicted;         ///< held-out figures that it predicted
   std::vector<LookAlike> look_alikes;
 };
 

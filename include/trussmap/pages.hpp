@@ -4,7 +4,8 @@
 // Pages: what a command found, in one HTML file that needs nothing else, with charts. A page draws
 // results and what was gathered for it (evidence.hpp); it estimates nothing.
 //
-//   results --comparison_page ...--> Page --render_page--> HTML
+//   results --comparison_page ...--> Page --render_page--> HTML; render_plain_page: without a
+//   script
 //                                         --draw_charts--> SVG, one for each chart
 //
 // `subject` is what the page is about: recordings and model. Same input, same bytes.
@@ -61,6 +62,9 @@ struct PageRuntime {
 /// The same as a part of another page, such as a notebook's: verdict, figures, answers, tables and
 /// charts as pictures; without a script, and with the little style that it needs.
 [[nodiscard]] std::string render_section(const Page& page);
+
+/// That section as a file of its own.
+[[nodiscard]] std::string render_plain_page(const Page& page);
 
 struct DrawnChart {
   std::string id;   ///< small letters, digits, -

@@ -84,8 +84,11 @@ struct Advice {
 
 // Verdicts, as files have them.
 
-[[nodiscard]] std::string_view name_of(Status status);                ///< "cannot tell"
-[[nodiscard]] std::string_view name_of(EventKind kind);               ///< "leg"
+[[nodiscard]] std::string_view name_of(Status status);   ///< "cannot tell"
+[[nodiscard]] std::string_view name_of(EventKind kind);  ///< "leg"
+/// The status as a table of candidates has it: what is significant by itself and yet absent is
+/// "explained by the above".
+[[nodiscard]] std::string_view status_in_words(const Finding& finding);
 [[nodiscard]] std::string_view verdict_of(const Comparison& result);  ///< "misfit"
 [[nodiscard]] std::string_view verdict_of(const Diagnosis& result);   ///< "nothing missing"
 [[nodiscard]] std::string_view verdict_of(const Discovery& result);   ///< "unexplained misfit"

@@ -7,12 +7,12 @@
 #include "fits.hpp"
 #include "maps.hpp"
 #include "parts.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/build_map.hpp"
 #include "trussmap/map_files.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
-#include "trussmap/write_files.hpp"
 
 #include <cmath>
 #include <pybind11/stl/filesystem.h>
@@ -26,7 +26,6 @@ struct MapResult {
   bool several = false;
   std::string subject;
   std::vector<std::string> mistakes;
-  LazySection section;
 };
 
 MapResult run_build_map(const py::object& recordings, const py::object& model,
@@ -61,7 +60,11 @@ MapResult run_build_map(const py::object& recordings, const py::object& model,
 }
 
 std::string text(const MapResult& self) {
-  return for_print(map_text(self.built, command_name(self.built.method), self.several));
+  return map_text(self.built, command_name(self.built.method), self.several);
+}
+
+Page page(const MapResult& self) {
+  return map_page(self.built, self.subject);
 }
 
 py::list table(const MapResult& self, const std::string& what) {
@@ -133,10 +136,11 @@ py::tuple list(const MapResult& self) {
 
 void add_map(py::module_& module) {
   add_rows(module);
-  py::class_<MapResult>(module, "Map",
-                        "A landmark map, what was left out of it and how good it is; of recordings "
-                        "without landmarks, their paths.")
-      .def_property_readonly(
+  py::class_<MapResult> type(module, "Map",
+                             "A landmark map, what was left out of it and how good it is; of "
+                             "recordings without landmarks, their paths.");
+  show(type, text, page);
+  type.def_property_readonly(
           "verdict", [](const MapResult& self) { return std::string(verdict_of(self.built)); },
           "good or doubtful.")
       .def_property_readonly(
@@ -208,11 +212,6 @@ void add_map(py::module_& module) {
           "A picture: before and after, over the survey where there is one.")
       .def("table", table, py::arg("what") = "landmarks",
            "A list of dicts: landmarks, routes or left out.")
-      .def("__str__", text)
-      .def("_repr_html_",
-           [](const MapResult& self) {
-             return self.section.html([&] { return map_page(self.built, self.subject); });
-           })
       .def("__repr__", [](const MapResult& self) {
         return "<trussmap.Map of " + std::to_string(self.built.map.landmarks()) +
                " landmarks: " + verdict_in_words(self.built) + ">";

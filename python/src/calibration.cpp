@@ -3,8 +3,8 @@
 //
 // calibrate: wheels, wheelbase and wheel noise from recordings with truth or survey.
 #include "calls.hpp"
-#include "fits.hpp"
 #include "parts.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/texts.hpp"
@@ -22,7 +22,6 @@ struct CalibrationResult {
   Robot robot;
   std::string subject;
   std::vector<std::string> mistakes;
-  LazySection section;
 };
 
 CalibrationOptions options_of(const std::vector<std::string>& without, double holdout, double leg) {
@@ -113,22 +112,26 @@ py::list table(const CalibrationResult& self) {
   return rows;
 }
 
-std::string html(const CalibrationResult& self) {
-  return self.section.html([&] {
-    return with_drive(truth_page({self.found, self.held.nominal, self.held.calibrated,
-                                  calibration_verdict(self.held)},
-                                 self.subject),
-                      self.robot, *self.recordings);
-  });
+std::string text(const CalibrationResult& self) {
+  return calibration_text(self.found, self.held, self.test);
+}
+
+Page page(const CalibrationResult& self) {
+  return with_drive(truth_page({self.found, self.held.nominal, self.held.calibrated,
+                                calibration_verdict(self.held)},
+                               self.subject),
+                    self.robot, *self.recordings);
 }
 
 }  // namespace
 
 void add_calibration(py::module_& module) {
-  py::class_<CalibrationResult>(module, "Calibration",
-                                "Wheels, wheelbase and wheel noise; each constant with its "
-                                "standard error, None where the motion does not determine it.")
-      .def_property_readonly(
+  py::class_<CalibrationResult> type(
+      module, "Calibration",
+      "Wheels, wheelbase and wheel noise; each constant with its "
+      "standard error, None where the motion does not determine it.");
+  show(type, text, page);
+  type.def_property_readonly(
           "model", [](const CalibrationResult& self) { return self.found.model; },
           doc("WheelCalibration.model"))
       .def_property_readonly(
@@ -174,11 +177,6 @@ void add_calibration(py::module_& module) {
           [](const CalibrationResult& self) { return self.held.nominal.rms(); },
           "m, of the same legs by the model given.")
       .def("table", table, "A list of dicts: constant, value, sd, unit.")
-      .def("__str__",
-           [](const CalibrationResult& self) {
-             return for_print(calibration_text(self.found, self.held, self.test));
-           })
-      .def("_repr_html_", html)
       .def("__repr__", [](const CalibrationResult& self) {
         return "<trussmap.Calibration: " + calibration_verdict(self.held) + ">";
       });

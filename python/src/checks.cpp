@@ -3,7 +3,7 @@
 //
 // check.
 #include "calls.hpp"
-#include "fits.hpp"
+#include "inputs.hpp"
 #include "parts.hpp"
 #include "rows.hpp"
 #include "trussmap/texts.hpp"

@@ -5,6 +5,8 @@
 #include "calls.hpp"
 #include "fits.hpp"
 #include "parts.hpp"
+#include "responses.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/texts.hpp"
@@ -21,7 +23,7 @@ struct ComparisonResult {
   std::vector<NoiseBudget> budget;
   Prepared input;
   std::size_t worst = 5;
-  LazySection section;
+  Lazy<ComparisonEvidence> evidence;
 };
 
 ComparisonResult run_compare(const py::object& recordings, const py::object& model,
@@ -55,15 +57,17 @@ ComparisonResult run_compare(const py::object& recordings, const py::object& mod
 }
 
 std::string text(const ComparisonResult& self) {
-  return for_print(comparison_text(self.found, self.input.model.noise, self.budget, self.worst) +
-                   notes_text(self.input.notes));
+  return comparison_text(self.found, self.input.model.noise, self.budget, self.worst) +
+         notes_text(self.input.notes);
 }
 
-std::string html(const ComparisonResult& self) {
-  return self.section.html([&] {
-    return with_drive(comparison_page(evidence_of(self.fit, self.found), self.input.subject),
-                      self.input.model.robot, *self.input.recordings);
-  });
+const ComparisonEvidence& evidence(const ComparisonResult& self) {
+  return self.evidence.get([&] { return evidence_of(self.fit, self.found); });
+}
+
+Page page(const ComparisonResult& self) {
+  return with_drive(comparison_page(evidence(self), self.input.subject), self.input.model.robot,
+                    *self.input.recordings);
 }
 
 py::list table(const ComparisonResult& self, const std::string& what) {
@@ -135,10 +139,11 @@ py::tuple list(const ComparisonResult& self) {
 
 void add_comparison(py::module_& module) {
   add_rows(module);
-  py::class_<ComparisonResult>(module, "Comparison",
-                               "A model set against recordings: is it consistent, where does it "
-                               "fail?")
-      .def_property_readonly(
+  py::class_<ComparisonResult> type(module, "Comparison",
+                                    "A model set against recordings: is it consistent, where does "
+                                    "it fail?");
+  show(type, text, page);
+  type.def_property_readonly(
           "verdict",
           [](const ComparisonResult& self) { return std::string(verdict_of(self.found)); },
           "consistent, or misfit, or what else it comes to.")
@@ -161,6 +166,14 @@ void add_comparison(py::module_& module) {
       .def_property_readonly("worst_landmarks", list<&Comparison::worst_landmarks>,
                              "The worst first.")
       .def_property_readonly("trends", list<&Comparison::trends>, doc("Comparison.trends"))
+      .def_property_readonly(
+          "responses",
+          [](const ComparisonResult& self) {
+            const ComparisonEvidence& drawn =
+                unlocked([&]() -> const ComparisonEvidence& { return evidence(self); });
+            return responses({}, drawn.trends);
+          },
+          "Errors against what they go with most, the most telling first: bins and curves.")
       .def_property_readonly("sources", list<&Comparison::sources>,
                              "How noisy each source is, against what is stated.")
       .def_property_readonly("outliers", list<&Comparison::outliers>, doc("Comparison.outliers"))
@@ -176,8 +189,6 @@ void add_comparison(py::module_& module) {
           doc("PreparedRecordings.notes"))
       .def("table", table, py::arg("what") = "trends",
            "A list of dicts: trends, legs, routes, landmarks, noise or outliers.")
-      .def("__str__", text)
-      .def("_repr_html_", html)
       .def("__repr__", [](const ComparisonResult& self) {
         return "<trussmap.Comparison: " + verdict_in_words(self.found) + ">";
       });

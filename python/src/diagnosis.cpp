@@ -6,8 +6,8 @@
 
 #include "calls.hpp"
 #include "parts.hpp"
+#include "responses.hpp"
 #include "rows.hpp"
-#include "trussmap/evidence.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
@@ -51,17 +51,17 @@ DiagnosisResult run_diagnose(const py::object& recordings, const py::object& mod
 }
 
 std::string text(const DiagnosisResult& self) {
-  return for_print(diagnosis_text(self.found, self.budget, self.list) +
-                   notes_text(self.input.notes));
+  return diagnosis_text(self.found, self.budget, self.list) + notes_text(self.input.notes);
 }
 
-std::string html(const DiagnosisResult& self) {
-  return self.section.html([&] {
-    const DiagnosisEvidence evidence =
-        evidence_of(*self.input.recordings, self.fit, self.found, self.how);
-    return with_drive(diagnosis_page(self.found, evidence, self.input.subject),
-                      self.input.model.robot, *self.input.recordings);
-  });
+const DiagnosisEvidence& evidence(const DiagnosisResult& self) {
+  return self.evidence.get(
+      [&] { return evidence_of(*self.input.recordings, self.fit, self.found, self.how); });
+}
+
+Page page(const DiagnosisResult& self) {
+  return with_drive(diagnosis_page(self.found, evidence(self), self.input.subject),
+                    self.input.model.robot, *self.input.recordings);
 }
 
 py::list table(const DiagnosisResult& self, const std::string& what) {
@@ -91,6 +91,9 @@ void add_rows(py::module_& module) {
       .value(
           "status", [](const Finding& self) { return std::string(name_of(self.status)); },
           "missing, absent, negligible or cannot tell.")
+      .value(
+          "status_in_words", [](const Finding& self) { return std::string(status_in_words(self)); },
+          doc("status_in_words"))
       .field("catalogue", &Finding::catalogue)
       .field("score", &Finding::score)
       .field("dof", &Finding::dof)
@@ -169,8 +172,9 @@ Model completed(const DiagnosisResult& self) {
 
 void add_diagnosis(py::module_& module) {
   add_rows(module);
-  py::class_<DiagnosisResult>(module, "Diagnosis", "Which physical effect is missing?")
-      .def_property_readonly(
+  py::class_<DiagnosisResult> type(module, "Diagnosis", "Which physical effect is missing?");
+  show(type, text, page);
+  type.def_property_readonly(
           "verdict",
           [](const DiagnosisResult& self) { return std::string(verdict_of(self.found)); },
           "missing, nothing missing or unexplained misfit.")
@@ -202,6 +206,16 @@ void add_diagnosis(py::module_& module) {
       .def_property_readonly(
           "noise_budget", [](const DiagnosisResult& self) { return budget_rows(self.budget); },
           "What dead reckoning owes to each source of noise, a dict per horizon [s; 0: a leg].")
+      .def_property_readonly(
+          "responses",
+          [](const DiagnosisResult& self) {
+            const DiagnosisEvidence& drawn =
+                unlocked([&]() -> const DiagnosisEvidence& { return evidence(self); });
+            return responses(drawn.effects, drawn.trends);
+          },
+          "What these recordings show of each effect that is missing, then errors against what "
+          "they "
+          "go with most: bins and curves.")
       .def_property_readonly("warnings", get<&Diagnosis::warnings>, "In words.")
       .def_property_readonly(
           "notes", [](const DiagnosisResult& self) { return self.input.notes; },
@@ -210,8 +224,6 @@ void add_diagnosis(py::module_& module) {
                              "The model with the effects that are missing, to be fitted.")
       .def("table", table, py::arg("what") = "candidates",
            "A list of dicts: candidates, noise, noise laws, events or unobservable.")
-      .def("__str__", text)
-      .def("_repr_html_", html)
       .def("__repr__", [](const DiagnosisResult& self) {
         return "<trussmap.Diagnosis: " + verdict_in_words(self.found) + ">";
       });

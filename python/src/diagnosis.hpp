@@ -5,7 +5,9 @@
 #pragma once
 
 #include "fits.hpp"
+#include "results.hpp"
 #include "trussmap/diagnose.hpp"
+#include "trussmap/evidence.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -20,7 +22,7 @@ struct DiagnosisResult {
   Prepared input;
   DiagnoseOptions how;
   std::size_t list = 8;
-  LazySection section;
+  Lazy<DiagnosisEvidence> evidence;
 };
 
 }  // namespace trussmap::python

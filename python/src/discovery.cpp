@@ -5,6 +5,7 @@
 #include "calls.hpp"
 #include "diagnosis.hpp"
 #include "parts.hpp"
+#include "responses.hpp"
 #include "rows.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/evidence.hpp"
@@ -21,7 +22,7 @@ struct DiscoveryResult {
   std::vector<NoiseBudget> budget;
   Prepared input;
   DiagnoseOptions how;
-  LazySection section;
+  Lazy<DiscoveryEvidence> evidence;
 };
 
 DiscoveryResult run_discover(const py::object& recordings, const py::object& model,
@@ -83,16 +84,18 @@ DiscoveryResult run_discover(const py::object& recordings, const py::object& mod
 }
 
 std::string text(const DiscoveryResult& self) {
-  return for_print(discovery_text(self.found, self.input.model.noise, self.budget) +
-                   notes_text(self.input.notes));
+  return discovery_text(self.found, self.input.model.noise, self.budget) +
+         notes_text(self.input.notes);
 }
 
-std::string html(const DiscoveryResult& self) {
-  return self.section.html([&] {
-    const DiscoveryEvidence evidence = evidence_of(*self.input.recordings, self.found, self.how);
-    return with_drive(discovery_page(self.found, evidence, self.input.subject),
-                      self.input.model.robot, *self.input.recordings);
-  });
+const DiscoveryEvidence& evidence(const DiscoveryResult& self) {
+  return self.evidence.get(
+      [&] { return evidence_of(*self.input.recordings, self.found, self.how); });
+}
+
+Page page(const DiscoveryResult& self) {
+  return with_drive(discovery_page(self.found, evidence(self), self.input.subject),
+                    self.input.model.robot, *self.input.recordings);
 }
 
 py::list table(const DiscoveryResult& self, const std::string& what) {
@@ -128,7 +131,7 @@ void add_rows(py::module_& module) {
           "How many were held out.")
       .field("reckoned_10", &DiscoveryStep::reckoned_10)
       .field("reckoned_30", &DiscoveryStep::reckoned_30)
-      .field("predicted_chi2", &DiscoveryStep::predicted_chi2)
+      .field("predicted_decrease", &DiscoveryStep::predicted_decrease)
       .value(
           "predicted_rms", [](const DiscoveryStep& self) { return self.predicted.arrival_rms; },
           "m, of the held-out legs, as the diagnosis predicted it.")
@@ -143,10 +146,11 @@ void add_rows(py::module_& module) {
 
 void add_discovery(py::module_& module) {
   add_rows(module);
-  py::class_<DiscoveryResult>(module, "Discovery",
-                              "Effects diagnosed, added and fitted for as long as that is "
-                              "justified.")
-      .def_property_readonly(
+  py::class_<DiscoveryResult> type(module, "Discovery",
+                                   "Effects diagnosed, added and fitted for as long as that is "
+                                   "justified.");
+  show(type, text, page);
+  type.def_property_readonly(
           "verdict",
           [](const DiscoveryResult& self) { return std::string(verdict_of(self.found)); },
           "consistent, or what is left unexplained.")
@@ -164,6 +168,15 @@ void add_discovery(py::module_& module) {
           "steps",
           [](const DiscoveryResult& self) { return py::tuple(py::cast(self.found.steps)); },
           doc("Discovery.steps"))
+      .def_property_readonly(
+          "responses",
+          [](const DiscoveryResult& self) {
+            const DiscoveryEvidence& drawn =
+                unlocked([&]() -> const DiscoveryEvidence& { return evidence(self); });
+            return responses(drawn.effects, drawn.trends);
+          },
+          "What these recordings show of each effect found, then errors against what they still go "
+          "with most: bins and curves.")
       .def_property_readonly(
           "first",
           [](const DiscoveryResult& self) {
@@ -186,8 +199,6 @@ void add_discovery(py::module_& module) {
           "notes", [](const DiscoveryResult& self) { return self.input.notes; },
           doc("PreparedRecordings.notes"))
       .def("table", table, py::arg("what") = "steps", "A list of dicts: steps or effects.")
-      .def("__str__", text)
-      .def("_repr_html_", html)
       .def("__repr__", [](const DiscoveryResult& self) {
         return "<trussmap.Discovery: " + verdict_in_words(self.found) + ">";
       });

@@ -7,6 +7,8 @@
 #include "arrays.hpp"
 #include "calls.hpp"
 #include "parts.hpp"
+#include "responses.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/texts.hpp"
@@ -23,7 +25,7 @@ struct FitResult {
   std::optional<FittedNoise> noise;
   Prepared input;
   UseOptions use;
-  LazySection section;
+  Lazy<FitEvidence> evidence;
 };
 
 FitResult run_fit(const py::object& recordings, const py::object& model, bool noise,
@@ -73,17 +75,21 @@ FitResult run_fit(const py::object& recordings, const py::object& model, bool no
 }
 
 std::string text(const FitResult& self) {
-  return for_print(fit_text(self.gain, self.noise) + notes_text(self.input.notes));
+  return fit_text(self.gain, self.noise) + notes_text(self.input.notes);
 }
 
-std::string html(const FitResult& self) {
-  return self.section.html([&] {
+const FitEvidence& evidence(const FitResult& self) {
+  return self.evidence.get([&] {
     const CompareOptions how{self.use.fit, self.use.legs, self.use.level};
-    FitEvidence evidence = evidence_of(*self.input.recordings, self.gain, how);
-    if (self.noise) evidence.noise = in_words(*self.noise);
-    return with_drive(fit_page(evidence, self.input.subject), self.input.model.robot,
-                      *self.input.recordings);
+    FitEvidence found = evidence_of(*self.input.recordings, self.gain, how);
+    if (self.noise) found.noise = in_words(*self.noise);
+    return found;
   });
+}
+
+Page page(const FitResult& self) {
+  return with_drive(fit_page(evidence(self), self.input.subject), self.input.model.robot,
+                    *self.input.recordings);
 }
 
 py::list table(const FitResult& self, const std::string& what) {
@@ -159,14 +165,6 @@ void add_parts(py::module_& module) {
 
 }  // namespace
 
-std::string LazySection::html(const std::function<Page()>& make) const {
-  return unlocked([&] {
-    const std::scoped_lock lock(kept_->mutex);
-    if (!kept_->html) kept_->html = render_section(make());
-    return *kept_->html;
-  });
-}
-
 py::list budget_rows(const std::vector<NoiseBudget>& budget) {
   py::list rows;
   for (const NoiseBudget& one : budget) {
@@ -208,8 +206,10 @@ void no_table(const std::string& what, const std::vector<std::string>& tables) {
 
 void add_fits(py::module_& module) {
   add_parts(module);
-  py::class_<FitResult>(module, "Fit", "A model's effects fitted, beside the model without them.")
-      .def_property_readonly(
+  py::class_<FitResult> type(module, "Fit",
+                             "A model's effects fitted, beside the model without them.");
+  show(type, text, page);
+  type.def_property_readonly(
           "model", [](const FitResult& self) { return self.gain.with.model; },
           doc("ModelFit.model"))
       .def_property_readonly(
@@ -252,6 +252,14 @@ void add_fits(py::module_& module) {
           },
           "What was found of each source of noise; None where it was not estimated.")
       .def_property_readonly(
+          "responses",
+          [](const FitResult& self) {
+            const FitEvidence& drawn =
+                unlocked([&]() -> const FitEvidence& { return evidence(self); });
+            return responses(drawn.effects, {});
+          },
+          "What these recordings show of each effect: bins and curves.")
+      .def_property_readonly(
           "left_out", [](const FitResult& self) { return self.gain.with.left_out; },
           doc("ModelFit.left_out"))
       .def_property_readonly(
@@ -261,8 +269,6 @@ void add_fits(py::module_& module) {
           doc("PreparedRecordings.notes"))
       .def("table", table, py::arg("what") = "effects",
            "A list of dicts: effects, landmarks or noise.")
-      .def("__str__", text)
-      .def("_repr_html_", html)
       .def("__repr__", [](const FitResult& self) {
         return "<trussmap.Fit of " + std::to_string(self.gain.with.effects.size()) +
                " effects: chi2 " + std::to_string(self.gain.without.chi2) + " -> " +

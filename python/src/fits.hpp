@@ -4,34 +4,13 @@
 // What results of fits have in common.
 #pragma once
 
-#include "inputs.hpp"
-#include "trussmap/compare.hpp"
 #include "trussmap/noise_fit.hpp"
-#include "trussmap/pages.hpp"
 
-#include <functional>
-#include <memory>
-#include <mutex>
-#include <optional>
 #include <pybind11/pybind11.h>
 #include <string>
 #include <vector>
 
 namespace trussmap::python {
-
-/// A page's section, made when it is first asked for and then kept: it costs about as much as the
-/// result itself.
-class LazySection {
- public:
-  [[nodiscard]] std::string html(const std::function<Page()>& make) const;
-
- private:
-  struct Kept {
-    std::mutex mutex;
-    std::optional<std::string> html;
-  };
-  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>();
-};
 
 /// Budgets as rows of horizon, rms and the shares.
 [[nodiscard]] pybind11::list budget_rows(const std::vector<NoiseBudget>& budget);

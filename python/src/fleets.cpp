@@ -6,6 +6,7 @@
 #include "calls.hpp"
 #include "fits.hpp"
 #include "parts.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/fleet.hpp"
 #include "trussmap/model_file.hpp"
@@ -41,7 +42,6 @@ FleetRow row_of(const std::string& robot, const py::object& date, const py::obje
 struct FleetResult {
   FleetReport found;
   std::string subject;
-  LazySection section;
 };
 
 /// Of a store, or of rows.
@@ -64,7 +64,11 @@ std::string text(const FleetResult& self) {
   std::string lines;
   for (const std::string& line : in_words(self.found)) lines += line + '\n';
   for (const std::string& note : self.found.notes) lines += "note: " + note + '\n';
-  return for_print(lines);
+  return lines;
+}
+
+Page page(const FleetResult& self) {
+  return fleet_page(self.found, self.subject);
 }
 
 /// One row per robot of every coefficient, or per group; before each what it is of.
@@ -231,9 +235,10 @@ void add_report(py::module_& module) {
   const auto get = [](auto member) {
     return [member](const FleetResult& self) { return self.found.*member; };
   };
-  py::class_<FleetResult>(module, "FleetReport",
-                          "What robots of a fleet have in common, which differ, which drift.")
-      .def_property_readonly("robots", get(&FleetReport::robots), "How many.")
+  py::class_<FleetResult> type(module, "FleetReport",
+                               "What robots of a fleet have in common, which differ, which drift.");
+  show(type, text, page);
+  type.def_property_readonly("robots", get(&FleetReport::robots), "How many.")
       .def_property_readonly("days", get(&FleetReport::days), "How many, of all robots.")
       .def_property_readonly("chi2", get(&FleetReport::chi2), "Of all days.")
       .def_property_readonly("dof", get(&FleetReport::dof), "Its degrees of freedom.")
@@ -251,11 +256,6 @@ void add_report(py::module_& module) {
                              doc("FleetReport.held_out_rms"))
       .def("table", table, py::arg("what") = "findings",
            "A list of dicts: findings, robots, groups or tests.")
-      .def("__str__", text)
-      .def("_repr_html_",
-           [](const FleetResult& self) {
-             return self.section.html([&] { return fleet_page(self.found, self.subject); });
-           })
       .def("__repr__", [](const FleetResult& self) {
         return "<trussmap.FleetReport of " + std::to_string(self.found.robots) +
                " robots: " + std::to_string(self.found.findings.size()) + " findings>";

@@ -4,8 +4,9 @@
 // umbmark and wheel_noise: calibrations with a tape measure.
 #include "arrays.hpp"
 #include "calls.hpp"
-#include "fits.hpp"
+#include "inputs.hpp"
 #include "parts.hpp"
+#include "results.hpp"
 #include "rows.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/recording_files.hpp"
@@ -58,7 +59,6 @@ struct SquareResult {
   SquareMethod method = SquareMethod::exact;
   Model model;
   double side = 4.0;
-  LazySection section;
 
   [[nodiscard]] const SquareSolution& solution() const {
     return method == SquareMethod::exact ? rounds.back().exact : rounds.back().formulas;
@@ -108,15 +108,27 @@ py::list table(const SquareResult& self) {
   return rows;
 }
 
+std::string squares_text(const SquareResult& self) {
+  return square_text(self.rounds, self.method);
+}
+
+Page squares_page(const SquareResult& self) {
+  const SquareCorrections use = self.corrections();
+  return square_page({self.rounds, self.side, use.wheelbase, use.left_factor, use.right_factor,
+                      all_doubts(self.rounds)},
+                     "squares");
+}
+
 py::tuple pair(const Estimate& one) {
   return py::make_tuple(one.value, one.standard_error);
 }
 
 void add_squares_class(py::module_& module) {
-  py::class_<SquareResult>(module, "Umbmark",
-                           "Wheel diameters and wheelbase from squares; constants with their "
-                           "standard errors, corrections of all rounds together.")
-      .def_property_readonly(
+  py::class_<SquareResult> type(module, "Umbmark",
+                                "Wheel diameters and wheelbase from squares; constants with their "
+                                "standard errors, corrections of all rounds together.");
+  show(type, squares_text, squares_page);
+  type.def_property_readonly(
           "E_d", [](const SquareResult& self) { return pair(self.solution().diameter_ratio); },
           "Right over left wheel diameter, of the last round.")
       .def_property_readonly(
@@ -145,18 +157,6 @@ void add_squares_class(py::module_& module) {
       .def_property_readonly(
           "doubts", [](const SquareResult& self) { return all_doubts(self.rounds); }, "In words.")
       .def("table", table, "A list of dicts: constant, value, sd, unit.")
-      .def(
-          "__str__",
-          [](const SquareResult& self) { return for_print(square_text(self.rounds, self.method)); })
-      .def("_repr_html_",
-           [](const SquareResult& self) {
-             return self.section.html([&] {
-               const SquareCorrections use = self.corrections();
-               return square_page({self.rounds, self.side, use.wheelbase, use.left_factor,
-                                   use.right_factor, all_doubts(self.rounds)},
-                                  "squares");
-             });
-           })
       .def("__repr__", [](const SquareResult& self) {
         return "<trussmap.Umbmark of " + std::to_string(self.rounds.size()) + " rounds>";
       });
@@ -172,7 +172,6 @@ void add_squares_class(py::module_& module) {
 struct WheelNoiseResult {
   NoiseAnalysis found;
   Model model;
-  LazySection section;
 };
 
 WheelNoiseResult run_wheel_noise(const py::object& errors, const py::object& wheelbase,
@@ -216,13 +215,24 @@ py::list noise_table(const WheelNoiseResult& self) {
   return rows;
 }
 
+std::string runs_text(const WheelNoiseResult& self) {
+  return wheel_noise_text(self.found);
+}
+
+Page runs_page(const WheelNoiseResult& self) {
+  return noise_page({self.found.errors, self.found.estimate, self.found.fit,
+                     path_length(self.found.experiment.path), self.found.doubts},
+                    "runs");
+}
+
 void add_noise_class(py::module_& module) {
   RowClass<WheelConstant>(module, "WheelConstant", "WheelConstant")
       .field("k", &WheelConstant::k)
       .field("standard_error", &WheelConstant::standard_error)
       .field("upper_limit", &WheelConstant::upper_limit);
-  py::class_<WheelNoiseResult>(module, "WheelNoise", "How noisy each wheel is.")
-      .def_property_readonly(
+  py::class_<WheelNoiseResult> type(module, "WheelNoise", "How noisy each wheel is.");
+  show(type, runs_text, runs_page);
+  type.def_property_readonly(
           "left", [](const WheelNoiseResult& self) { return self.found.estimate.left; },
           "Of the left wheel.")
       .def_property_readonly(
@@ -249,16 +259,6 @@ void add_noise_class(py::module_& module) {
       .def_property_readonly(
           "doubts", [](const WheelNoiseResult& self) { return self.found.doubts; }, "In words.")
       .def("table", noise_table, "A list of dicts: wheel, k, sd, upper_limit [m^(1/2)].")
-      .def("__str__",
-           [](const WheelNoiseResult& self) { return for_print(wheel_noise_text(self.found)); })
-      .def("_repr_html_",
-           [](const WheelNoiseResult& self) {
-             return self.section.html([&] {
-               return noise_page({self.found.errors, self.found.estimate, self.found.fit,
-                                  path_length(self.found.experiment.path), self.found.doubts},
-                                 "runs");
-             });
-           })
       .def("__repr__", [](const WheelNoiseResult& self) {
         return "<trussmap.WheelNoise of " + std::to_string(self.found.estimate.runs) + " runs>";
       });

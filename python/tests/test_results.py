@@ -69,6 +69,44 @@ class Results(unittest.TestCase):
         self.assertEqual(html, self.diagnosis._repr_html_())
         self.assertIn("<svg", self.map._repr_html_())
 
+    def test_are_pages_of_their_own(self):
+        folder = scratch_folder(self)
+        for result in (self.diagnosis, self.map,
+                       trussmap.umbmark(MAPS / "square_runs.csv", wheelbase=0.34)):
+            result.write_html(folder / "page.html")
+            page = (folder / "page.html").read_text(encoding="utf-8")
+            self.assertTrue(page.startswith("<!DOCTYPE html>"))
+            self.assertIn(result._repr_html_(), page)
+            charts = result.charts()
+            self.assertGreater(len(charts), 0)
+            for svg in charts.values():
+                self.assertIn("<svg", svg)
+        with self.assertRaisesRegex(trussmap.InputError, "no/such"):
+            self.diagnosis.write_html(folder / "no/such/page.html")
+
+    def test_show_where_a_model_fails(self):
+        fitted = trussmap.fit(RIDDLE, self.diagnosis.model)
+        for result in (self.comparison, self.diagnosis, fitted):
+            first = result.responses[0]
+            self.assertEqual((first.channel, first.unit, first.variable),
+                             ("compass", "rad", "heading"))
+            numpy.testing.assert_array_equal(first.at, [row["at"] for row in first.table()])
+            self.assertTrue(numpy.all((first.low <= first.at) & (first.at <= first.high)))
+        # What the points show is what was fitted: their curve, with the fitted coefficients.
+        shown = fitted.responses[0]
+        self.assertEqual(shown.name, "hard iron")
+        a, b = fitted.effects[0].coefficients
+        angle, error = shown.curve.T  # but for a constant, which an offset would be
+        self.assertLess(numpy.std(error - a * numpy.sin(angle) - b * numpy.cos(angle)), 1e-9)
+        off = (shown.estimate - numpy.interp(shown.at, angle, error)) / shown.sd
+        self.assertLess(numpy.sqrt(numpy.mean(off ** 2)), 2.0)
+
+    def test_say_a_status_as_the_table_does(self):
+        printed = str(self.diagnosis)
+        for one in self.diagnosis.findings[:8]:
+            self.assertIn(one.status_in_words, printed)
+        self.assertEqual(self.diagnosis.findings[0].status_in_words, "missing")
+
     def test_are_drawn(self):
         try:
             import matplotlib
@@ -79,6 +117,7 @@ class Results(unittest.TestCase):
                        trussmap.apply(RIDDLE, MODEL),
                        trussmap.umbmark(MAPS / "square_runs.csv", wheelbase=0.34)):
             self.assertTrue(result.plot().has_data())
+        self.assertTrue(self.diagnosis.responses[0].plot().has_data())
 
     def test_say_what_drawing_needs(self):
         hidden = ("import sys; sys.modules['matplotlib'] = None; import trussmap\n"
@@ -97,6 +136,10 @@ class Results(unittest.TestCase):
         for name in trussmap.__all__:
             thing = getattr(trussmap, name)
             self.assertTrue(thing.__doc__, name)
+            said = [thing.__doc__, *(value.__doc__ or "" for value in vars(thing).values())] \
+                if isinstance(thing, type) else [thing.__doc__]
+            for text in said:
+                self.assertNotRegex(text, r"Throws|invalid_argument|nullptr|std::(?!__cxx11)", name)
             if not isinstance(thing, type):
                 continue
             undocumented = [key for key, value in vars(thing).items()

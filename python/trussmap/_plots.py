@@ -53,6 +53,19 @@ def plot_poses(self, axes=None):
     return axes
 
 
+def plot_response(self, axes=None):
+    """The error in each bin with its standard error, and the effect's curve through them."""
+    axes = _axes(axes)
+    axes.axhline(0.0, color="0.8", linewidth=0.8)
+    if len(self.curve):
+        axes.plot(self.curve[:, 0], self.curve[:, 1], color="0.5")
+    axes.errorbar(self.at, self.estimate, yerr=self.sd, fmt="ko", markersize=4)
+    axes.set_xlabel("distance from the place [m]" if self.variable == "place" else self.variable)
+    axes.set_ylabel(self.channel + (f" [{self.unit}]" if self.unit else ""))
+    axes.set_title(self.name)
+    return axes
+
+
 def plot_comparison(self, axes=None):
     """How noisy each source is, against what the model states."""
     axes = _axes(axes)
@@ -131,6 +144,7 @@ def add_plots():
     for kind, plot in ((_core.Map, plot_map), (_core.Poses, plot_poses),
                        (_core.Comparison, plot_comparison), (_core.Diagnosis, plot_diagnosis),
                        (_core.Discovery, plot_discovery), (_core.Fit, plot_fit),
-                       (_core.PoseGraphFit, plot_pose_graph), (_core.FleetReport, plot_fleet),
-                       (_core.Calibration, plot_table), (_core.Umbmark, plot_table)):
+                       (_core.Response, plot_response), (_core.PoseGraphFit, plot_pose_graph),
+                       (_core.FleetReport, plot_fleet), (_core.Calibration, plot_table),
+                       (_core.Umbmark, plot_table)):
         kind.plot = plot

@@ -212,7 +212,7 @@ class Discoverer {
     DiscoveryStep& step = record();
     step.added = result_.found.model.effects.back();
     step.dropped = std::move(dropped);
-    step.predicted_chi2 = winner.score;
+    step.predicted_decrease = winner.score;
     step.predicted = winner.held_out;
     step.look_alikes = std::move(look_alikes);
     return true;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 
+#include "text/edit_distance.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -109,6 +110,26 @@ const CatalogueEntry* find_entry(std::string_view name) {
   return nullptr;
 }
 
+std::string what_was_meant(std::string_view name) {
+  const std::size_t space = std::min(name.find(' '), name.size());
+  if (parse_channel(name.substr(0, space)) && name.substr(space).starts_with(" with ")) {
+    return "; what diagnose names so has its channel and shape beside it";
+  }
+  const std::string_view given = taken_apart(name).name;
+  const CatalogueEntry* nearest = nullptr;
+  std::size_t apart = given.size() / 3 + 1;  // from here on it is another word
+  for (const CatalogueEntry& entry : catalogue()) {
+    const std::size_t distance = edit_distance(given, entry.name);
+    if (distance >= apart) continue;
+    nearest = &entry;
+    apart = distance;
+  }
+  if (nearest == nullptr) return "";
+  const bool open = nearest->of_covariate() || nearest->has_parameters();
+  return fmt::format("; is \"{}\" meant?",
+                     open ? expected_name(*nearest) : std::string(nearest->name));
+}
+
 std::string name_of(const CatalogueEntry& entry, std::string_view covariate) {
   return fmt::format("{} ({})", entry.name, covariate);
 }
@@ -146,7 +167,8 @@ Effect catalogue_effect(std::string_view name, std::vector<double> coefficients)
   const CatalogueEntry* entry = find_entry(name);
   if (entry == nullptr) {
     throw std::invalid_argument(
-        fmt::format("effect \"{}\" is not in the catalogue, expected a channel and a shape", name));
+        fmt::format("effect \"{}\" is not in the catalogue, expected a channel and a shape{}", name,
+                    what_was_meant(name)));
   }
   const std::string_view brackets = taken_apart(present_name(name)).brackets;
   if (entry->of_covariate() && brackets.empty()) {

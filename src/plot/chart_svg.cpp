@@ -241,10 +241,11 @@ std::string axes(const Chart& chart, const ChartScale& x, const ChartScale& y, d
   return fmt::format("<path class=\"grid\" d=\"{}\"/>\n", grid) + text;
 }
 
+/// For charts alone, since one in a page would style all of it.
 constexpr const char* kStyle =
-    "<style>text{font:12px system-ui,'Liberation Sans',sans-serif;fill:#1b1f24}"
-    ".title{font-size:16px;font-weight:600}.tick{fill:#57606a}"
-    ".grid{stroke:#e6e9ed;fill:none}</style>\n";
+    "<style>.trussmap-chart text{font:12px system-ui,'Liberation Sans',sans-serif;fill:#1b1f24}"
+    ".trussmap-chart .title{font-size:16px;font-weight:600}.trussmap-chart .tick{fill:#57606a}"
+    ".trussmap-chart .grid{stroke:#e6e9ed;fill:none}</style>\n";
 
 }  // namespace
 
@@ -262,17 +263,21 @@ std::string draw_chart(const Chart& chart) {
   const Pen pen{chart, x, y};
   std::string plot;
   for (const ChartLayer& layer : chart.layers) plot += pen.draw(layer);
+  // Charts of one page with the same name for it have the same rectangle.
+  const std::string clip =
+      fmt::format("plot-{}-{}-{}-{}", px(left), px(top), px(right - left), px(bottom - top));
   return fmt::format(
-             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"trussmap-chart\" "
+             "viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
              "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n<desc>{3}</desc>\n{4}"
              "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-             "<clipPath id=\"plot\"><rect x=\"{5}\" y=\"{6}\" width=\"{7}\" height=\"{8}\"/>"
+             "<clipPath id=\"{11}\"><rect x=\"{5}\" y=\"{6}\" width=\"{7}\" height=\"{8}\"/>"
              "</clipPath>\n<text class=\"title\" x=\"{9}\" y=\"{10}\">{2}</text>\n",
              px(kWidth), px(bottom + 50.0), xml_escaped(chart.title), xml_escaped(chart.caption),
              kStyle, px(left), px(top), px(right - left), px(bottom - top), px(kEdge),
-             px(kEdge + 14.0)) +
-         entries + axes(chart, x, y, left, top, right, bottom) + "<g clip-path=\"url(#plot)\">\n" +
-         plot + "</g>\n</svg>\n";
+             px(kEdge + 14.0), clip) +
+         entries + axes(chart, x, y, left, top, right, bottom) + "<g clip-path=\"url(#" + clip +
+         ")\">\n" + plot + "</g>\n</svg>\n";
 }
 
 }  // namespace trussmap

@@ -9,6 +9,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/table.hpp"
 #include "wording/channel_words.hpp"
+#include "wording/explanation_texts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -153,8 +154,8 @@ void add_event(PageTable& table, const char* part, const Diagnosis& diagnosis, b
 }
 
 std::string cause_of(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  return entry == nullptr ? "-" : std::string(entry->cause);
+  if (const CatalogueEntry* entry = usual_entry(effect)) return std::string(entry->cause);
+  return find_entry(effect.name) == nullptr ? "-" : "not its usual sign";
 }
 
 PageTable tried_table(const SizedDiagnosis& sized) {

@@ -76,15 +76,6 @@ std::string others_text(const Diagnosis& result, std::size_t count) {
   return text;
 }
 
-/// What is significant by itself and yet absent is explained by what comes before it.
-std::string status_text(const Finding& one) {
-  if (one.implausible && one.status != Status::missing && one.p_adjusted < kSignificance)
-    return "implausibly large";
-  if (one.status == Status::absent && one.p_adjusted < kSignificance)
-    return "explained by the above";
-  return std::string(name_of(one.status));
-}
-
 std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyle style) {
   std::string text;
   constexpr std::size_t kWidestCell = 36;  // characters; --json has all of it
@@ -99,7 +90,7 @@ std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyl
     table.rows.push_back(
         {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
          fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
-         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), status_text(one)});
+         fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), std::string(status_in_words(one))});
   }
   text +=
       fmt::format("\n{}; {} tests\n{}", fit_in_words(result.chi2, result.dof, result.coefficients),

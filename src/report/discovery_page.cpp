@@ -75,7 +75,7 @@ PageTable step_table(const Discovery& discovery) {
     const bool legs = !step.held_out.legs.empty();
     table.rows.push_back(
         {step_name(step), fmt::format("{:.1f}", step.chi2), std::to_string(step.dof),
-         k > 0 ? fmt::format("{:.1f}", discovery.steps[k - 1].chi2 - step.predicted_chi2) : "-",
+         k > 0 ? fmt::format("{:.1f}", discovery.steps[k - 1].chi2 - step.predicted_decrease) : "-",
          legs ? fmt::format("{:.1f}", 1000.0 * step.held_out.arrival_rms) : "-",
          k > 0 && legs ? fmt::format("{:.1f}", 1000.0 * step.predicted.arrival_rms) : "-"});
   }

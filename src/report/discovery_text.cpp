@@ -26,7 +26,7 @@ std::string steps_text(const Discovery& result, bool noise_found, TextStyle styl
     std::string name = step.added ? "+ " + step.added->name : "as given";
     for (const std::string& dropped : step.dropped) name += ", - " + dropped;
     const double before =
-        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.predicted_chi2;
+        &step == &result.steps.front() ? step.chi2 : (&step - 1)->chi2 - step.predicted_decrease;
     table.rows.push_back(
         {name, fmt::format("{:.1f}", step.chi2), fmt::format("{}", step.dof),
          step.added ? fmt::format("{:.1f}", before) : "-",

@@ -48,9 +48,8 @@ std::string heights(const PageContent& page) {
 /// A chart as a picture.
 std::string drawn(const Chart& chart) {
   const std::string svg = draw_chart(chart);
-  return fmt::format("<figure>\n<h4>{}</h4>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-                     xml_escaped(chart.title), svg.substr(svg.find("<svg")),
-                     xml_escaped(chart.caption));
+  return fmt::format("<figure>\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+                     svg.substr(svg.find("<svg")), xml_escaped(chart.caption));
 }
 
 /// A figure of a chart: its caption and data are in the page, the script draws it.
@@ -243,13 +242,25 @@ std::string render_section(const Page& page) {
   constexpr const char* kStyle =
       ".trussmap .facts{display:flex;flex-wrap:wrap;gap:1em 2em}"
       ".trussmap .facts dd{font-size:1.4em;margin:0}.trussmap .charts{display:flex;flex-wrap:wrap}"
-      ".trussmap figure{margin:.5em 1em .5em 0;max-width:40em}.trussmap svg{max-width:100%}"
+      ".trussmap figure{margin:.5em 1em .5em 0;flex:1 1 30em;max-width:40em}.trussmap svg{max-width:100%;height:auto}"
       ".trussmap td.number,.trussmap th.number{text-align:right}"
       ".trussmap .unseen{position:absolute;left:-999em}";
   std::string text = fmt::format("<style>{}</style>\n<section class=\"trussmap\">\n", kStyle);
   text += first_screen(page.content());
   for (const PageSection& section : page.content().sections) text += html(section, true);
   return text + "</section>\n";
+}
+
+std::string render_plain_page(const Page& page) {
+  const PageContent& content = page.content();
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+         "'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n" +
+         element("title", "trussmap " + content.command + ": " + content.verdict) +
+         "<style>body{font:16px/1.5 sans-serif;max-width:76em;margin:1em auto;padding:0 1em;"
+         "background:#fff;color:#000}</style>\n</head>\n<body>\n" +
+         render_section(page) + "</body>\n</html>\n";
 }
 
 std::vector<DrawnChart> draw_charts(const Page& page) {

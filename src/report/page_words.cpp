@@ -243,7 +243,7 @@ std::string rivals_note(const Effect& effect, const std::vector<LookAlike>& riva
       nearest = std::min(nearest, rival.behind);
       continue;
     }
-    const CatalogueEntry* entry = find_entry(rival.effect.name);
+    const CatalogueEntry* entry = usual_entry(rival.effect);
     names.push_back(name_in_words(rival.effect) +
                     (entry == nullptr ? "" : " (" + std::string(entry->cause) + ")"));
   }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -14,6 +16,21 @@ namespace {
 bool has_variable(const Effect& effect, std::string_view name) {
   return std::any_of(effect.shape.begin(), effect.shape.end(),
                      [name](const Shape& shape) { return shape.speaks_of(name); });
+}
+
+std::set<std::string> variables_of(const Effect& effect) {
+  std::set<std::string> all;
+  for (const Shape& shape : effect.shape) {
+    const auto names = shape.variables();
+    all.insert(names.begin(), names.end());
+  }
+  return all;
+}
+
+/// One thing that varies makes both; constants go with nothing.
+bool go_with_the_same(const Effect& one, const Effect& other) {
+  const std::set<std::string> variables = variables_of(one);
+  return one.channel != other.channel && !variables.empty() && variables == variables_of(other);
 }
 
 bool is_constant(const Effect& effect) {
@@ -58,6 +75,10 @@ const Separation kSeparations[] = {
     {is_turn, is_turn,
      "turn on the spot by two full turns each way, at two clearly different rates, and in several "
      "shorter turns"},
+    {[](const Effect& e) { return e.channel == Channel::wheels; },
+     [](const Effect& e) { return e.channel == Channel::travel; },
+     "drive bends and turn on the spot by two full turns each way, at the speeds and loads of the "
+     "legs: wheels that travel too far turn too far as well, travel alone does not"},
     {is_stretch, is_stretch,
      "drive legs of clearly different length, each at two different speeds"},
     {[](const Effect& e) { return e.channel == Channel::difference; }, is_turn,
@@ -100,6 +121,12 @@ std::string separating_drive(const Effect& one, const Effect& other,
     if ((rule.one(one) && rule.other(other)) || (rule.one(other) && rule.other(one))) {
       return rule.drive;
     }
+  }
+  if (go_with_the_same(one, other)) {
+    return fmt::format(
+        "both go with the same: drive long legs, short ones, bends and turns on the spot while it "
+        "varies, since \"{}\" acts on the {} and \"{}\" on the {}",
+        one.name, facts_of(one.channel).does_what, other.name, facts_of(other.channel).does_what);
   }
   return fmt::format(
       "drive so that what \"{}\" goes with and what \"{}\" goes with vary "

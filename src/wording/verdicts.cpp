@@ -39,6 +39,15 @@ std::string_view name_of(Status status) {
   return "cannot tell";
 }
 
+std::string_view status_in_words(const Finding& finding) {
+  const bool significant = finding.p_adjusted < kSignificance;
+  if (significant && finding.implausible && finding.status != Status::missing) {
+    return "implausibly large";
+  }
+  if (significant && finding.status == Status::absent) return "explained by the above";
+  return name_of(finding.status);
+}
+
 std::string_view name_of(EventKind kind) {
   switch (kind) {
     case EventKind::leg:

@@ -223,7 +223,7 @@ TEST(Diagnosis, PredictsWhatTheFitThenGives) {
   ASSERT_GE(result.steps.size(), 2U);
   const DiscoveryStep& before = result.steps[0];
   const DiscoveryStep& after = result.steps[1];
-  EXPECT_NEAR(after.predicted_chi2, before.chi2 - after.chi2, 0.1 * (before.chi2 - after.chi2));
+  EXPECT_NEAR(after.predicted_decrease, before.chi2 - after.chi2, 0.1 * (before.chi2 - after.chi2));
   EXPECT_NEAR(after.predicted.arrival_rms, after.held_out.arrival_rms,
               0.2 * after.held_out.arrival_rms);
 }

@@ -3,6 +3,7 @@
 #include "trussmap/catalogue.hpp"
 
 #include "recording/row_variables.hpp"
+#include "text/edit_distance.hpp"
 
 #include <algorithm>
 #include <set>
@@ -52,11 +53,28 @@ std::string complaint(const std::string& name, const std::vector<double>& coeffi
   return "none";
 }
 
+TEST(EditDistance, CountsLettersThatDiffer) {
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(edit_distance("", "abc"), 3U);
+  EXPECT_EQ(edit_distance("abc", ""), 3U);
+  EXPECT_EQ(edit_distance("Hard Iron", "hard iron"), 0U);
+  EXPECT_EQ(edit_distance("turn", "trun"), 2U);
+}
+
 TEST(Catalogue, ANameAloneIsEnoughAndAnUnknownOneIsRefused) {
   EXPECT_EQ(catalogue_effect("hard iron").channel, Channel::compass);
   EXPECT_EQ(catalogue_effect("load on one wheel (crates)").shape.front(), "crates");
   EXPECT_EQ(complaint("gremlins"),
             "effect \"gremlins\" is not in the catalogue, expected a channel and a shape");
+  EXPECT_EQ(complaint("Weelbase"),
+            "effect \"Weelbase\" is not in the catalogue, expected a channel and a shape; is "
+            "\"wheelbase\" meant?");
+  EXPECT_EQ(complaint("tyredrift (load)"),
+            "effect \"tyredrift (load)\" is not in the catalogue, expected a channel and a shape; "
+            "is \"tyre drift (COLUMN)\" meant?");
+  EXPECT_EQ(complaint("wheels with speed"),
+            "effect \"wheels with speed\" is not in the catalogue, expected a channel and a shape; "
+            "what diagnose names so has its channel and shape beside it");
   EXPECT_EQ(complaint("tyre drift"),
             "effect \"tyre drift\" needs a covariate, expected \"tyre drift (COLUMN)\"");
   EXPECT_EQ(complaint("slope", {0.1}),

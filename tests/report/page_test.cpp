@@ -6,6 +6,7 @@
 #include "report/large_pages.hpp"
 #include "report/some_charts.hpp"
 
+#include <map>
 #include <regex>
 #include <stdexcept>
 #include <string>
@@ -63,11 +64,36 @@ TEST(Page, APartOfAnotherPageHasPicturesAndNoScript) {
   for (const char* said : {"Verdict on A", "what A", "Note on A", "Section A", "Text A"}) {
     EXPECT_NE(html.find(said), std::string::npos) << said;
   }
+  // Charts share the page's names, so that one name may stand for one plot area alone.
+  std::map<std::string, std::string> clips;
+  const std::regex clip("<clipPath id=\"([^\"]+)\">(.*?)</clipPath>");
+  for (std::sregex_iterator at(html.begin(), html.end(), clip), end; at != end; ++at) {
+    EXPECT_EQ(clips.emplace((*at)[1], (*at)[2]).first->second, (*at)[2]) << (*at)[1];
+  }
+  EXPECT_GE(clips.size(), 1U);
+  const std::regex rule("[{}]([^{}]+)\\{");
+  for (std::size_t from = html.find("<style>"); from != std::string::npos;
+       from = html.find("<style>", from + 1)) {
+    const std::string sheet = "}" + html.substr(from + 7, html.find("</style>", from) - from - 7);
+    for (std::sregex_iterator at(sheet.begin(), sheet.end(), rule), end; at != end; ++at) {
+      EXPECT_TRUE((*at)[1].str().starts_with(".trussmap")) << (*at)[1];
+    }
+  }
   // Every rule is for this part alone.
   const std::string style = html.substr(0, html.find("</style>"));
   EXPECT_EQ(count(style, "{"), count(style, "}"));
   EXPECT_EQ(style.find("body"), std::string::npos);
   EXPECT_EQ(render_section(Page(hostile_page())).find("<img"), std::string::npos);
+}
+
+TEST(Page, ThatPartIsAFileOfItsOwnWithoutAScript) {
+  const std::string html = render_plain_page(Page(hostile_page()));
+  EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
+  EXPECT_NE(html.find(render_section(Page(hostile_page()))), std::string::npos);
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(html.find("script-src"), std::string::npos);
+  EXPECT_EQ(count(html, "<script"), 0U);
+  EXPECT_EQ(count(html, "<title>trussmap compare: "), 1U);
 }
 
 TEST(Page, LoadsNothing) {

@@ -39,5 +39,28 @@ TEST(SeparatingDrive, HasItsOwnAdviceWhereNothingGoesWithTime) {
             std::string::npos);
 }
 
+TEST(SeparatingDrive, WheelsTurnTheRobotTooAndTravelDoesNot) {
+  const Effect slip = catalogue_effect("slip with speed");
+  Effect both = slip;
+  both.name = "wheels with speed";
+  both.channel = Channel::wheels;
+  for (const std::string& drive :
+       {separating_drive(slip, both, {}), separating_drive(both, slip, {})}) {
+    EXPECT_NE(drive.find("turn on the spot by two full turns each way"), std::string::npos)
+        << drive;
+  }
+}
+
+TEST(SeparatingDrive, AsksNothingToVaryApartFromItself) {
+  const std::string drive = separating_drive(catalogue_effect("compass disturbance (load)"),
+                                             catalogue_effect("load on both wheels (load)"), {});
+  EXPECT_EQ(drive.find("independently"), std::string::npos) << drive;
+  EXPECT_NE(drive.find("compass"), std::string::npos) << drive;
+  // Constants go with nothing that could vary.
+  EXPECT_EQ(separating_drive(catalogue_effect("range scale"), catalogue_effect("travel scale"), {})
+                .find("both go with"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace trussmap
