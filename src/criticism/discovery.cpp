@@ -63,7 +63,7 @@ class Discoverer {
       if (!add_best()) break;
     }
     result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
-    widen_for_places();
+    widen_for_places(result_.found, found_);
     return std::move(result_);
   }
 
@@ -229,7 +229,7 @@ class Discoverer {
       if (rival.effect.name == trials[taken].candidate.effect.name) rival.effect = winner.effect;
       for (const Trial& trial : trials) {
         if (trial.candidate.effect.name != rival.effect.name) continue;
-        rival.behind = (trial.fit.chi2 - fit.chi2) / noise;
+        rival.behind = (chi2_of_all(trial.fit) - chi2_of_all(fit)) / noise;
       }
     }
     return rivals;
@@ -290,10 +290,15 @@ class Discoverer {
     if (result_.stopped.effect.empty()) result_.stopped = {reason, effect, 0};
   }
 
+  /// What the gate left out costs what it allows, or a fit would be the better for leaving out more.
+  [[nodiscard]] static double chi2_of_all(const ModelFit& fit) {
+    return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
+  }
+
   /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
   [[nodiscard]] std::size_t best_of(std::vector<Trial>& trials) const {
     const auto cost = [](const Trial& one) {
-      return one.fit.chi2 - 2.0 * one.candidate.log_prior +
+      return chi2_of_all(one.fit) - 2.0 * one.candidate.log_prior +
              4.0 * static_cast<double>(one.candidate.effect.shape.size() +
                                        one.candidate.parameters.size());
     };
@@ -321,7 +326,7 @@ class Discoverer {
       std::vector<Effect> effects = result_.found.model.effects;
       effects[k] = better.effect;
       ModelFit fit = fitted(effects);
-      if (fit.chi2 >= result_.found.chi2) continue;
+      if (chi2_of_all(fit) >= chi2_of_all(result_.found)) continue;
       found_[k] = better;
       result_.found = std::move(fit);
     }
@@ -349,26 +354,6 @@ class Discoverer {
       effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(weakest));
       found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(weakest));
       result_.found = fitted(effects);
-    }
-  }
-
-  /// Standard errors of what was found at a place or threshold that was sought.
-  void widen_for_places() {
-    const auto sought = [](const Candidate& one) { return !one.parameters.empty(); };
-    if (std::none_of(found_.begin(), found_.end(), sought)) return;
-    const ScoreTest tests(*result_.found.state);
-    for (std::size_t k = given_; k < found_.size(); ++k) {
-      if (!sought(found_[k])) continue;
-      Eigen::MatrixXd others(tests.system().rows(), 0);
-      for (std::size_t other = 0; other < found_.size(); ++other) {
-        if (other == k) continue;
-        append_columns(others,
-                       tests.free_of_map(tests.columns(result_.found.model.effects[other])));
-      }
-      EffectEstimate& estimate = result_.found.effects[k];
-      const std::vector<double> factors =
-          widening(tests, found_[k], estimate.effect.coefficients, others);
-      for (std::size_t c = 0; c < factors.size(); ++c) estimate.sd[c] *= factors[c];
     }
   }
 

@@ -68,4 +68,22 @@ std::vector<double> widening(const ScoreTest& tests, const Candidate& found,
   return result;
 }
 
+void widen_for_places(ModelFit& fit, const std::vector<Candidate>& found) {
+  const auto sought = [](const Candidate& one) { return !one.parameters.empty(); };
+  if (std::none_of(found.begin(), found.end(), sought)) return;
+  const ScoreTest tests(*fit.state);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (!sought(found[k])) continue;
+    Eigen::MatrixXd others(tests.system().rows(), 0);
+    for (std::size_t other = 0; other < found.size(); ++other) {
+      if (other == k) continue;
+      append_columns(others, tests.free_of_map(tests.columns(fit.model.effects[other])));
+    }
+    EffectEstimate& estimate = fit.effects[k];
+    const std::vector<double> factors =
+        widening(tests, found[k], estimate.effect.coefficients, others);
+    for (std::size_t c = 0; c < factors.size(); ++c) estimate.sd[c] *= factors[c];
+  }
+}
+
 }  // namespace trussmap

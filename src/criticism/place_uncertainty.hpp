@@ -24,4 +24,8 @@ namespace trussmap {
                                            const std::vector<double>& coefficients,
                                            const Eigen::MatrixXd& others);
 
+/// The standard errors of a fit's effects, for places and thresholds that were sought. `found`: one
+/// per effect, empty for those that were not.
+void widen_for_places(ModelFit& fit, const std::vector<Candidate>& found);
+
 }  // namespace trussmap

@@ -242,7 +242,8 @@ std::string render_section(const Page& page) {
   constexpr const char* kStyle =
       ".trussmap .facts{display:flex;flex-wrap:wrap;gap:1em 2em}"
       ".trussmap .facts dd{font-size:1.4em;margin:0}.trussmap .charts{display:flex;flex-wrap:wrap}"
-      ".trussmap figure{margin:.5em 1em .5em 0;flex:1 1 30em;max-width:40em}.trussmap svg{max-width:100%;height:auto}"
+      ".trussmap figure{margin:.5em 1em .5em 0;flex:1 1 30em;max-width:40em}.trussmap "
+      "svg{max-width:100%;height:auto}"
       ".trussmap td.number,.trussmap th.number{text-align:right}"
       ".trussmap .unseen{position:absolute;left:-999em}";
   std::string text = fmt::format("<style>{}</style>\n<section class=\"trussmap\">\n", kStyle);
