@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, module) {
   trussmap::python::add_errors(module);
   trussmap::python::add_models(module);
   trussmap::python::add_recordings(module);
+  trussmap::python::add_bags(module);
   trussmap::python::add_responses(module);
   trussmap::python::add_fits(module);
   trussmap::python::add_comparison(module);

@@ -11,6 +11,7 @@ namespace trussmap::python {
 void add_errors(pybind11::module_& module);
 void add_models(pybind11::module_& module);
 void add_recordings(pybind11::module_& module);
+void add_bags(pybind11::module_& module);
 void add_responses(pybind11::module_& module);
 void add_fits(pybind11::module_& module);
 void add_comparison(pybind11::module_& module);

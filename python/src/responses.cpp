@@ -79,7 +79,8 @@ void add_responses(py::module_& module) {
       .aside("sd", bins<&ResponseBin::sd>, "Its standard error.")
       .aside(
           "curve", [](const NamedResponse& self) { return array_of(self.response.curve); },
-          "Variable and error by the effect, n x 2, but for a constant; empty where it is no curve.");
+          "Variable and error by the effect, n x 2, but for a constant; empty where it is no "
+          "curve.");
   type.type().def("table", table, "A list of dicts, one per bin: at, low, high, estimate, sd.");
 }
 
