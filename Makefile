@@ -72,7 +72,7 @@ site: site-deps command
 	@docs/site/build.py build/trussmap build/site
 
 site-check: install-deps command
-	@docs/site/run_blocks.py build/trussmap
+	@PYTHONPATH=$(abspath $(PYTHON_TREE))/python:$$PYTHONPATH $(PYTHON) docs/site/run_blocks.py build/trussmap
 
 dist:
 	@packaging/make_package dist

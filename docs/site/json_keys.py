@@ -3,6 +3,7 @@
 #
 # The reference of what commands write with --json, from its schema.
 import json
+import re
 
 from pages import TOP
 
@@ -41,7 +42,9 @@ def kind_of(schema):
 
 def plural(items):
     kind = kind_of(items)
-    return {"object": "objects", "text": "texts", "number": "numbers"}.get(kind, kind)
+    if kind.startswith("list of"):
+        return kind.replace("list", "lists", 1)
+    return {"object": "objects", "text": "texts", "number": "numbers", "whole number": "whole numbers"}.get(kind, kind)
 
 
 def rows_of(schema, before, definitions):
@@ -69,7 +72,8 @@ def rows_of(schema, before, definitions):
 def table_of(schema, definitions):
     lines = ["| key | type | meaning |", "|---|---|---|"]
     for key, kind, meaning in rows_of(schema, "", definitions):
-        lines.append(f"| `{key}` | {kind} | {meaning.replace('|', chr(92) + '|')} |")
+        meaning = re.sub(r"--[a-z-]+", r"`\g<0>`", meaning).replace("|", r"\|")
+        lines.append(f"| `{key}` | {kind} | {meaning} |")
     return "\n".join(lines)
 
 
