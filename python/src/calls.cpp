@@ -2,7 +2,38 @@
 // SPDX-License-Identifier: MIT
 #include "calls.hpp"
 
+#include <mutex>
+
+// Of OpenBLAS, where it is the BLAS in use.
+extern "C" void openblas_set_num_threads(int threads) __attribute__((weak));
+extern "C" int openblas_get_num_threads() __attribute__((weak));
+
 namespace trussmap::python {
+namespace {
+
+std::mutex blas_mutex;
+int blas_calls = 0;    // under way
+int blas_threads = 1;  // before the first of them
+
+bool has_openblas() {
+  return openblas_set_num_threads != nullptr && openblas_get_num_threads != nullptr;
+}
+
+}  // namespace
+
+OneBlasThread::OneBlasThread() {
+  if (!has_openblas()) return;
+  const std::scoped_lock lock(blas_mutex);
+  if (blas_calls++ > 0) return;
+  blas_threads = openblas_get_num_threads();
+  openblas_set_num_threads(1);
+}
+
+OneBlasThread::~OneBlasThread() {
+  if (!has_openblas()) return;
+  const std::scoped_lock lock(blas_mutex);
+  if (--blas_calls == 0) openblas_set_num_threads(blas_threads);
+}
 
 bool was_interrupted() {
   const py::gil_scoped_acquire lock;

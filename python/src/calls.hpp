@@ -20,12 +20,24 @@ namespace py = pybind11;
 /// interpreter for it.
 [[nodiscard]] bool was_interrupted();
 
+/// Keeps BLAS from threads of its own for as long as one of these lives: they would only be in the
+/// way of the library's, and change the last digits. Afterwards BLAS, which numpy may share, has as
+/// many as before. Of OpenBLAS; another BLAS is left as it is.
+class OneBlasThread {
+ public:
+  OneBlasThread();
+  ~OneBlasThread();
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+};
+
 /// What `work` returns, other threads of Python running meanwhile. Stopped by Ctrl-C, with what its
 /// handler raises (KeyboardInterrupt). `work` must not touch Python.
 template <typename Work>
 auto unlocked(Work&& work) -> decltype(work()) {
   try {
     const py::gil_scoped_release release;
+    const OneBlasThread alone;
     const StopQuestion question(was_interrupted);
     stop_if_asked();
     return work();

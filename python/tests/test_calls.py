@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Long calls let other threads run, tell their progress and stop at Ctrl-C; errors are one line;
 what is made and dropped leaves nothing behind."""
+import ctypes
 import gc
 import os
 import resource
@@ -47,6 +48,26 @@ class LongCalls(unittest.TestCase):
         counting.join()
         # Had the lock been held, the other thread would have had a turn or two.
         self.assertGreater(turns, 20 * took)
+
+    def test_blas_has_no_threads_of_its_own_meanwhile(self):
+        try:
+            blas = ctypes.CDLL("libopenblas.so.0", mode=os.RTLD_NOLOAD | os.RTLD_NOW)
+        except OSError:
+            self.skipTest("the BLAS in use is not OpenBLAS")
+        before = blas.openblas_get_num_threads()
+        self.addCleanup(blas.openblas_set_num_threads, before)
+        for threads in (3, 1):
+            blas.openblas_set_num_threads(threads)
+            meanwhile = set()
+            calls = [threading.Thread(target=trussmap.compare, args=(RIDDLE, MODEL), kwargs={
+                "progress": lambda what, done: meanwhile.add(blas.openblas_get_num_threads())
+                if 0.0 < done < 1.0 else None}) for _ in range(3)]
+            for call in calls:
+                call.start()
+            for call in calls:
+                call.join()
+            self.assertIn(1, meanwhile)
+            self.assertEqual(blas.openblas_get_num_threads(), threads)
 
     def test_ctrl_c_stops_them(self):
         simulated = large()
