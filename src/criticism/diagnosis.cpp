@@ -8,10 +8,12 @@
 #include "criticism/look_alikes.hpp"
 #include "criticism/noise_beside.hpp"
 #include "criticism/place_uncertainty.hpp"
+#include "criticism/remaining_errors.hpp"
 #include "criticism/trends.hpp"
 #include "criticism/verdict.hpp"
 #include "linalg/dense.hpp"
 #include "recording/slow_covariates.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +27,7 @@ namespace {
 constexpr double kPractical = 0.05;    // rise of the arrival error
 constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
+constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of chi^2
 
 HeldOutMetrics metrics_of(const HeldOutMetrics& metrics) {
   return metrics;
@@ -58,10 +61,10 @@ class Diagnostician {
       look_alikes_.push_back(
           look_alikes_of(one, search_.tested(), missing, tests_, state_.adjustment.dof));
     }
-    for (TestedEvent& one : test_events(state_, tests_, search_.nuisance())) {
-      result_.events.push_back(std::move(one));
+    if (missing.empty()) {
+      for (TestedEvent& one : test_events(state_, tests_)) result_.events.push_back(std::move(one));
+      result_.noise = test_noise_laws(state_, tests_);
     }
-    result_.noise = test_noise_laws(state_, tests_, search_.nuisance());
     report_findings();
     find_verdict();
     return {std::move(result_), std::move(candidates_)};
@@ -292,47 +295,57 @@ std::vector<Effect> effects_found(const Diagnosis& diagnosis) {
   return effects;
 }
 
-/// Laws of noise beyond what is stated, beside what is missing.
-std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                    const Noise& stated, const Diagnosis& found) {
-  Model model = fit.model;
-  model.noise = stated;
-  const ModelFit as_stated = refit(recordings, model, fit);
-  const ScoreTest tests(*as_stated.state);
-  Eigen::MatrixXd nuisance(tests.system().rows(), 0);
-  for (const Score& one : tests.test(effects_found(found))) {
-    append_columns(nuisance, one.projected);
+/// "6 sightings were left out": what becomes of them with what is missing.
+void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
+  for (std::string& one : diagnosis.warnings) {
+    if (!one.ends_with(" were left out")) continue;
+    one += still == 0 ? "; with what is missing added all of them fit"
+                      : joined("; with what is missing added ", still, " still would be");
   }
-  return test_noise_laws(*as_stated.state, tests, nuisance);
 }
 
 }  // namespace
 
 DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
                            const Noise& stated, const DiagnoseOptions& options) {
-  if (!options.estimate_noise) return Diagnostician(recordings, fit, options).run();
-  auto under = std::make_shared<const FitWithNoise>(with_noise_beside(recordings, fit, stated));
+  auto under = std::make_shared<const FitWithNoise>(
+      options.estimate_noise ? with_noise_beside(recordings, fit, stated) : FitWithNoise{fit, {}});
   DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
-  const std::vector<Effect> missing = effects_found(run.result);
-  if (!missing.empty()) {
+  std::vector<Effect> missing = effects_found(run.result);
+  const auto judge_by = [&](FitWithNoise other) {
+    under = std::make_shared<const FitWithNoise>(std::move(other));
+    run = Diagnostician(recordings, under->fit, options).run();
+    missing = effects_found(run.result);
+  };
+  if (options.estimate_noise && !missing.empty()) {
+    if (auto beside = with_noise_beside_found(recordings, *under, missing, stated)) {
+      judge_by(std::move(*beside));
+    }
+  }
+  if (options.estimate_noise && !missing.empty()) {
     const bool as_stated = under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway;
     Defended defended = defended_against_noise(
         recordings, *under, missing,
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
-    if (defended.otherwise) {
-      under = std::make_shared<const FitWithNoise>(std::move(*defended.otherwise));
-      run = Diagnostician(recordings, under->fit, options).run();
-    }
+    if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
-  if (under->noise.changed()) {
-    run.result.noise = noise_beyond(recordings, under->fit, stated, run.result);
+  const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
+  bool answered = under->noise.changed();  // the noise is not the model's any more
+  if (!missing.empty()) {
+    RemainingErrors rest = remaining_errors(recordings, under->fit, asked_of, missing);
+    run.result.events = std::move(rest.events);
+    run.result.noise = std::move(rest.noise);
+    tell_of_left_out(run.result, rest.left_out);
+    answered = answered || rest.p_value > kExplains;
+  } else if (under->noise.changed()) {
+    run.result.noise = noise_beyond(recordings, under->fit, stated);
   }
-  // What is missing says why the errors are too large; the noise is not the model's any more.
-  if (under->noise.changed() && run.result.verdict == Diagnosis::Verdict::missing) {
+  // What is missing says why the errors are too large.
+  if (answered && run.result.verdict == Diagnosis::Verdict::missing) {
     std::erase_if(run.result.warnings,
                   [](const std::string& one) { return one.rfind("chi^2 = ", 0) == 0; });
   }
-  run.result.under = std::move(under);
+  if (options.estimate_noise) run.result.under = std::move(under);
   return run;
 }
 

@@ -290,7 +290,8 @@ class Discoverer {
     if (result_.stopped.effect.empty()) result_.stopped = {reason, effect, 0};
   }
 
-  /// What the gate left out costs what it allows, or a fit would be the better for leaving out more.
+  /// What the gate left out costs what it allows, or a fit would be the better for leaving out
+  /// more.
   [[nodiscard]] static double chi2_of_all(const ModelFit& fit) {
     return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
   }

@@ -108,4 +108,31 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
   return result;
 }
 
+std::optional<FitWithNoise> with_noise_beside_found(const std::vector<Recording>& recordings,
+                                                    const FitWithNoise& under,
+                                                    const std::vector<Effect>& found,
+                                                    const Noise& stated) {
+  const bool sought = std::any_of(found.begin(), found.end(), [](const Effect& one) {
+    return std::any_of(one.shape.begin(), one.shape.end(),
+                       [](const Shape& shape) { return !shape.parameters().empty(); });
+  });
+  if (!sought || !under.noise.changed()) return std::nullopt;
+  Model model = under.fit.model;
+  model.effects.insert(model.effects.end(), found.begin(), found.end());
+  NoiseFitOptions options;
+  options.errors = false;
+  try {
+    const ModelFit beside = refit(recordings, model, under.fit);
+    NoiseReml reml(*beside.state, stated);
+    FittedNoise noise = fit_noise(reml, {}, options);
+    if (noise.noise == under.noise.noise) return std::nullopt;
+    noise.tried = std::max(noise.tried, under.noise.tried);
+    model = under.fit.model;
+    model.noise = noise.noise;
+    return FitWithNoise{refit(recordings, model, under.fit), std::move(noise)};
+  } catch (const SolveError&) {  // together they cannot be fitted
+    return std::nullopt;
+  }
+}
+
 }  // namespace trussmap

@@ -10,11 +10,14 @@
 // Only where the errors are larger than the present noise allows (p < 0.05 of chi^2): noise that is
 // stated too large costs power, but names nothing that is not there.
 //
-// A suspect need not be right: it costs a few degrees of freedom where it is not.
+// A suspect need not be right: it costs a few degrees of freedom where it is not. What acts at a
+// place or beyond a threshold is none, for it has to be sought first: once it is found, the noise
+// is asked for again beside it.
 #pragma once
 
 #include "fit/noise_fit.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -22,5 +25,11 @@ namespace trussmap {
 /// `stated`: the noise that sizes are kept at where they can be. Throws as refit does.
 [[nodiscard]] FitWithNoise with_noise_beside(const std::vector<Recording>& recordings,
                                              const ModelFit& fit, const Noise& stated);
+
+/// Where some of the effects found act at a place or beyond a threshold: the noise beside all of
+/// them, which are fitted with it. `under`: as found beside the suspects. Absent: it is the same.
+[[nodiscard]] std::optional<FitWithNoise> with_noise_beside_found(
+    const std::vector<Recording>& recordings, const FitWithNoise& under,
+    const std::vector<Effect>& found, const Noise& stated);
 
 }  // namespace trussmap

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/remaining_errors.hpp"
+
+#include "criticism/event_tests.hpp"
+#include "criticism/noise_tests.hpp"
+#include "criticism/score_test.hpp"
+#include "fit/fit_state.hpp"
+#include "linalg/dense.hpp"
+#include "trussmap/error.hpp"
+
+#include <iterator>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+/// A fit, and columns beside it that are taken as given.
+struct Asked {
+  ModelFit fit;
+  std::vector<Effect> beside;
+
+  [[nodiscard]] Eigen::MatrixXd nuisance(const ScoreTest& tests) const {
+    Eigen::MatrixXd columns(tests.system().rows(), 0);
+    for (const Score& one : tests.test(beside)) append_columns(columns, one.projected);
+    return columns;
+  }
+};
+
+Asked with_effects(const std::vector<Recording>& recordings, const ModelFit& fit,
+                   const std::vector<Effect>& missing) {
+  Model model = fit.model;
+  model.effects.insert(model.effects.end(), missing.begin(), missing.end());
+  try {
+    return {refit(recordings, model, fit), {}};
+  } catch (const SolveError&) {
+    return {fit, missing};
+  }
+}
+
+std::vector<NoiseTest> laws_of(const Asked& asked) {
+  const ScoreTest tests(*asked.fit.state);
+  return test_noise_laws(*asked.fit.state, tests, asked.nuisance(tests));
+}
+
+Asked with_noise_as(const std::vector<Recording>& recordings, const Noise& stated, Asked asked) {
+  Model model = asked.fit.model;
+  model.noise = stated;
+  asked.fit = refit(recordings, model, asked.fit);
+  return asked;
+}
+
+}  // namespace
+
+RemainingErrors remaining_errors(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                 const Noise& stated, const std::vector<Effect>& missing) {
+  RemainingErrors result;
+  const Asked asked = with_effects(recordings, fit, missing);
+  result.left_out = asked.fit.left_out.size();
+  if (asked.beside.empty()) result.p_value = asked.fit.p_value;
+  const ScoreTest tests(*asked.fit.state);
+  const Eigen::MatrixXd nuisance = asked.nuisance(tests);
+  std::vector<TestedEvent> events = test_events(*asked.fit.state, tests, nuisance);
+  result.events.assign(std::make_move_iterator(events.begin()),
+                       std::make_move_iterator(events.end()));
+  result.noise = asked.fit.model.noise == stated
+                     ? test_noise_laws(*asked.fit.state, tests, nuisance)
+                     : laws_of(with_noise_as(recordings, stated, asked));
+  return result;
+}
+
+std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                    const Noise& stated) {
+  return laws_of(with_noise_as(recordings, stated, {fit, {}}));
+}
+
+}  // namespace trussmap

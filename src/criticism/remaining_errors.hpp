@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Single events and laws of noise, asked of what errors there are once what is missing is in the
+// model: fitted with it, for a large effect bends the rows, what a plane leaves of it would pass
+// for noise, and what contradicts a model without it may well fit then.
+#pragma once
+
+#include "trussmap/diagnose.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace trussmap {
+
+struct RemainingErrors {
+  std::vector<EventTest> events;  ///< likeliest first
+  std::vector<NoiseTest> noise;   ///< beyond what is stated, best explanation first
+  std::size_t left_out = 0;       ///< measurements that the gate still leaves out
+  double p_value = 0.0;           ///< of chi^2 with what is missing in the model; 0: not fitted
+};
+
+/// `fit` lacks `missing`, whose places and thresholds are known; `stated`: the noise that the
+/// user's model has. Where they cannot be fitted together, all is asked of the fit as it is, less
+/// what their columns explain. Throws as refit does.
+[[nodiscard]] RemainingErrors remaining_errors(const std::vector<Recording>& recordings,
+                                               const ModelFit& fit, const Noise& stated,
+                                               const std::vector<Effect>& missing);
+
+/// The laws of noise alone, of a fit that lacks nothing.
+[[nodiscard]] std::vector<NoiseTest> noise_beyond(const std::vector<Recording>& recordings,
+                                                  const ModelFit& fit, const Noise& stated);
+
+}  // namespace trussmap
