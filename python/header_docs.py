@@ -89,7 +89,8 @@ def docs_of(text):
 
 
 # What a reader of Python knows by another name.
-IN_PYTHON = (("std::invalid_argument", "ValueError"), ("std::out_of_range", "IndexError"),
+IN_PYTHON = (("like fit_model", "as fit does"), ("as fit_model does", "as fit does"),
+             ("std::invalid_argument", "ValueError"), ("std::out_of_range", "IndexError"),
              ("std::nullopt", "None"), ("nullptr", "None"), ("Throws", "Raises"), ("throws", "raises"))
 
 

@@ -64,6 +64,7 @@ CHANNELS = {
 def formula_of(shape):
     """A shape as TeX: names upright, products without a star."""
     text = shape.replace("{}", "COLUMN")
+    text = re.sub(r"\{([xy])\}", r"\1_0", text)  # the place, not the robot's
     text = re.sub(r"\{(\w+)\}", r"\1", text)
     text = re.sub(r"\b(sin|cos|tan|exp|log|max|min)\b", r"\\\1 ", text)
     text = re.sub(r"\b(abs|sign|sqrt)\b", r"\\operatorname{\1}", text)

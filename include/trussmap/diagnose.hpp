@@ -74,6 +74,9 @@ struct Finding {
   /// Of those that are missing: the coefficients with all that is missing added at once.
   std::vector<double> joint;
   std::vector<double> joint_sd;
+  /// By what its standard errors are larger for a place or threshold that was sought, one per
+  /// coefficient; empty where none was.
+  std::vector<double> widened;
   int tried = 1;  ///< members of its family
 };
 

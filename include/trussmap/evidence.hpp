@@ -32,6 +32,7 @@ struct ResponseBin {
 /// The variable that stands for the distance from an effect's place, m.
 inline constexpr const char* kPlace = "place";
 
+/// A channel's error along a variable, bin by bin, and the curve of an effect through it.
 struct Response {
   Channel channel = Channel::travel;
   std::string unit;      ///< of g; "" = none

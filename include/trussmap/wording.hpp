@@ -20,6 +20,8 @@ namespace trussmap {
 
 struct BuiltMap;
 struct FleetReport;
+struct Response;
+struct TrendEvidence;
 
 // Effects.
 
@@ -61,6 +63,10 @@ struct Advice {
 
 /// Why recordings cannot show an effect, and what helps.
 [[nodiscard]] Advice advice_on(const Unobservable& unseen);
+
+/// That a fit holds the place or threshold of an effect of the catalogue: "x, y, r are held as the
+/// model has them, ..."; empty where it has none.
+[[nodiscard]] std::string held_in_words(const Effect& effect);
 
 /// What to drive to tell two effects apart, where `slow` are the covariates that vary slowly.
 [[nodiscard]] std::string separating_drive(const Effect& one, const Effect& other,
@@ -114,6 +120,19 @@ struct Advice {
 
 /// What speaks against the model: "errors are 2.3 times what the model's noise allows".
 [[nodiscard]] std::string objection_in_words(const Comparison& result);
+
+// Responses (evidence.hpp).
+
+/// How a response is drawn: what stands at its axes, and the factors to the units that they show.
+struct ResponseAxes {
+  std::string variable;  ///< "heading [°]"
+  double variable_factor = 1.0;
+  std::string error;  ///< "compass reads too much by [°]"
+  double error_factor = 1.0;
+};
+[[nodiscard]] ResponseAxes axes_of(const Response& response);
+/// "turn against turn rate".
+[[nodiscard]] std::string name_in_words(const TrendEvidence& trend);
 
 // Figures.
 

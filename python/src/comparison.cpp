@@ -192,13 +192,15 @@ void add_comparison(py::module_& module) {
       .def("__repr__", [](const ComparisonResult& self) {
         return "<trussmap.Comparison: " + verdict_in_words(self.found) + ">";
       });
-  module.def(
-      "compare", run_compare, py::arg("recordings"), py::arg("model"), py::kw_only(),
-      py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
-      py::arg("gate") = kModelGate, py::arg("every") = py::none(), py::arg("level") = kSignificance,
-      py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
-      py::arg("leg") = LegOptions().leg, py::arg("worst") = 5, py::arg("progress") = py::none(),
-      doc("Is a model consistent with recordings, and where does it fail?", "compare").c_str());
+  module.def("compare", run_compare, py::arg("recordings"), py::arg("model"), py::kw_only(),
+             py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
+             py::arg("gate") = kModelGate, py::arg("every") = py::none(),
+             py::arg("level") = kSignificance, py::arg("holdout") = LegOptions().share,
+             py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
+             py::arg("worst") = 5, py::arg("progress") = py::none(),
+             (doc("Is a model consistent with recordings, and where does it fail?", "compare") +
+              kUseDoc + " `worst`: legs and routes that are printed.")
+                 .c_str());
 }
 
 }  // namespace trussmap::python

@@ -157,6 +157,12 @@ py::tuple list(const DiagnosisResult& self) {
   return py::tuple(py::cast(self.found.*kMember));
 }
 
+py::tuple missing_findings(const DiagnosisResult& self) {
+  std::vector<Finding> missing = self.found.findings;
+  std::erase_if(missing, [](const Finding& one) { return one.status != Status::missing; });
+  return py::tuple(py::cast(missing));
+}
+
 /// The model with the effects that are missing, none of them fitted yet.
 Model completed(const DiagnosisResult& self) {
   Model model = self.input.model;
@@ -179,6 +185,9 @@ void add_diagnosis(py::module_& module) {
           [](const DiagnosisResult& self) { return std::string(verdict_of(self.found)); },
           "missing, nothing missing or unexplained misfit.")
       .def_property_readonly("missing", get<&Diagnosis::missing>, doc("Diagnosis.missing"))
+      .def_property_readonly("missing_findings", missing_findings,
+                             "All that is missing: `joint` and `joint_sd` are their sizes with all "
+                             "of them added.")
       .def_property_readonly("p_value", get<&Diagnosis::p_value>, doc("Diagnosis.p_value"))
       .def_property_readonly("chi2", get<&Diagnosis::chi2>, "Of the fit that is judged.")
       .def_property_readonly("dof", get<&Diagnosis::dof>, "Its degrees of freedom.")
@@ -227,14 +236,17 @@ void add_diagnosis(py::module_& module) {
       .def("__repr__", [](const DiagnosisResult& self) {
         return "<trussmap.Diagnosis: " + verdict_in_words(self.found) + ">";
       });
-  module.def("diagnose", run_diagnose, py::arg("recordings"), py::arg("model"), py::kw_only(),
-             py::arg("stated_noise") = false, py::arg("without") = std::vector<std::string>(),
-             py::arg("exclude") = py::tuple(), py::arg("gate") = kModelGate,
-             py::arg("every") = py::none(), py::arg("level") = kSignificance,
-             py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
-             py::arg("leg") = LegOptions().leg, py::arg("list") = 8,
-             py::arg("progress") = py::none(),
-             doc("Which physical effect is a model missing?", "diagnose").c_str());
+  module.def(
+      "diagnose", run_diagnose, py::arg("recordings"), py::arg("model"), py::kw_only(),
+      py::arg("stated_noise") = false, py::arg("without") = std::vector<std::string>(),
+      py::arg("exclude") = py::tuple(), py::arg("gate") = kModelGate, py::arg("every") = py::none(),
+      py::arg("level") = kSignificance, py::arg("holdout") = LegOptions().share,
+      py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
+      py::arg("list") = 8, py::arg("progress") = py::none(),
+      (doc("Which physical effect is a model missing?", "diagnose") + kUseDoc +
+       " `stated_noise`: judge by the noise that the model states, instead of estimating it. "
+       "`list`: candidates that are printed.")
+          .c_str());
 }
 
 }  // namespace trussmap::python

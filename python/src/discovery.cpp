@@ -202,16 +202,19 @@ void add_discovery(py::module_& module) {
       .def("__repr__", [](const DiscoveryResult& self) {
         return "<trussmap.Discovery: " + verdict_in_words(self.found) + ">";
       });
-  module.def("discover", run_discover, py::arg("recordings"), py::arg("model"), py::kw_only(),
-             py::arg("most") = 6, py::arg("stated_noise") = false,
-             py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
-             py::arg("gate") = kModelGate, py::arg("every") = py::none(),
-             py::arg("level") = kSignificance, py::arg("holdout") = LegOptions().share,
-             py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
-             py::arg("progress") = py::none(),
-             doc("Diagnoses, adds and fits effects, one by one, for as long as that is justified.",
-                 "discover")
-                 .c_str());
+  module.def(
+      "discover", run_discover, py::arg("recordings"), py::arg("model"), py::kw_only(),
+      py::arg("most") = 6, py::arg("stated_noise") = false,
+      py::arg("without") = std::vector<std::string>(), py::arg("exclude") = py::tuple(),
+      py::arg("gate") = kModelGate, py::arg("every") = py::none(), py::arg("level") = kSignificance,
+      py::arg("holdout") = LegOptions().share, py::arg("min_drive") = LegOptions().min_drive,
+      py::arg("leg") = LegOptions().leg, py::arg("progress") = py::none(),
+      (doc("Diagnoses, adds and fits effects, one by one, for as long as that is justified.",
+           "discover") +
+       kUseDoc +
+       " `most`: effects that are added at most. `stated_noise`: judge by the noise that the "
+       "model states, instead of estimating it.")
+          .c_str());
 }
 
 }  // namespace trussmap::python

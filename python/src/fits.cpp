@@ -280,8 +280,9 @@ void add_fits(py::module_& module) {
              py::arg("every") = py::none(), py::arg("holdout") = LegOptions().share,
              py::arg("min_drive") = LegOptions().min_drive, py::arg("leg") = LegOptions().leg,
              py::arg("progress") = py::none(),
-             doc("Estimates the coefficients of a model's effects; with `noise` the noise, too.",
-                 "fit_model")
+             (doc("Estimates the coefficients of a model's effects; with `noise` the noise, too.",
+                  "fit_model") +
+              kUseDoc)
                  .c_str());
 }
 

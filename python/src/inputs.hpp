@@ -61,6 +61,18 @@ struct UseOptions {
   double level = kSignificance;
 };
 
+/// What these options are, for docstrings.
+inline constexpr const char* kUseDoc =
+    "\n\n`without`: of \"survey\", \"truth\", \"fixes\", \"loops\" what is not used. `exclude`: "
+    "times "
+    "[s] that are left out, pairs (from, to), of several recordings such a list for each. `gate`: "
+    "standard deviations beyond which sightings, fixes and loops are left out that all others "
+    "contradict; 0: none. `every` [s]: one frame of sightings in so many; 0: all; None: as long as "
+    "their errors are found to last. `holdout`: share of the legs by which the model is judged. "
+    "`min_drive` [m]: shortest leg between two landmarks. `leg` [m]: length of one where there is "
+    "truth, or fixes, but no landmark. `level`: of significance. `progress`: a function of the "
+    "step's name and the share of the call that is done.";
+
 /// ValueError on what is out of range, or a name in `without` that is none.
 [[nodiscard]] UseOptions use_options(const std::vector<std::string>& without, double gate,
                                      std::optional<double> every, double holdout, double min_drive,

@@ -260,7 +260,12 @@ void add_models(py::module_& module) {
           [](Model self, const std::string& name) {
             if (std::erase_if(self.effects, [&](const Effect& one) { return one.name == name; }) ==
                 0) {
-              throw py::value_error("the model has no effect \"" + name + "\"");
+              std::string names;
+              for (const Effect& one : self.effects) {
+                names += (names.empty() ? "" : ", ") + ("\"" + one.name + "\"");
+              }
+              throw py::value_error("the model has no effect \"" + name + "\", expected " +
+                                    (names.empty() ? "none: it has no effects" : names));
             }
             return self;
           },

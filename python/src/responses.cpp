@@ -6,6 +6,7 @@
 #include "parts.hpp"
 #include "rows.hpp"
 #include "trussmap/channel.hpp"
+#include "trussmap/wording.hpp"
 
 #include <string>
 #include <utility>
@@ -53,7 +54,7 @@ py::tuple responses(const std::vector<EffectEvidence>& effects,
     all.push_back({one.estimate.effect.name, one.response});
   }
   for (const TrendEvidence& one : trends) {
-    all.push_back({one.trend.kind + " against " + one.trend.against, one.response});
+    all.push_back({name_in_words(one), one.response});
   }
   std::erase_if(all, [](const NamedResponse& one) { return one.response.bins.empty(); });
   return py::tuple(py::cast(all));
@@ -72,6 +73,21 @@ void add_responses(py::module_& module) {
       .value(
           "variable", [](const NamedResponse& self) { return self.response.variable; },
           "What it is shown against: heading (0 to 2 pi), speed, payload_kg, place (m from there).")
+      .value(
+          "variable_label",
+          [](const NamedResponse& self) { return axes_of(self.response).variable; },
+          "What stands at the variable's axis: \"heading [\u00b0]\".")
+      .value(
+          "error_label", [](const NamedResponse& self) { return axes_of(self.response).error; },
+          "What stands at the error's: \"compass reads too much by [\u00b0]\".")
+      .aside(
+          "variable_factor",
+          [](const NamedResponse& self) { return axes_of(self.response).variable_factor; },
+          "From the arrays' unit to the label's.")
+      .aside(
+          "error_factor",
+          [](const NamedResponse& self) { return axes_of(self.response).error_factor; },
+          "From the arrays' unit to the label's.")
       .aside("at", bins<&ResponseBin::at>, "Mean of the variable in each bin.")
       .aside("low", bins<&ResponseBin::low>, "Where each bin begins.")
       .aside("high", bins<&ResponseBin::high>, "Where each bin ends.")

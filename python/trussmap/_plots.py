@@ -54,15 +54,24 @@ def plot_poses(self, axes=None):
 
 
 def plot_response(self, axes=None):
-    """The error in each bin with its standard error, and the effect's curve through them."""
+    """The error in each bin with its 95 % interval, and the effect's curve through them."""
     axes = _axes(axes)
+    across, up = self.variable_factor, self.error_factor
     axes.axhline(0.0, color="0.8", linewidth=0.8)
+    near = [0.0, *(up * self.estimate)]
     if len(self.curve):
-        axes.plot(self.curve[:, 0], self.curve[:, 1], color="0.5")
-    axes.errorbar(self.at, self.estimate, yerr=self.sd, fmt="ko", markersize=4)
-    axes.set_xlabel("distance from the place [m]" if self.variable == "place" else self.variable)
-    axes.set_ylabel(self.channel + (f" [{self.unit}]" if self.unit else ""))
+        axes.plot(across * self.curve[:, 0], up * self.curve[:, 1], color="0.5", label="the effect")
+        near.extend(up * self.curve[:, 1])
+    half = 1.96 * up * self.sd
+    axes.errorbar(across * self.at, up * self.estimate, yerr=half, fmt="ko", markersize=4,
+                  label="seen, 95 %")
+    reach = max(near) - min(near) or 1.0  # what is hardly seen must not hide the rest
+    axes.set_ylim(max(min(up * self.estimate - half), min(near) - reach) - 0.05 * reach,
+                  min(max(up * self.estimate + half), max(near) + reach) + 0.05 * reach)
+    axes.set_xlabel(self.variable_label)
+    axes.set_ylabel(self.error_label)
     axes.set_title(self.name)
+    axes.legend(frameon=False)
     return axes
 
 

@@ -229,10 +229,10 @@ class Diagnostician {
       Tested beside_the_others = one;
       beside_the_others.score.coefficients = finding.joint;
       finding.implausible = is_implausible(beside_the_others);
-      const std::vector<double> factors = widening_of(k);
-      for (std::size_t c = 0; c < factors.size(); ++c) {
-        finding.sd[c] *= factors[c];
-        finding.joint_sd[c] *= factors[c];
+      finding.widened = widening_of(k);
+      for (std::size_t c = 0; c < finding.widened.size(); ++c) {
+        finding.sd[c] *= finding.widened[c];
+        finding.joint_sd[c] *= finding.widened[c];
       }
     }
     return finding;

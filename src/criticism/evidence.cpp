@@ -5,6 +5,8 @@
 #include "criticism/comparison.hpp"
 #include "criticism/effect_evidence.hpp"
 #include "criticism/response.hpp"
+#include "effects/place.hpp"
+#include "effects/place_patterns.hpp"
 #include "fit/fit_state.hpp"
 #include "recording/slow_covariates.hpp"
 #include "trussmap/error.hpp"
@@ -44,14 +46,64 @@ ModelEvidence model_evidence(const std::vector<Recording>& recordings, const Mod
           reckoned_errors(*fit.state)};
 }
 
+struct Bell {
+  Vector2 middle;
+  double radius = 1.0;
+  double height = 0.0;
+
+  [[nodiscard]] double at(const Vector2& place) const {
+    return height * std::exp(-0.5 * (place - middle).squaredNorm() / (radius * radius));
+  }
+};
+
+/// Of a trend over bells all over the map; empty of any other.
+std::vector<Bell> bells_of(const Effect& trend) {
+  std::vector<Bell> bells;
+  for (std::size_t k = 0; k < trend.shape.size(); ++k) {
+    const Shape& shape = trend.shape[k];
+    const auto x = shape.parameter("x"), y = shape.parameter("y"), r = shape.parameter("r");
+    if (!x || !y || !r) return {};
+    bells.push_back({{*x, *y}, *r, trend.coefficients.at(k)});
+  }
+  return bells;
+}
+
+/// A trend over bells is looked at from where their sum is largest; any other as it is.
+Effect where_largest(const Effect& trend) {
+  constexpr int kAcross = 32;
+  const std::vector<Bell> bells = bells_of(trend);
+  if (bells.empty()) return trend;
+  Vector2 low = bells.front().middle;
+  Vector2 high = low;
+  for (const Bell& one : bells) {
+    low = low.cwiseMin(one.middle);
+    high = high.cwiseMax(one.middle);
+  }
+  Vector2 place = low;
+  double most = -1.0;
+  for (int i = 0; i <= kAcross; ++i) {
+    for (int j = 0; j <= kAcross; ++j) {
+      const Vector2 at = low + (high - low).cwiseProduct(Vector2(i, j) / kAcross);
+      double g = 0.0;
+      for (const Bell& one : bells) g += one.at(at);
+      if (std::abs(g) <= most) continue;
+      most = std::abs(g);
+      place = at;
+    }
+  }
+  const Shape bell(kBellPattern, {{"x", place.x()}, {"y", place.y()}, {"r", bells[0].radius}});
+  return {trend.name, trend.channel, {bell}, {}};
+}
+
 std::vector<TrendEvidence> trend_evidence(const Comparison& comparison, const FitState& fit,
                                           const ScoreTest& tests) {
   std::vector<TrendEvidence> evidence;
   std::set<std::string> seen;
   for (const Trend& trend : comparison.trends) {  // strongest first
-    const std::string variable = natural_variable(trend.effect);
+    const Effect effect = where_largest(trend.effect);
+    const std::string variable = place_of(effect) ? kPlace : natural_variable(effect);
     if (variable.empty() || seen.contains(variable)) continue;
-    Response response = response_along(variable, trend.effect, fit, tests);
+    Response response = response_along(variable, effect, fit, tests);
     if (response.bins.empty()) continue;
     seen.insert(variable);
     evidence.push_back({trend, std::move(response)});
@@ -136,9 +188,12 @@ std::vector<Seen> seen_in(const std::vector<const Finding*>& missing, std::size_
   for (std::size_t k = 0; k < missing.size(); ++k) {
     const std::size_t place = had + k;
     const bool fitted = with && place < with->effects.size();
-    seen.push_back(
-        {fitted ? with->effects[place] : EffectEstimate{missing[k]->effect, missing[k]->sd, {}},
-         missing[k]->look_alikes});
+    EffectEstimate estimate =
+        fitted ? with->effects[place] : EffectEstimate{missing[k]->effect, missing[k]->sd, {}};
+    for (std::size_t c = 0; fitted && c < missing[k]->widened.size(); ++c) {
+      estimate.sd.at(c) *= missing[k]->widened[c];
+    }
+    seen.push_back({std::move(estimate), missing[k]->look_alikes});
   }
   return seen;
 }

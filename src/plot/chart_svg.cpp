@@ -5,6 +5,7 @@
 #include "plot/chart_scales.hpp"
 #include "plot/svg_marks.hpp"
 #include "text/xml_text.hpp"
+#include "trussmap/table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double kWidth = 800.0;  // pixels
 constexpr double kEdge = 14.0;
-constexpr double kCharacter = 6.6;  // mean width of one at 12 px
+constexpr double kCharacter = 6.6;        // mean width of one at 12 px
+constexpr std::size_t kLongestName = 40;  // characters, of a category
 
 /// The page's colours for paper (src/report/page/page.css).
 std::string paper(const std::string& role) {
@@ -230,7 +232,7 @@ std::string axes(const Chart& chart, const ChartScale& x, const ChartScale& y, d
   for (const auto& [at, name] : y.ticks()) {
     if (y.categories.empty()) grid += fmt::format("M{} {}H{}", px(left), px(at), px(right));
     text += fmt::format("<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n",
-                        px(left - 6.0), px(at + 4.0), xml_escaped(name));
+                        px(left - 6.0), px(at + 4.0), xml_escaped(shortened(name, kLongestName)));
   }
   text += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                       px(0.5 * (left + right)), px(bottom + 36.0), xml_escaped(chart.x.title));
@@ -256,7 +258,7 @@ std::string draw_chart(const Chart& chart) {
   std::size_t longest = 6;
   for (const std::string& name : chart.y.categories) longest = std::max(longest, name.size());
   const double left =
-      kEdge + 24.0 + kCharacter * static_cast<double>(std::min<std::size_t>(longest, 40));
+      kEdge + 24.0 + kCharacter * static_cast<double>(std::min(longest, kLongestName));
   const double right = kWidth - kEdge - 10.0;
   const double bottom = top + chart.height;
   const auto [x, y] = chart_scales(chart, left, top, right, bottom);

@@ -3,6 +3,7 @@
 #include "plot/fit_charts.hpp"
 
 #include "plot/layers.hpp"
+#include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
 #include <algorithm>
@@ -38,26 +39,6 @@ Range shown_range(const Response& response, double factor) {
           std::min(range.high, near.high + reach) + margin};
 }
 
-/// A variable's axis: name, factor, unit.
-ShownUnit variable_unit(const std::string& variable) {
-  if (variable == "heading") return {kDegrees, "\u00b0"};
-  if (variable == "turn_rate") return {kDegrees, "\u00b0/s"};
-  if (variable == "speed") return {1.0, "m/s"};
-  if (variable == "acceleration") return {1.0, "m/s\u00b2"};
-  if (variable == "t") return {1.0, "s"};
-  if (variable == "distance" || variable == "x" || variable == "y" || variable == kPlace) {
-    return {1.0, "m"};
-  }
-  return {1.0, ""};
-}
-
-std::string variable_title(const std::string& variable) {
-  const std::string name =
-      variable == kPlace ? "distance from its place" : variable_in_words(variable);
-  const std::string unit = variable_unit(variable).name;
-  return unit.empty() ? name : name + " [" + unit + "]";
-}
-
 ChartLayer curve_layer(const NamedCurve& curve, const std::string& axis, double across, double up,
                        const std::string& colour) {
   std::vector<double> x;
@@ -76,14 +57,15 @@ ChartLayer curve_layer(const NamedCurve& curve, const std::string& axis, double 
 Chart response_chart(const std::string& id, const std::string& title, const std::string& caption,
                      const Response& response, const std::string& curve_name,
                      const std::vector<NamedCurve>& rivals) {
-  const double across = variable_unit(response.variable).factor;
+  const ResponseAxes axes = axes_of(response);
+  const double across = axes.variable_factor;
   const ShownUnit up = shown_unit(response.unit);
   Chart chart;
   chart.id = id;
   chart.title = title;
   chart.caption = caption;
-  chart.x.title = variable_title(response.variable);
-  chart.y.title = channel_in_words(response.channel) + " [" + up.name + "]";
+  chart.x.title = axes.variable;
+  chart.y.title = axes.error;
   chart.y.range = shown_range(response, up.factor);
   chart.height = 260.0;
   chart.layers.push_back({LayerKind::level, "", {{"no error", {0.0}}}, "faint"});

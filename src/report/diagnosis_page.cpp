@@ -88,7 +88,7 @@ ResultRows missing_rows(const Diagnosis& diagnosis, const DiagnosisEvidence& evi
     const bool first = one == found.front();
     for (std::string& sentence :
          rival_sentences(one->effect, one->look_alikes,
-                         first ? near_rivals(diagnosis, *one) : std::vector<const Finding*>{})) {
+                         first ? near_rivals(diagnosis, *one) : std::vector<NearRival>{})) {
       rows.otherwise.push_back(std::move(sentence));
     }
   }
@@ -181,9 +181,9 @@ LeftBy left_by(const Diagnosis& diagnosis, const DiagnosisEvidence& evidence) {
   for (const Finding& one : diagnosis.findings) {
     left.emplace(one.effect.name, one.held_out.arrival_rms);
   }
-  if (evidence.with && evidence.effects.size() == 1) {
-    left[evidence.effects.front().estimate.effect.name] =
-        evidence.with->comparison.held_out.arrival_rms;
+  if (!evidence.with) return left;
+  for (const EffectEvidence& one : evidence.effects) {  // fitted with the others
+    left[one.estimate.effect.name] = evidence.with->comparison.held_out.arrival_rms;
   }
   return left;
 }
@@ -194,6 +194,8 @@ Chart changes_chart(const Diagnosis& diagnosis, double floor) {
       {kGiven, diagnosis.held_out.arrival_rms, diagnosis.chi2, diagnosis.dof}};
   for (const Finding& one : diagnosis.findings) {
     if (steps.size() > kChangesDrawn) break;
+    // What shows only beside the first changes little alone.
+    if (steps.size() > 1 && one.status == Status::missing) continue;
     steps.push_back({"+ " + name_in_words(one.effect), one.held_out.arrival_rms,
                      diagnosis.chi2 - one.score, diagnosis.dof - one.dof});
   }

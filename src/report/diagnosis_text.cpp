@@ -87,9 +87,12 @@ std::string candidates_text(const Diagnosis& result, std::size_t count, TextStyl
                         "held out [mm]", "status"});
   for (std::size_t k = 0; k < std::min(count, result.findings.size()); ++k) {
     const Finding& one = result.findings[k];
+    // By itself it may not show: the table's figures are of each alone.
+    const bool beside = k > 0 && one.status == Status::missing && one.p_adjusted >= kSignificance;
     table.rows.push_back(
         {shortened(one.effect.name, kWidestCell), shortened(formula_of(one.effect), kWidestCell),
-         fmt::format("{:.1f} ({})", one.score, one.dof), probability_text(one.p_adjusted),
+         fmt::format("{:.1f} ({})", one.score, one.dof),
+         beside ? "with the above" : probability_text(one.p_adjusted),
          fmt::format("{:.1f}", 1e3 * one.held_out.arrival_rms), std::string(status_in_words(one))});
   }
   text +=

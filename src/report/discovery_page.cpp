@@ -119,7 +119,7 @@ std::string found_verdict(const Discovery& discovery, const DiscoveryEvidence& e
 }
 
 /// What held-out legs cannot tell from the first effect found.
-std::vector<const Finding*> near_first(const Discovery& discovery, const Effect& effect) {
+std::vector<NearRival> near_first(const Discovery& discovery, const Effect& effect) {
   for (const Finding& one : discovery.first.findings) {
     if (one.effect.name == effect.name) return near_rivals(discovery.first, one);
   }
@@ -138,7 +138,7 @@ ResultRows found_rows(const Discovery& discovery, const DiscoveryEvidence& evide
     rows.large.push_back(how_large(one));
     for (std::string& sentence :
          rival_sentences(effect, evidence.look_alikes[k],
-                         k == 0 ? near_first(discovery, effect) : std::vector<const Finding*>{})) {
+                         k == 0 ? near_first(discovery, effect) : std::vector<NearRival>{})) {
       rows.otherwise.push_back(std::move(sentence));
     }
     if (!evidence.next_drives[k]) continue;

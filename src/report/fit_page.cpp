@@ -44,8 +44,9 @@ std::string sure_of(const EffectEvidence& one) {
 }
 
 std::string still_unexplained(const Comparison& after) {
-  return after.consistent() ? "Nothing more that these measurements show."
-                            : fmt::format("Something still: {}.", objection_in_words(after));
+  return after.consistent()
+             ? "Nothing more that chi\u00b2 or a trend shows; fit tries no other effect."
+             : fmt::format("Something still: {}.", objection_in_words(after));
 }
 
 ResultRows rows_on(const FitEvidence& evidence) {
@@ -62,6 +63,9 @@ ResultRows rows_on(const FitEvidence& evidence) {
   }
   rows.otherwise = {"Unknown: fit tries no other effect, diagnose does."};
   for (const EffectEvidence& one : evidence.effects) {
+    if (const std::string held = held_in_words(one.estimate.effect); !held.empty()) {
+      rows.next.push_back(capitalised(short_name(one.estimate.effect)) + ": " + held + ".");
+    }
     for (const UnfittedCoefficient& why : one.estimate.not_fitted) {
       rows.next.push_back(capitalised(in_words(one.estimate, why)) + ".");
     }

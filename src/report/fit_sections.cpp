@@ -280,7 +280,7 @@ PageSection trend_section(const std::string& title, const Comparison& result,
       continue;
     }
     charts.push_back(response_chart(
-        fmt::format("trend-{}", charts.size() + 1), trend.kind + " against " + variable,
+        fmt::format("trend-{}", charts.size() + 1), name_in_words(one),
         fmt::format("A trend: it explains {:.2g} % of chi\u00b2 (squared errors over what noise "
                     "makes of them), p {}. Points are what the recordings show, with 95 % "
                     "intervals.",

@@ -29,6 +29,9 @@ std::string estimates_text(const EffectGain& result, TextStyle style) {
                             size.value, size.error.empty() ? "" : "+- " + size.error});
     }
     text += table_text(table, style);
+    if (const std::string held = held_in_words(one.effect); !held.empty()) {
+      text += fmt::format("    {}\n", held);
+    }
     for (const UnfittedCoefficient& why : one.not_fitted) {
       text += fmt::format("    {}\n", in_words(one, why));
     }

@@ -49,9 +49,9 @@ bool is_ruled_out(const Diagnosis& diagnosis, const std::string& name) {
 
 }  // namespace
 
-std::vector<const Finding*> near_rivals(const Diagnosis& diagnosis, const Finding& first) {
+std::vector<NearRival> near_rivals(const Diagnosis& diagnosis, const Finding& first) {
   constexpr double kNear = 1e-3;  // m
-  std::vector<const Finding*> near;
+  std::vector<NearRival> near;
   if (diagnosis.held_out.legs.empty()) return near;
   const double gain = diagnosis.held_out.arrival_rms - first.held_out.arrival_rms;
   std::vector<std::string> names{name_in_words(first.effect)};
@@ -64,21 +64,22 @@ std::vector<const Finding*> near_rivals(const Diagnosis& diagnosis, const Findin
     const std::string name = name_in_words(one.effect);
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     names.push_back(name);
-    near.push_back(&one);
+    near.push_back({&one, first.score - one.score});
   }
   return near;
 }
 
 std::vector<std::string> rival_sentences(const Effect& effect, const std::vector<LookAlike>& alike,
-                                         const std::vector<const Finding*>& near) {
+                                         const std::vector<NearRival>& near) {
   std::vector<std::string> sentences;
   if (!alike.empty() || near.empty()) sentences.push_back(rivals_note(effect, alike));
   if (near.empty()) return sentences;
   std::vector<std::string> names;
   names.reserve(near.size());
-  for (const Finding* one : near) {
-    names.push_back(fmt::format("{} ({:.1f} mm)", name_in_words(one->effect),
-                                kMillimetres * one->held_out.arrival_rms));
+  for (const NearRival& one : near) {
+    names.push_back(fmt::format("{} ({:.1f} mm; chi\u00b2 {:.0f} behind)",
+                                name_in_words(one.finding->effect),
+                                kMillimetres * one.finding->held_out.arrival_rms, one.behind));
   }
   sentences.push_back(fmt::format(
       "Within a millimetre of {} on held-out legs: {}. All measurements together speak for {}.",

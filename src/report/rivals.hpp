@@ -12,16 +12,20 @@
 
 namespace trussmap {
 
+struct NearRival {
+  const Finding* finding = nullptr;
+  double behind = 0.0;  ///< chi^2 by which it explains less
+};
+
 /// Findings beside `first` that held-out legs cannot tell from it: predicted to leave the same
 /// error, to within a millimetre, and at least half of what `first` gains. Neither its look-alikes
 /// nor what is missing besides; of several forms of one effect the first.
-[[nodiscard]] std::vector<const Finding*> near_rivals(const Diagnosis& diagnosis,
-                                                      const Finding& first);
+[[nodiscard]] std::vector<NearRival> near_rivals(const Diagnosis& diagnosis, const Finding& first);
 
 /// What of both kinds there is, or that there is none.
 [[nodiscard]] std::vector<std::string> rival_sentences(const Effect& effect,
                                                        const std::vector<LookAlike>& alike,
-                                                       const std::vector<const Finding*>& near);
+                                                       const std::vector<NearRival>& near);
 
 /// "hard iron (±2.9°), or body tilt, or cross-slope creep; and wheelbase (3 %)": every effect with
 /// those that these recordings cannot tell from it. Those that are hardly seen beside the first are

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "effects/place.hpp"
+#include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
@@ -236,6 +237,20 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
     if (effect.per_session) text += fmt::format(" in session {}", k / effect.shape.size());
   }
   return text;
+}
+
+std::string held_in_words(const Effect& effect) {
+  const CatalogueEntry* entry = find_entry(effect.name);
+  if (entry == nullptr || !entry->has_parameters()) return "";
+  std::string names;
+  for (const OpenParameter& one : entry->parameters) {
+    names += (names.empty() ? "" : ", ") + std::string(one.name);
+  }
+  return fmt::format(
+      "{} {} held as the model has {}, and the standard errors are for that: trussmap discover "
+      "seeks {} anew",
+      names, entry->parameters.size() == 1 ? "is" : "are",
+      entry->parameters.size() == 1 ? "it" : "them", entry->parameters.size() == 1 ? "it" : "them");
 }
 
 }  // namespace trussmap

@@ -7,6 +7,8 @@
 #include "criticism/score_test.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/discover.hpp"
+#include "trussmap/evidence.hpp"
+#include "trussmap/prepared_recordings.hpp"
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/workbench.hpp"
 
@@ -71,6 +73,46 @@ TEST(KnownCauses, LeaveAFormAloneThatIsTheOnlyCause) {
   const SimulatedRecording one = toured(12, {left_with_speed_squared(0.02)});
   const Diagnosis result = diagnose({one.drive.recording}, one.model);
   EXPECT_EQ(missing_in(result), std::vector<std::string>{"left with speed squared"});
+}
+
+TEST(LargeEffects, AtAPlaceLeaveNeitherWrongSightingsNorNoiseThatLasts) {
+  const Effect anomaly = sized(catalogue_effect("local magnetic anomaly (x=-1, y=19, r=4)"), -0.14);
+  const Effect asymmetry = sized(catalogue_effect("turn asymmetry"), -0.0134);
+  const SimulatedRecording one = toured(21, {anomaly, asymmetry});
+  DiagnoseOptions options;
+  options.fit = gated_fit();
+  const Diagnosis result = diagnose({one.drive.recording}, one.model, options);
+  const std::vector<const Finding*> found = found_by(result);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0]->effect.name.rfind("local magnetic anomaly (x=", 0), 0U);
+  EXPECT_EQ(found[1]->effect.name, "turn asymmetry");
+  EXPECT_NEAR(found[0]->joint.at(0), -0.14, 4.0 * found[0]->joint_sd.at(0));
+  EXPECT_NEAR(found[1]->joint.at(0), -0.0134, 4.0 * found[1]->joint_sd.at(0));
+  EXPECT_GT(found[0]->widened.at(0), 1.2);  // its place was sought
+  // Sightings in the ring contradict the model given, and nothing with what is missing.
+  ASSERT_TRUE(result.under);
+  ASSERT_FALSE(result.under->fit.left_out.empty());
+  EXPECT_FALSE(result.under->noise.changed());
+  for (const EventTest& event : result.events) EXPECT_GT(event.p_adjusted, 0.001) << event.name;
+  for (const NoiseTest& law : result.noise) EXPECT_GT(law.p_adjusted, 0.001) << law.law;
+  ASSERT_EQ(result.warnings.size(), 1U) << ::testing::PrintToString(result.warnings);
+  EXPECT_NE(result.warnings[0].find("with what is missing added all of them fit"),
+            std::string::npos);
+}
+
+TEST(LargeEffects, AtAPlaceAreTheTrendThatIsShownFirst) {
+  const SimulatedRecording one =
+      toured(22, {sized(catalogue_effect("local magnetic anomaly (x=12, y=12, r=4)"), -0.1)});
+  const ModelFit fit = fit_model({one.drive.recording}, one.model);
+  const ComparisonEvidence evidence = evidence_of(fit, compare({one.drive.recording}, fit));
+  ASSERT_FALSE(evidence.trends.empty());
+  const Response& response = evidence.trends.front().response;
+  EXPECT_EQ(response.variable, kPlace);
+  EXPECT_EQ(response.channel, Channel::compass);
+  // Near the place the compass reads too little, far off it is right.
+  EXPECT_LT(response.bins.front().estimate, -4.0 * response.bins.front().sd);
+  EXPECT_LT(std::abs(response.bins.back().estimate), 0.02);
+  EXPECT_TRUE(response.curve.empty());
 }
 
 TEST(LargeEffects, ThatAreTheSameToFirstOrderAreToldApartByTheirFits) {

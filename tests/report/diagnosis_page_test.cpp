@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "report/large_pages.hpp"
+#include "trussmap/texts.hpp"
 
 #include <string>
 #include <vector>
@@ -41,6 +42,29 @@ TEST(DiagnosisPage, SaysHowLargeEachOfSeveralEffectsIs) {
   ASSERT_EQ(sizes.size(), 2U);
   EXPECT_NE(sizes[1].find("2.865 \u00b1 0.057\u00b0"), std::string::npos) << sizes[1];
   EXPECT_EQ(sizes[1].find("hardly seen"), std::string::npos) << sizes[1];
+}
+
+TEST(DiagnosisText, SaysWhatShowsOnlyBesideTheFirst) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Diagnosis::Verdict::missing;
+  diagnosis.missing = "hard iron";
+  for (const char* name : {"hard iron", "turn asymmetry", "slope"}) {
+    Finding one;
+    one.effect = {name, Channel::turn, {"1"}, {0.1}};
+    one.joint = {0.1};
+    one.joint_sd = {0.01};
+    one.status = diagnosis.findings.size() < 2 ? Status::missing : Status::cannot_tell;
+    one.p_adjusted = diagnosis.findings.empty() ? 1e-9 : 0.9;
+    diagnosis.findings.push_back(one);
+  }
+  const std::string text = diagnosis_text(diagnosis, {}, 8);
+  const auto row = [&text](const std::string& name) {
+    const std::size_t at = text.find("\n  " + name, text.find("best candidates")) + 1;
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(row("hard iron").find("with the above"), std::string::npos) << text;
+  EXPECT_NE(row("turn asymmetry").find("with the above"), std::string::npos) << text;
+  EXPECT_NE(row("slope").find("0.90"), std::string::npos) << text;
 }
 
 TEST(DiagnosisPage, SaysWhatTheOtherEffectsMakeSuperfluous) {

@@ -181,9 +181,12 @@ TEST(ResultRows, NothingElseIsNotSaidAboveRivalsWithinAMillimetre) {
   one.diagnosis.findings.push_back(finding("turn scrub", Channel::turn, "abs(turn_rate)", 0.0208));
   one.diagnosis.findings.push_back(finding("spin loss", Channel::turn, "spin_angle", 0.0193));
   one.diagnosis.findings.push_back(finding("slope", Channel::travel, "heading", 0.0215));
+  one.diagnosis.findings[0].score = 100.0;
+  one.diagnosis.findings[1].score = 88.0;
+  one.diagnosis.findings[2].score = 70.0;
   const std::string otherwise = answers_to(one.page(), "What else could it be?");
-  EXPECT_TRUE(says(otherwise, "turn scrub (20.8 mm)")) << otherwise;
-  EXPECT_TRUE(says(otherwise, "spin loss (19.3 mm)")) << otherwise;
+  EXPECT_TRUE(says(otherwise, "turn scrub (20.8 mm; chi\u00b2 12 behind)")) << otherwise;
+  EXPECT_TRUE(says(otherwise, "spin loss (19.3 mm; chi\u00b2 30 behind)")) << otherwise;
   EXPECT_FALSE(says(otherwise, "slope")) << otherwise;
   EXPECT_FALSE(says(otherwise, "Nothing else")) << otherwise;
   const std::string alone = answers_to(wheelbase_missing().page(), "What else could it be?");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "effects/place.hpp"
 #include "trussmap/catalogue.hpp"
+#include "trussmap/evidence.hpp"
 #include "trussmap/wording.hpp"
 
 #include <gtest/gtest.h>
@@ -20,6 +21,25 @@ TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {
   patch.per_session = true;
   EXPECT_FALSE(place_of(patch));
   EXPECT_FALSE(place_of(catalogue_effect("slope")));
+}
+
+TEST(EffectWords, AFitSaysWhatItHolds) {
+  EXPECT_EQ(
+      held_in_words(catalogue_effect("slippery patch (x=12, y=9, r=3)")),
+      "x, y, r are held as the model has them, and the standard errors are for that: trussmap "
+      "discover seeks them anew");
+  EXPECT_EQ(held_in_words(catalogue_effect("missed ticks (v0=0.4)")).rfind("v0 is held", 0), 0U);
+  EXPECT_EQ(held_in_words(catalogue_effect("hard iron")), "");
+}
+
+TEST(ResponseWords, AxesShowWhatAPersonReads) {
+  const ResponseAxes compass = axes_of({Channel::compass, "rad", "heading", {}, {}, {}});
+  EXPECT_EQ(compass.variable, "heading [\u00b0]");
+  EXPECT_EQ(compass.error, "compass reads too much by [\u00b0]");
+  EXPECT_NEAR(compass.error_factor, 57.29578, 1e-5);
+  const ResponseAxes turn = axes_of({Channel::turn, "", kPlace, {}, {}, {}});
+  EXPECT_EQ(turn.variable, "distance from its place [m]");
+  EXPECT_EQ(turn.error_factor, 100.0);
 }
 
 TEST(EffectWords, NamesSayWhatIsOpenInThem) {
