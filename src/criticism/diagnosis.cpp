@@ -335,8 +335,8 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
     RemainingErrors rest = remaining_errors(recordings, under->fit, asked_of, missing);
     run.result.events = std::move(rest.events);
     run.result.noise = std::move(rest.noise);
-    tell_of_left_out(run.result, rest.left_out);
-    answered = answered || rest.p_value > kExplains;
+    if (rest.fitted) tell_of_left_out(run.result, rest.left_out);
+    answered = answered || (rest.fitted && rest.p_value > kExplains);
   } else if (under->noise.changed()) {
     run.result.noise = noise_beyond(recordings, under->fit, stated);
   }

@@ -56,8 +56,9 @@ RemainingErrors remaining_errors(const std::vector<Recording>& recordings, const
                                  const Noise& stated, const std::vector<Effect>& missing) {
   RemainingErrors result;
   const Asked asked = with_effects(recordings, fit, missing);
+  result.fitted = asked.beside.empty();
   result.left_out = asked.fit.left_out.size();
-  if (asked.beside.empty()) result.p_value = asked.fit.p_value;
+  result.p_value = asked.fit.p_value;
   const ScoreTest tests(*asked.fit.state);
   const Eigen::MatrixXd nuisance = asked.nuisance(tests);
   std::vector<TestedEvent> events = test_events(*asked.fit.state, tests, nuisance);

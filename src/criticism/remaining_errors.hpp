@@ -16,8 +16,9 @@ namespace trussmap {
 struct RemainingErrors {
   std::vector<EventTest> events;  ///< likeliest first
   std::vector<NoiseTest> noise;   ///< beyond what is stated, best explanation first
+  bool fitted = false;            ///< what is missing could be: only then are there
   std::size_t left_out = 0;       ///< measurements that the gate still leaves out
-  double p_value = 0.0;           ///< of chi^2 with what is missing in the model; 0: not fitted
+  double p_value = 0.0;           ///< of chi^2
 };
 
 /// `fit` lacks `missing`, whose places and thresholds are known; `stated`: the noise that the
