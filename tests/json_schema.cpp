@@ -3,6 +3,7 @@
 #include "json_schema.hpp"
 
 #include "json_file.hpp"
+#include "text/number_text.hpp"
 
 #include <algorithm>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -80,14 +81,14 @@ void find_undescribed(const json& value, const json& schema, const std::string& 
   const std::vector<json> schemas = with_parts(schema);
   const auto first_with = [&schemas](const auto& of) {
     for (const json& one : schemas) {
-      if (const json part = of(one); !part.is_null()) return part;
+      if (json part = of(one); !part.is_null()) return part;
     }
     return json();
   };
   if (value.is_array()) {
     const json items = first_with([](const json& one) { return one.value("items", json()); });
     for (std::size_t k = 0; k < value.size() && !items.is_null(); ++k) {
-      find_undescribed(value[k], items, at + "/" + std::to_string(k), found);
+      find_undescribed(value[k], items, joined(at, "/", k), found);
     }
   }
   if (!value.is_object()) return;
@@ -97,9 +98,9 @@ void find_undescribed(const json& value, const json& schema, const std::string& 
           .value(key, one.value("additionalProperties", json()));
     });
     if (member.is_null())
-      found.push_back(at + "/" + key + " is not in the schema");
+      found.push_back(joined(at, "/", key, " is not in the schema"));
     else
-      find_undescribed(each, member, at + "/" + key, found);
+      find_undescribed(each, member, joined(at, "/", key), found);
   }
 }
 

@@ -21,8 +21,7 @@ bool has_variable(const Effect& effect, std::string_view name) {
 std::set<std::string> variables_of(const Effect& effect) {
   std::set<std::string> all;
   for (const Shape& shape : effect.shape) {
-    const auto names = shape.variables();
-    all.insert(names.begin(), names.end());
+    all.insert(shape.variables().begin(), shape.variables().end());
   }
   return all;
 }
