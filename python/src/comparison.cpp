@@ -143,6 +143,8 @@ void add_comparison(py::module_& module) {
                                     "A model set against recordings: is it consistent, where does "
                                     "it fail?");
   show(type, text, page);
+  show_responses(type, evidence,
+                 "Errors against what they go with most, the most telling first: bins and curves.");
   type.def_property_readonly(
           "verdict",
           [](const ComparisonResult& self) { return std::string(verdict_of(self.found)); },
@@ -166,14 +168,6 @@ void add_comparison(py::module_& module) {
       .def_property_readonly("worst_landmarks", list<&Comparison::worst_landmarks>,
                              "The worst first.")
       .def_property_readonly("trends", list<&Comparison::trends>, doc("Comparison.trends"))
-      .def_property_readonly(
-          "responses",
-          [](const ComparisonResult& self) {
-            const ComparisonEvidence& drawn =
-                unlocked([&]() -> const ComparisonEvidence& { return evidence(self); });
-            return responses({}, drawn.trends);
-          },
-          "Errors against what they go with most, the most telling first: bins and curves.")
       .def_property_readonly("sources", list<&Comparison::sources>,
                              "How noisy each source is, against what is stated.")
       .def_property_readonly("outliers", list<&Comparison::outliers>, doc("Comparison.outliers"))

@@ -180,6 +180,11 @@ void add_diagnosis(py::module_& module) {
   add_rows(module);
   py::class_<DiagnosisResult> type(module, "Diagnosis", "Which physical effect is missing?");
   show(type, text, page);
+  show_responses(
+      type, evidence,
+      "What these recordings show of each effect that is missing, then errors against what "
+      "they "
+      "go with most: bins and curves.");
   type.def_property_readonly(
           "verdict",
           [](const DiagnosisResult& self) { return std::string(verdict_of(self.found)); },
@@ -215,16 +220,6 @@ void add_diagnosis(py::module_& module) {
       .def_property_readonly(
           "noise_budget", [](const DiagnosisResult& self) { return budget_rows(self.budget); },
           "What dead reckoning owes to each source of noise, a dict per horizon [s; 0: a leg].")
-      .def_property_readonly(
-          "responses",
-          [](const DiagnosisResult& self) {
-            const DiagnosisEvidence& drawn =
-                unlocked([&]() -> const DiagnosisEvidence& { return evidence(self); });
-            return responses(drawn.effects, drawn.trends);
-          },
-          "What these recordings show of each effect that is missing, then errors against what "
-          "they "
-          "go with most: bins and curves.")
       .def_property_readonly("warnings", get<&Diagnosis::warnings>, "In words.")
       .def_property_readonly(
           "notes", [](const DiagnosisResult& self) { return self.input.notes; },

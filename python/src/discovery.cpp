@@ -150,6 +150,10 @@ void add_discovery(py::module_& module) {
                                    "Effects diagnosed, added and fitted for as long as that is "
                                    "justified.");
   show(type, text, page);
+  show_responses(
+      type, evidence,
+      "What these recordings show of each effect found, then errors against what they still go "
+      "with most: bins and curves.");
   type.def_property_readonly(
           "verdict",
           [](const DiscoveryResult& self) { return std::string(verdict_of(self.found)); },
@@ -168,15 +172,6 @@ void add_discovery(py::module_& module) {
           "steps",
           [](const DiscoveryResult& self) { return py::tuple(py::cast(self.found.steps)); },
           doc("Discovery.steps"))
-      .def_property_readonly(
-          "responses",
-          [](const DiscoveryResult& self) {
-            const DiscoveryEvidence& drawn =
-                unlocked([&]() -> const DiscoveryEvidence& { return evidence(self); });
-            return responses(drawn.effects, drawn.trends);
-          },
-          "What these recordings show of each effect found, then errors against what they still go "
-          "with most: bins and curves.")
       .def_property_readonly(
           "first",
           [](const DiscoveryResult& self) {

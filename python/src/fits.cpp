@@ -209,6 +209,7 @@ void add_fits(py::module_& module) {
   py::class_<FitResult> type(module, "Fit",
                              "A model's effects fitted, beside the model without them.");
   show(type, text, page);
+  show_responses(type, evidence, "What these recordings show of each effect: bins and curves.");
   type.def_property_readonly(
           "model", [](const FitResult& self) { return self.gain.with.model; },
           doc("ModelFit.model"))
@@ -251,14 +252,6 @@ void add_fits(py::module_& module) {
             return self.noise ? py::object(noise_rows(*self.noise)) : py::none();
           },
           "What was found of each source of noise; None where it was not estimated.")
-      .def_property_readonly(
-          "responses",
-          [](const FitResult& self) {
-            const FitEvidence& drawn =
-                unlocked([&]() -> const FitEvidence& { return evidence(self); });
-            return responses(drawn.effects, {});
-          },
-          "What these recordings show of each effect: bins and curves.")
       .def_property_readonly(
           "left_out", [](const FitResult& self) { return self.gain.with.left_out; },
           doc("ModelFit.left_out"))

@@ -4,6 +4,7 @@
 
 #include "criticism/candidates.hpp"
 #include "criticism/effect_or_process.hpp"
+#include "criticism/refits.hpp"
 #include "fit/process_columns.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/distributions.hpp"
@@ -230,11 +231,9 @@ class Defence {
 Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
                                 const std::vector<Effect>& effects, const DefenceOptions& options) {
   Defended result;
-  Model model = found.fit.model;
-  model.effects.insert(model.effects.end(), effects.begin(), effects.end());
   std::optional<ModelFit> with;
   try {
-    with = refit(recordings, model, found.fit);
+    with = refit_with(recordings, found.fit, effects);
   } catch (const SolveError&) {  // nobody knows then
     result.effects.assign(effects.size(), true);
     return result;
@@ -245,9 +244,7 @@ Defended defended_against_noise(const std::vector<Recording>& recordings, const 
     return result;
   }
   FitWithNoise otherwise{found.fit, defence.likeliest_noise()};
-  model = found.fit.model;
-  model.noise = otherwise.noise.noise;
-  otherwise.fit = refit(recordings, model, found.fit);
+  otherwise.fit = refit_under(recordings, found.fit, otherwise.noise.noise);
   result.otherwise = std::move(otherwise);
   return result;
 }

@@ -3,6 +3,7 @@
 #include "criticism/noise_beside.hpp"
 
 #include "criticism/candidates.hpp"
+#include "criticism/refits.hpp"
 #include "criticism/tested_candidate.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/error.hpp"
@@ -66,10 +67,8 @@ std::vector<Effect> suspects(const FitState& fit) {
 ModelFit with_suspects(const std::vector<Recording>& recordings, const ModelFit& fit) {
   std::vector<Effect> found = suspects(*fit.state);
   for (; !found.empty(); found.pop_back()) {
-    Model model = fit.model;
-    model.effects.insert(model.effects.end(), found.begin(), found.end());
     try {
-      return refit(recordings, model, fit);
+      return refit_with(recordings, fit, found);
     } catch (const SolveError&) {
       continue;
     }
@@ -100,9 +99,7 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
     result.noise = std::move(next);
     gain = result.noise.gain;
     if (result.noise.noise == result.fit.model.noise) break;
-    Model model = result.fit.model;
-    model.noise = result.noise.noise;
-    result.fit = refit(recordings, model, result.fit);
+    result.fit = refit_under(recordings, result.fit, result.noise.noise);
     if (!result.noise.changed()) break;
   }
   return result;
@@ -117,19 +114,16 @@ std::optional<FitWithNoise> with_noise_beside_found(const std::vector<Recording>
                        [](const Shape& shape) { return !shape.parameters().empty(); });
   });
   if (!sought || !under.noise.changed()) return std::nullopt;
-  Model model = under.fit.model;
-  model.effects.insert(model.effects.end(), found.begin(), found.end());
   NoiseFitOptions options;
   options.errors = false;
   try {
-    const ModelFit beside = refit(recordings, model, under.fit);
+    const ModelFit beside = refit_with(recordings, under.fit, found);
     NoiseReml reml(*beside.state, stated);
     FittedNoise noise = fit_noise(reml, {}, options);
     if (noise.noise == under.noise.noise) return std::nullopt;
     noise.tried = std::max(noise.tried, under.noise.tried);
-    model = under.fit.model;
-    model.noise = noise.noise;
-    return FitWithNoise{refit(recordings, model, under.fit), std::move(noise)};
+    ModelFit fit = refit_under(recordings, under.fit, noise.noise);
+    return FitWithNoise{std::move(fit), std::move(noise)};
   } catch (const SolveError&) {  // together they cannot be fitted
     return std::nullopt;
   }

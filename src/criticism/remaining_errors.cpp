@@ -4,6 +4,7 @@
 
 #include "criticism/event_tests.hpp"
 #include "criticism/noise_tests.hpp"
+#include "criticism/refits.hpp"
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
@@ -29,10 +30,8 @@ struct Asked {
 
 Asked with_effects(const std::vector<Recording>& recordings, const ModelFit& fit,
                    const std::vector<Effect>& missing) {
-  Model model = fit.model;
-  model.effects.insert(model.effects.end(), missing.begin(), missing.end());
   try {
-    return {refit(recordings, model, fit), {}};
+    return {refit_with(recordings, fit, missing), {}};
   } catch (const SolveError&) {
     return {fit, missing};
   }
@@ -44,9 +43,7 @@ std::vector<NoiseTest> laws_of(const Asked& asked) {
 }
 
 Asked with_noise_as(const std::vector<Recording>& recordings, const Noise& stated, Asked asked) {
-  Model model = asked.fit.model;
-  model.noise = stated;
-  asked.fit = refit(recordings, model, asked.fit);
+  asked.fit = refit_under(recordings, asked.fit, stated);
   return asked;
 }
 

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/refits.hpp"
+
+#include "fit/fit_state.hpp"
+
+namespace trussmap {
+
+ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fit,
+                    const std::vector<Effect>& effects) {
+  Model model = fit.model;
+  model.effects.insert(model.effects.end(), effects.begin(), effects.end());
+  return refit(recordings, model, fit);
+}
+
+ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,
+                     const Noise& noise) {
+  Model model = fit.model;
+  model.noise = noise;
+  return refit(recordings, model, fit);
+}
+
+}  // namespace trussmap

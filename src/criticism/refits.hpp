@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A fit, done again with something else believed. All throw as refit does.
+#pragma once
+
+#include "trussmap/fit_model.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// With these effects in the model, after its own.
+[[nodiscard]] ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                  const std::vector<Effect>& effects);
+
+/// With this noise.
+[[nodiscard]] ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                   const Noise& noise);
+
+}  // namespace trussmap
