@@ -74,6 +74,21 @@ nlohmann::ordered_json positions_json(const LandmarkGraph& map) {
   return positions;
 }
 
+/// Errors after each tour, after the best rotation and translation of the map as it then was.
+json tours_json(const std::vector<TourErrors>& tours) {
+  json list = json::array();
+  for (const TourErrors& one : tours) {
+    json tour = {{"tour", list.size() + 1},
+                 {"stretch_error", one.errors.stretch},
+                 {"orientation_error_rad", one.errors.orientation},
+                 {"routes", one.errors.routes},
+                 {"complete", one.complete}};
+    if (one.errors.position) tour["position_error_m"] = *one.errors.position;
+    list.push_back(std::move(tour));
+  }
+  return list;
+}
+
 nlohmann::ordered_json build_json(const BuiltMap& built, const std::string& method) {
   json rejected = json::array();
   for (const RejectedSighting& one : built.rejected) {
@@ -102,6 +117,8 @@ nlohmann::ordered_json build_json(const BuiltMap& built, const std::string& meth
                  {"p_value", built.fit.p_value},
                  {"iterations", built.fit.iterations},
                  {"converged", built.fit.converged}};
+  if (built.method != Method::adjustment) result["relaxed"] = built.relaxed;
+  if (!built.tours.empty()) result["tours"] = tours_json(built.tours);
   if (built.on_survey) result["survey"] = survey_json(*built.on_survey);
   if (!built.paths.empty()) result["paths"] = paths_json(built.paths);
   return result;

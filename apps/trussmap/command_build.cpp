@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "progress.hpp"
 #include "recording_warnings.hpp"
+#include "scope_options.hpp"
 #include "store_sessions.hpp"
 #include "terminal.hpp"
 #include "trussmap/build_map.hpp"
@@ -42,7 +43,8 @@ struct BuildOptions {
   std::string model;
   std::string store;
   std::optional<std::string> method;
-  std::optional<std::string> eta;
+  ScopeOptions scope;
+  bool relax = false;
   double min_drive = kDefaultMinDrive;  // m
   std::optional<double> gate;           // standard deviations; none: the method's own
   std::string out;
@@ -62,8 +64,9 @@ Method method_of(const std::string& option) {
 BuildMapOptions map_options(const BuildOptions& options) {
   BuildMapOptions result;
   result.method = method_of(options.method.value_or(kDefaultMethod));
-  result.eta = parse_eta(options.eta.value_or("50"));
-  result.eta.hold_first = false;
+  result.scope = options.scope.scope();
+  result.law = options.scope.stiffness_law();
+  result.relax = options.relax;
   result.min_drive = options.min_drive;
   result.gate = options.gate;
   return result;
@@ -103,7 +106,7 @@ void run_store(const BuildOptions& options) {
   StoreSessions how{options.recordings, options.model, options.store};
   how.build = map_options(options);
   if (options.method) how.method = how.build.method;
-  if (options.eta) how.eta = how.build.eta;
+  how.scope_given = options.scope.given();
   how.out = options.out;
   how.csv = options.csv;
   how.json_file = options.json_file;
@@ -205,12 +208,9 @@ void setup_build(const Command& app) {
       .type_name("FILE");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
-  command
-      .add_option("--eta", options->eta,
-                  "How many landmarks a refinement of the elastic methods may move: a number (50 "
-                  "by default), all, or auto")
-      .type_name("N|all|auto")
-      .check(eta_text());
+  add_scope_options(command, options->scope);
+  command.add_flag("--relax", options->relax,
+                   "Leg by leg: at the end, let the whole come to equilibrium");
   command
       .add_option("--min-drive", options->min_drive,
                   "Shortest driven path between a leg's ends [m]")

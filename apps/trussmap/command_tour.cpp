@@ -6,11 +6,15 @@
 #include "option_checks.hpp"
 #include "page_runtime.hpp"
 #include "progress.hpp"
+#include "scope_options.hpp"
 #include "team.hpp"
 #include "tour_shards.hpp"
+#include "trussmap/map_files.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -32,8 +36,14 @@ struct CommandOptions {
   int seeds = 20;
   std::uint64_t first_seed = 1;
   double odometry_error = 0.05;
-  double compass_error = 0.03;  // rad
-  std::string eta = "all";
+  double compass_error = 0.03;   // rad
+  std::optional<double> wheels;  // k of both, m^(1/2)
+  double wheelbase = 0.34;       // m
+  bool no_compass = false;
+  std::string readings;
+  ScopeOptions scope;
+  std::string maps;
+  std::vector<double> maps_after{1, 5, 50};
   std::string json_file;
   PageOptions page;
   std::string shard;  ///< "3/16", "" for the whole run
@@ -57,6 +67,12 @@ Shard shard_of(const CommandOptions& options) {
 
 TourOptions experiment_options(const CommandOptions& options) {
   TourOptions result;
+  if (!options.wheels && (options.no_compass || !options.readings.empty())) {
+    throw UsageError("--no-compass and --readings are of robots on wheels: give --wheels K, too");
+  }
+  if (options.no_compass && !options.readings.empty()) {
+    throw UsageError("--no-compass and --readings contradict each other");
+  }
   if (options.x_lines.empty() != options.y_lines.empty()) {
     throw UsageError("--x-lines and --y-lines are given both or not at all");
   }
@@ -73,7 +89,15 @@ TourOptions experiment_options(const CommandOptions& options) {
   result.first_seed = options.first_seed;
   result.odometry_error = options.odometry_error;
   result.compass_error = options.compass_error;
-  result.eta = parse_eta(options.eta);
+  result.scope = options.scope.scope();
+  result.law = options.scope.stiffness_law();
+  if (options.wheels) {
+    result.wheels = TourWheels{*options.wheels, options.wheelbase, CompassReadings::landmark};
+    if (!options.readings.empty()) {
+      result.wheels->readings = parse_compass_readings(options.readings);
+    }
+    if (options.no_compass) result.wheels->readings = CompassReadings::none;
+  }
   return result;
 }
 
@@ -91,14 +115,38 @@ class SeedProgress {
   Progress progress_{{{"seeds"}}};
 };
 
+std::string wheels_in_words(const CommandOptions& options) {
+  if (!options.wheels) return "";
+  return fmt::format(
+      ", wheels {:g} m^1/2, {}", *options.wheels,
+      options.no_compass
+          ? "no compass"
+          : "compass read once per " + (options.readings.empty() ? "landmark" : options.readings));
+}
+
+/// Maps of the first seed, as GraphML.
+std::function<void(const std::string&, int, const LandmarkGraph&)> map_writer(
+    const CommandOptions& options) {
+  if (options.maps.empty()) return nullptr;
+  std::filesystem::create_directories(options.maps);
+  return [&options](const std::string& method, int tour, const LandmarkGraph& map) {
+    if (std::ranges::count(options.maps_after, tour) == 0) return;
+    const std::string name = fmt::format("{}/{}_{}.graphml", options.maps, method, tour);
+    write_file(name,
+               format_map(map, name,
+                          fmt::format("trussmap tour, method {}, after tour {}", method, tour)));
+  };
+}
+
 /// Trials of a share, of which this process of a team does its own.
 ShardResults run_share(const CommandOptions& options, const Shard& shard, const Team& team) {
   TourOptions experiment = experiment_options(options);
   const std::string world = options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
-  const std::string settings =
-      tour_settings(experiment, fmt::format("{}, walk {}", world, options.walk));
+  const std::string settings = tour_settings(
+      experiment, fmt::format("{}, walk {}{}", world, options.walk, wheels_in_words(options)));
   const Shard mine{shard.number + shard.of * team.rank(), shard.of * team.count()};
   const auto seeds = static_cast<std::size_t>(options.seeds) / static_cast<std::size_t>(mine.of);
+  if (team.rank() == 0) experiment.maps = map_writer(options);
   std::optional<SeedProgress> progress;
   if (team.rank() == 0) progress.emplace(experiment, std::max<std::size_t>(seeds, 1));
   ShardResults results = run_tour_shard(experiment, settings, mine);
@@ -116,7 +164,7 @@ void run_tour(const CommandOptions& options) {
     return;
   }
   if (options.shard.empty()) {
-    show_tour_run(results, {"", 0, options.json_file, options.page});
+    show_tour_run(results, {"", 0, false, options.json_file, options.page});
     return;
   }
   write_file(options.out, format_shard(results));
@@ -142,6 +190,24 @@ void add_world(const Command& command, CommandOptions& options) {
   command.add_option("--walk", options.walk, "How a tour covers the routes; drawn anew each tour")
       .check(one_of({"euler", "face", "depth-first", "random"}))
       .capture_default_str();
+}
+
+void add_wheels(const Command& command, CommandOptions& options) {
+  command
+      .add_option("--wheels", options.wheels,
+                  "Measure by simulated wheels of this noise [m^1/2], covariances by the odometry "
+                  "model, in place of --odometry-error")
+      .type_name("K")
+      .check(above_zero());
+  command.add_option("--wheelbase", options.wheelbase, "With --wheels: their distance [m]")
+      .check(above_zero())
+      .capture_default_str();
+  command.add_flag("--no-compass", options.no_compass, "With --wheels: the robot has no compass");
+  command
+      .add_option("--readings", options.readings,
+                  "With --wheels: when it reads the compass: once per tour, at each landmark (the "
+                  "default) or in each row")
+      .check(one_of({"tour", "landmark", "row"}));
 }
 
 }  // namespace
@@ -170,11 +236,15 @@ void setup_tour(const Command& app) {
                   "Mean absolute error of a route's orientation [rad]")
       .check(above_zero())
       .capture_default_str();
+  add_wheels(command, *options);
+  add_scope_options(command, options->scope);
   command
-      .add_option("--eta", options->eta,
-                  "Landmarks a refinement may move: a number, all, or auto (estimated each time)")
-      .type_name("N|all|auto")
-      .check(eta_text())
+      .add_option("--maps", options->maps,
+                  "Write the first seed's maps by every method into this folder (GraphML)")
+      .type_name("DIR");
+  command.add_option("--maps-after", options->maps_after, "After which tours")
+      .type_name("N,N...")
+      .delimiter(',')
       .capture_default_str();
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
   add_html_option(command, options->page);

@@ -95,23 +95,12 @@ Check whole_number(std::uint64_t least) {
 
 Check eta_text() {
   return {[](const std::string& text) {
-            return text == "all" || text == "auto" || is_whole_number(text, 2)
+            return text == "all" || text == "auto" || text == "estimated" ||
+                           is_whole_number(text, 2)
                        ? ""
-                       : "'" + text + "' is no whole number from 2, all or auto";
+                       : "'" + text + "' is no whole number from 2, all, estimated or auto";
           },
           ""};
-}
-
-Eta parse_eta(const std::string& text) {
-  Eta eta;
-  if (text == "all") {
-    eta.kind = Eta::Kind::all;
-  } else if (text == "auto") {
-    eta.kind = Eta::Kind::estimated;
-  } else {
-    eta.count = std::stoi(text);
-  }
-  return eta;
 }
 
 }  // namespace trussmap::app

@@ -35,10 +35,7 @@ struct StretchOfTime {
 /// What stretch_of_time() let through.
 [[nodiscard]] StretchOfTime parse_stretch(const std::string& text);
 
-/// A number of landmarks from 2 on, "all" or "auto".
+/// A number of landmarks from 2 on, "all", "estimated" or "auto".
 [[nodiscard]] Check eta_text();
-
-/// What eta_text() let through.
-[[nodiscard]] Eta parse_eta(const std::string& text);
 
 }  // namespace trussmap::app

@@ -42,14 +42,15 @@ MapStore opened(const StoreSessions& options) {
   }
   MapBuilderOptions fresh;
   fresh.method = options.method.value_or(Method::gauss_markov);
-  fresh.eta = options.build.eta;
+  fresh.scope = options.build.scope;
+  fresh.law = options.build.law;
   std::optional<MapBuilderOptions> given;
-  if (options.method || options.eta) given = fresh;
+  if (options.method || options.scope_given) given = fresh;
   try {
     return MapStore(options.store, given, fresh);
   } catch (const std::invalid_argument&) {
     throw UsageError(
-        fmt::format("{0} keeps the method and the kind of eta that it was made with: "
+        fmt::format("{0} keeps the method and the law that it was made with: "
                     "{1}, expected --method {1} or none",
                     options.store, option_of(read_map_store(options.store).method)));
   }

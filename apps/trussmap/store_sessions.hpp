@@ -17,7 +17,7 @@ struct StoreSessions {
   std::string model;
   std::string store;
   std::optional<Method> method = {};  ///< where given
-  std::optional<Eta> eta = {};        ///< where given
+  bool scope_given = false;           ///< that of `build`, its law included
   BuildMapOptions build = {};
   std::string out = {};
   std::string csv = {};

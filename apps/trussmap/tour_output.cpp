@@ -26,14 +26,15 @@ json metrics_json(const TourMetrics& metrics) {
   return result;
 }
 
-json result_json(const TourResult& result) {
+json result_json(const TourResult& result, bool aligned) {
   json tours = json::array();
   for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
     json methods;
     for (const auto& [name, metrics] : result.tours[tour]) methods[name] = metrics_json(metrics);
     tours.push_back({{"tour", tour + 1}, {"methods", methods}});
   }
-  return {{"tours", tours},
+  return {{"aligned", aligned},
+          {"tours", tours},
           {"first_sight",
            {{"before", metrics_json(result.first_sight_before)},
             {"after", metrics_json(result.first_sight_after)}}}};
@@ -72,7 +73,7 @@ void print_block(const TourResult& result, const char* title, int digits, const 
 void show_tours(const TourResult& result, const TourOutput& output) {
   Files files;
   if (!output.json_file.empty()) {
-    files.emplace_back(output.json_file, result_json(result).dump(2) + "\n");
+    files.emplace_back(output.json_file, result_json(result, output.aligned).dump(2) + "\n");
   }
   if (output.page.wanted()) {
     add_page(files, tour_page(result, output.seeds, output.world), output.page);
@@ -93,8 +94,12 @@ void show_tours(const TourResult& result, const TourOutput& output) {
               [](const TourMetrics& f) { return std::optional<SeedMean>(f.stretch_error); });
   print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,
               [](const TourMetrics& f) { return std::optional<SeedMean>(f.orientation_error); });
-  print_block(result, "position error, mean distance of the landmarks from the truth [m]", 3,
-              [](const TourMetrics& f) { return f.position_error; });
+  print_block(result,
+              output.aligned
+                  ? "position error, mean distance of the landmarks from the truth after the best "
+                    "rotation and translation [m]"
+                  : "position error, mean distance of the landmarks from the truth [m]",
+              4, [](const TourMetrics& f) { return f.position_error; });
   fmt::print(
       "\nfirst sight, tour 1: before {:.3f} / {:.3f} rad, after {:.3f} / {:.3f} rad "
       "(the paper's Table I, one map: 0.049 / 0.033, then 0.046 / 0.032)\n",

@@ -14,6 +14,7 @@ namespace trussmap::app {
 struct TourOutput {
   std::string world;  ///< "6x6 mesh, walk euler"
   int seeds = 0;
+  bool aligned = false;  ///< errors are after the best rotation and translation
   std::string json_file;
   PageOptions page;
 };

@@ -55,18 +55,28 @@ Json mesh_json(const Mesh& mesh) {
   return places;
 }
 
+Json wheels_json(const TourOptions& options) {
+  if (!options.wheels) return nullptr;
+  return {options.wheels->noise, options.wheels->wheelbase,
+          static_cast<int>(options.wheels->readings)};
+}
+
 }  // namespace
 
 std::string tour_settings(const TourOptions& options, const std::string& world) {
-  return Json{{"version", TRUSSMAP_VERSION},
-              {"world", world},
-              {"tours", options.tours},
-              {"seeds", options.seeds},
-              {"first_seed", options.first_seed},
-              {"odometry_error", options.odometry_error},
-              {"compass_error", options.compass_error},
-              {"eta", {static_cast<int>(options.eta.kind), options.eta.count}},
-              {"mesh", mesh_json(options.mesh)}}
+  return Json{
+      {"version", TRUSSMAP_VERSION},
+      {"world", world},
+      {"tours", options.tours},
+      {"seeds", options.seeds},
+      {"first_seed", options.first_seed},
+      {"odometry_error", options.odometry_error},
+      {"compass_error", options.compass_error},
+      {"scope", {static_cast<int>(options.scope.kind), options.scope.eta, options.scope.groups}},
+      {"law", options.law ? static_cast<int>(*options.law) : -1},
+      {"wheels", wheels_json(options)},
+      {"aligned", errors_are_aligned(options)},
+      {"mesh", mesh_json(options.mesh)}}
       .dump();
 }
 
@@ -90,6 +100,7 @@ void show_tour_run(const ShardResults& whole, TourOutput output) {
   const Json settings = Json::parse(whole.settings);
   output.world = settings.at("world").get<std::string>();
   output.seeds = settings.at("seeds").get<int>();
+  output.aligned = settings.value("aligned", false);
   show_tours(average_tours(seeds), output);
 }
 

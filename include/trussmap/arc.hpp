@@ -77,4 +77,16 @@ struct ArcNoise {
 /// the exact Jacobian F of the pose). The two are taken as independent.
 [[nodiscard]] Motion then(const Motion& first, const Motion& second);
 
+/// A landmark as seen from the robot.
+struct LandmarkOffset {
+  Vector2 offset_robot = Vector2::Zero();      ///< m, robot frame: x ahead, y to the left
+  Matrix2 covariance_robot = Matrix2::Zero();  ///< m^2
+};
+
+/// At a range (m) and a bearing (rad, counter-clockwise from ahead), with their standard
+/// deviations. Throws std::invalid_argument unless all are finite, the range and `sd_range` above 0
+/// and `sd_bearing` not below.
+[[nodiscard]] LandmarkOffset seen_at(double range, double bearing, double sd_range,
+                                     double sd_bearing);
+
 }  // namespace trussmap

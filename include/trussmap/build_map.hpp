@@ -11,11 +11,12 @@
 //           leg by leg, as a robot would build it on the way (map_builder.hpp): every leg is
 //           dead-reckoned and handed to the builder
 //
-// All methods rest on the adjustment. It tells sightings that are wrong, few, each against all
-// others, from a model that is wrong: those are left out; where the model is, the errors that
-// nearly every robot has (wheel diameters, wheelbase, heading drift, hard iron) are estimated
-// beside the map and named. The methods that go leg by leg leave out the same sightings, free the
-// same errors, and where there is no compass take the heading at every stop from the adjustment.
+// The adjustment tells sightings that are wrong, few, each against all others, from a model that is
+// wrong: those are left out; where the model is, the errors that nearly every robot has (wheel
+// diameters, wheelbase, heading drift, hard iron) are estimated beside the map and named. The other
+// methods build what a robot would have had on its way: headings by compass or corners, nothing
+// left out but by the builder's gate, nothing known of what comes later. The adjustment then judges
+// that map.
 //
 // The model's effects act with the coefficients that it states. Surveys judge the map, and have no
 // part in it. Its frame is that of the first session with a compass (else of the first): the first
@@ -40,8 +41,10 @@ namespace trussmap {
 
 struct BuildMapOptions {
   Method method = Method::adjustment;
-  Eta eta{.hold_first = false};         ///< of the elastic methods
-  double min_drive = kDefaultMinDrive;  ///< m of driven path: a shorter drive is no leg
+  RefinementScope scope = {};            ///< of the elastic methods
+  std::optional<StiffnessLaw> law = {};  ///< of `elastic`; absent: its own
+  bool relax = false;                    ///< leg by leg: at the end all comes to equilibrium
+  double min_drive = kDefaultMinDrive;   ///< m of driven path: a shorter drive is no leg
   /// Standard deviations beyond which a sighting is left out, however many are; infinity: none is.
   /// Absent: 4, widened where too many would go.
   std::optional<double> gate = {};
@@ -130,6 +133,12 @@ struct BuiltPath {
   std::optional<PathOnTruth> on_truth;
 };
 
+/// Errors of a map that grew leg by leg, when its routes had all been driven (again).
+struct TourErrors {
+  MapErrors errors;      ///< after the best rotation and translation
+  bool complete = true;  ///< false: the recording ended within the tour
+};
+
 struct BuiltMap {
   LandmarkGraph map;  ///< with covariances of the landmarks where they were adjusted
   Method method = Method::adjustment;
@@ -142,6 +151,8 @@ struct BuiltMap {
   int refinements = 0;     ///< known routes driven again
   int side_sightings = 0;  ///< routes from a leg's end to what else was seen there
   std::vector<RejectedSighting> rejected;
+  std::vector<TourErrors> tours;         ///< leg by leg and surveyed: after each tour
+  bool relaxed = false;                  ///< its end was an equilibrium of the whole
   std::vector<BuiltPath> paths;          ///< one per recording, where there are no landmarks
   std::vector<FreedError> freed;         ///< what was estimated beside the map; empty: nothing
   std::vector<std::string> unconfirmed;  ///< landmarks that one sighting from afar alone has

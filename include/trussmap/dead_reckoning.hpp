@@ -23,22 +23,6 @@
 
 namespace trussmap {
 
-struct PoseEstimate {
-  Pose pose;                             ///< map axes
-  Matrix3 covariance = Matrix3::Zero();  ///< of (x, y, heading), map axes
-};
-
-struct HeadingEstimate {
-  double heading = 0.0;   ///< rad, map frame
-  double variance = 0.0;  ///< rad^2
-};
-
-/// A landmark as seen from the robot.
-struct LandmarkOffset {
-  Vector2 offset_robot = Vector2::Zero();      ///< m, robot frame: x ahead, y to the left
-  Matrix2 covariance_robot = Matrix2::Zero();  ///< m^2
-};
-
 /// Where the noise of one merged arc comes from: all that the model knows of wheels.
 [[nodiscard]] ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
                                  const Noise& noise);

@@ -3,43 +3,49 @@
 //
 // The map builder: what exploration code calls at every landmark.
 //
-//   MapBuilder builder;                         // the elastic truss with limited gain
-//   builder.start("dock");
-//   Arrival a = builder.arrive("door", {displacement, covariance});   // by this leg
-//   a.kind, a.landmarks_moved, a.largest_move   // what was corrected, by how much
+//   MapBuilder builder;                       // an elastic truss that relaxes at every arrival
+//   builder.start("dock");                    // the map's first landmark, its origin
+//   builder.compass(reading, sd);             // where there is one, as often as it is read
+//   Arrival a = builder.arrive("door", motion);      // motion: from wheels (arc.hpp), with its
+//                                                    // covariance, in the robot's own axes
+//   builder.observe("lamp", seen_at(range, bearing, sd_range, sd_bearing));
+//   builder.position(*builder.find("lamp")), builder.pose()
 //
-// A leg is given in map axes. From the wheels (arc.hpp), with the heading h at its start and h's
-// variance v, a compass's or what turning has left of it:
+//                         motion: (x, y) and turn, axes of the robot at its start
+//        robot at A ---------------------------------------> robot at B
+//         |  seen (offset), if it does not stand on A              |  seen
+//         A  - - - - - - - - - - - - route - - - - - - - - - - - - B
 //
-//   Motion leg;
-//   for (const WheelTravel& row : rows) leg = then(leg, arc_motion(row, wheelbase, noise));
-//   const Matrix2 R = rotation(h);
-//   const Vector2 d = R * leg.displacement.position();
-//   const Matrix2 C = R * leg.covariance.topLeftCorner<2, 2>() * R.transpose() +
-//                     v * quarter_turn(d) * quarter_turn(d).transpose();
-//   builder.arrive("door", {d, C});
-//   h += leg.displacement.heading;
-//   v += leg.covariance(2, 2);          // until a compass says better
+// What is measured becomes an element of the truss, with a rest shape that is the running average
+// over its traversals (landmark_map.hpp) and a stiffness by its mean covariance (truss.hpp):
 //
-// The builder takes legs as independent; those that share a drifting heading are not, and a map of
-// them is better adjusted as a whole (build_map.hpp).
+//   a route driven in map axes (Traversal)     a bar
+//   a route driven in the robot's own axes     a length; and a corner: the angle between it and
+//     (Motion)                                 the route that it came by, fastened to no compass
+//   a compass reading                          the direction of the route that is driven next
+//
+// A landmark met for the first time is placed by its measurement. When a loop closes, the routes
+// driven since the last settled landmark share out what is missing (first sight); then, as at every
+// arrival by a known route, landmarks come to equilibrium within a scope (refinement). The truss's
+// energy never rises by that.
 //
 // Methods (their names stand in every output):
-//   elastic          the paper's two phases, the gain of a refinement limited to one half
-//   elastic_printed  the paper's two phases as printed: diverges on unequal routes
-//   gauss_markov     exact increments: the least-squares map after every traversal
+//   elastic          stiffness 1/mean error (the paper's law), scope `automatic`
+//   gauss_markov     stiffness 1/variance, scope `all`: the least-squares map after every arrival
+//   elastic_printed  refinement as the paper prints it: forces of a reference structure, applied to
+//                    a floating piece. It diverges where a route is some 36 times as stiff along as
+//                    across, or the other way round, and near borders earlier.
 //
-// A refinement acts on the eta landmarks nearest to the route (a floating piece; the map as a
-// whole is counted as shifted so that the first landmark stays), on all of them with the first one
-// held, or on an eta estimated for each correction. Cost per arrival with a fixed eta: bounded by
-// eta, whatever the size of the map, but for the logarithm in the spatial index.
-// gauss_markov acts on the whole map always.
+// Golfarelli, Maio & Rizzi (1998); refinement by relaxation in place of their section 3.3.
+// Cost per arrival: with scope `nearest` bounded by eta, whatever the size of the map.
 //
 // A call that throws leaves the builder as it was.
 #pragma once
 
+#include "trussmap/arc.hpp"
 #include "trussmap/gate.hpp"
 #include "trussmap/landmark_map.hpp"
+#include "trussmap/truss.hpp"
 
 #include <memory>
 #include <optional>
@@ -51,28 +57,32 @@ namespace trussmap {
 /// `adjustment`, least squares of whole recordings, is build_map's: a map builder refuses it.
 enum class Method { elastic, elastic_printed, gauss_markov, adjustment };
 
-/// How many landmarks a refinement may move.
-struct Eta {
-  enum class Kind { all, fixed, estimated };
-  Kind kind = Kind::fixed;
-  int count = 50;  ///< for Kind::fixed; 2 at least
-  /// When the structure is the whole map: hold its first landmark (as the reference numbers have
-  /// it), or let it float, which is a little better and much better where the first landmark is
-  /// tied to the map by few or poor routes.
-  bool hold_first = true;
+/// Which landmarks a refinement lets come to equilibrium, all others held.
+struct RefinementScope {
+  enum class Kind {
+    automatic,  ///< all, while that is cheap (up to 10^4 landmarks); beyond, nearest with groups
+    all,        ///< all: exact; cost: a pass over the factor of the stiffness matrix
+    nearest,    ///< the `eta` nearest to the route's middle
+    estimated   ///< nearest, eta estimated before each correction from the force and what is round
+  };
+  Kind kind = Kind::automatic;
+  int eta = 50;        ///< of `nearest`, and of `automatic` beyond its limit; 2 at least
+  bool groups = true;  ///< then the nearest groups of landmarks, each moved as one, at every scale;
+                       ///< false: the paper's neighbourhood alone
 };
 
 struct MapBuilderOptions {
   Method method = Method::elastic;
-  Eta eta = {};
-  double gain_limit = 0.5;  ///< of `elastic`: part of the desired change reached at most, (0, 1]
-  bool refine = true;       ///< false: first sight only (a known route only updates its averages)
-  bool pooled = false;      ///< `gauss_markov`: weights by the route's mean covariance, not by each
-                            ///< traversal's own
-  /// `gauss_markov`: an arrival whose misfit is beyond so many standard deviations, of leg and map
-  /// together, is left out: a landmark was taken for another. Where misfits have been large lately
-  /// the gate is as much wider, and what was left out comes back: a systematic error is no wrong
-  /// landmark. Infinity: none is left out.
+  RefinementScope scope = {};  ///< of `elastic` and `elastic_printed`
+  /// Absent: the method's own.
+  std::optional<StiffnessLaw> law = {};
+  bool refine = true;   ///< false: first sight only (a known route only updates its averages)
+  bool pooled = false;  ///< law `variance`: bars weigh all traversals of a route alike, by their
+                        ///< mean covariance; else each by its own
+  /// An arrival at a known landmark whose misfit is beyond so many standard deviations, of leg and
+  /// map together, is left out: a landmark was taken for another. Where misfits have been large
+  /// lately the gate is as much wider, and what was left out comes back: a systematic error is no
+  /// wrong landmark. Infinity: none is left out. Of `gauss_markov`, for legs in map axes.
   double gate = kMapGate;
 };
 
@@ -81,7 +91,7 @@ struct Arrival {
   enum class Kind {
     new_landmark,  ///< placed by its measurement
     first_sight,   ///< a loop closed: the chain of fresh routes was corrected
-    new_route,     ///< between two settled landmarks: nothing moved, its averages began
+    new_route,     ///< between two settled landmarks
     refinement,    ///< a known route was driven again
     left_out,      ///< contradicts the map (MapBuilderOptions::gate), or leads from such a place
                    ///< back to where the map still has the robot: nothing moved
@@ -92,9 +102,12 @@ struct Arrival {
   int landmarks_moved = 0;           ///< displaced by more than 1e-12 m
   double largest_move = 0.0;         ///< m
   Vector2 misfit = Vector2::Zero();  ///< measured displacement - the map's before, m
-  int eta = 0;   ///< landmarks in the structure that a refinement solved, else 0
-  int back = 0;  ///< of those left out earlier that came back now
+  int eta = 0;                       ///< landmarks that came to equilibrium each by itself
+  int back = 0;                      ///< of those left out earlier that came back now
 };
+
+/// "new landmark", "loop closed", "new route", "known route", "left out".
+[[nodiscard]] std::string name_of(Arrival::Kind kind);
 
 /// An arrival or a side measurement that was left out and has not come back.
 struct LeftOutArrival {
@@ -111,9 +124,9 @@ class MapBuilder {
   explicit MapBuilder(const MapBuilderOptions& options = {});
 
   /// Goes on with a map that was made before: its landmarks are settled, its routes have their
-  /// averages, and the first landmark stays for ever. The robot must start() on one of them. Throws
-  /// std::invalid_argument, too, on a route without traversals or with a displacement or covariance
-  /// that no leg may have; SolveError where a landmark is tied to nothing.
+  /// averages (as bars), and the first landmark stays for ever. The robot must start() on one of
+  /// them. Throws std::invalid_argument, too, on a route without traversals or with a displacement
+  /// or covariance that no leg may have; SolveError where a landmark is tied to nothing.
   explicit MapBuilder(const LandmarkGraph& map, const MapBuilderOptions& options = {});
 
   ~MapBuilder();
@@ -125,32 +138,46 @@ class MapBuilder {
   /// would tie it to the map.
   void start(const std::string& landmark, const Vector2& position = Vector2::Zero());
 
+  /// The same at the first of the landmarks that it sees from afar.
+  void start(const std::string& landmark, const LandmarkOffset& seen,
+             const Vector2& position = Vector2::Zero());
+
+  /// The compass reads this heading (rad, map axes) where the robot is now, between two motions;
+  /// `sd` > 0. The first reading of a map that had none turns the map, so that it is right.
+  void compass(double reading, double sd);
+
   /// The robot drove from the landmark it stood on to this one; `leg` in map axes. Throws
   /// std::invalid_argument if it stood nowhere, on this landmark already, or if the leg is not
   /// finite with a positive definite covariance. After an arrival that is left out the robot counts
   /// as still on its way: the next leg goes on from this one.
   Arrival arrive(const std::string& landmark, const Traversal& leg);
 
+  /// The same in the robot's own axes where the motion began; the landmark is seen at an offset
+  /// from where it ended, by default below the robot. Without a compass the first heading of the
+  /// map is 0. Throws, too, SolveError where the landmark is new and nothing has told the robot's
+  /// heading in this session yet (a compass, or a route between two landmarks of the map).
+  Arrival arrive(const std::string& landmark, const Motion& motion,
+                 const LandmarkOffset& seen = {});
+
   /// A side measurement from the landmark the robot stands on, as by sighting another one from
   /// there: like a drive there and back with one traversal; the robot stays.
   Arrival observe(const std::string& landmark, const Traversal& from_here);
 
-  /// `elastic` only: refines every route once more towards its averages, without a new measurement
-  /// and with this gain limit. Routes driven only once, which moved nothing, have their say.
-  /// Returns the largest move, m. Rounds with falling limits (1/2, 1/4, 1/6, ...) come to rest
-  /// close to the least-squares map. Cost: one refinement per route.
-  double settle(double gain_limit);
+  /// The same of a landmark that is seen from where the robot is, in its own axes.
+  Arrival observe(const std::string& landmark, const LandmarkOffset& seen);
 
-  /// `elastic` only: the whole truss comes to rest at once, every route pulling towards its
-  /// averages with the stiffness that it has; the first landmark stays. What settle's rounds tend
-  /// to, where every landmark may move: after the drive, when cost does not matter. Returns the
-  /// largest move, m. Cost: one solution of the whole truss.
-  double rest();
+  /// All landmarks come to equilibrium, the first held: what refinement does within `all`. Returns
+  /// the largest move, m. Throws SolveError where the stiffnesses span too many magnitudes.
+  double relax();
+
+  /// Strain energy of the map's truss: what refinement lets fall. Of law `variance` half of chi^2.
+  /// 0 of `elastic_printed`, which has no elements that are strained. Cost: all routes.
+  [[nodiscard]] double energy() const;
 
   [[nodiscard]] const MapBuilderOptions& options() const;
 
-  /// Changes what refinements do from now on. The method and the kind of eta must stay as they
-  /// are, else std::invalid_argument.
+  /// Changes what refinements do from now on. The method and the law must stay as they are, else
+  /// std::invalid_argument.
   void set_options(const MapBuilderOptions& options);
 
   /// What was left out and has not come back, in the order in which it came.
@@ -160,13 +187,22 @@ class MapBuilder {
   /// that it stood on before.
   [[nodiscard]] int here() const;
 
+  /// Where the robot is, in the map: with the covariance of its heading and of its place beside the
+  /// landmark it stands on or sees. Absent before start(), and while its heading is not known.
+  [[nodiscard]] std::optional<PoseEstimate> pose() const;
+
   [[nodiscard]] int landmarks() const;
   [[nodiscard]] std::optional<int> find(const std::string& landmark) const;
 
   /// Present position, m. Throws std::invalid_argument on a number that no landmark has.
   [[nodiscard]] Vector2 position(int landmark) const;
 
-  /// Averages of the route between two landmarks, if it was ever driven.
+  /// The `count` landmarks nearest to a point, the nearest first. Throws std::invalid_argument
+  /// unless count is above 0.
+  [[nodiscard]] std::vector<int> nearest(const Vector2& point, int count) const;
+
+  /// Averages of the route between two landmarks, if it was ever driven. Legs in the robot's own
+  /// axes are in it as the robot's heading in the map turned them.
   [[nodiscard]] std::optional<Route> route_between(int a, int b) const;
 
   /// The map: present positions, and the routes with their averages. A builder knows no covariances

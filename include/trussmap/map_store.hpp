@@ -20,10 +20,14 @@
 //   map        landmark, x, y                                     where the landmarks are now, m
 //   routes     source, target (numbers of landmarks), traversals, stretch, orientation, dx, dy,
 //              c_xx, c_xy, c_yy                                   as landmark_map.hpp has them
-//   legs       number, session, kind (0 start, 1 arrive, 2 observe, 3 settle, 4 rest), source,
-//              target, dx, dy, c_xx, c_xy, c_yy, gain, outcome    every call, in order; m, m^2
+//   legs       number, session, kind (0 start, 1 arrive, 2 observe, 3 compass, 4 relax), source,
+//              target, own_axes (1: the robot's), dx, dy, turn, c_xx, c_xy, c_yy, c_xt, c_yt, c_tt,
+//              ox, oy, o_xx, o_xy, o_yy (the landmark from the robot), outcome
+//                                                                every call, in order; m, rad; of
+//                                                                compass turn and c_tt
 //   sessions   number, key, name, first_leg, legs                 those that append() took in
-//   landmarks, chain, misfits, left_out, state, facts             what else the builder remembers
+//   landmarks, reckoned, corners, chain, misfits, left_out, state, facts
+//                                                                what else the builder remembers
 //
 // Link trussmap::store. All of this throws InputError, naming the file, where the file cannot be
 // read or written, is no store or a damaged one, or is being written by another program.
@@ -43,12 +47,14 @@ namespace trussmap {
 
 /// A call of the builder, as it was made. Names are empty where the kind has none.
 struct StoredLeg {
-  enum class Kind { start, arrive, observe, settle, rest };
+  enum class Kind { start, arrive, observe, compass, relax };
   Kind kind = Kind::start;
   std::string from;  ///< where the robot said that it was, be that left out of the map or not
   std::string to;
-  Traversal leg;      ///< of start its position alone
-  double gain = 0.0;  ///< of settle
+  Traversal leg;          ///< of start its position alone
+  bool own_axes = false;  ///< arrive and observe: by `motion` and `seen`, not by `leg`
+  Motion motion;          ///< of compass the heading: reading and variance
+  LandmarkOffset seen;    ///< of start, too
   /// Of arrive and observe: what it did to the map then (what was left out may have come back
   /// since).
   std::optional<Arrival::Kind> outcome = {};
@@ -71,7 +77,7 @@ struct StoredSession {
 class MapStore {
  public:
   /// Goes on with the store, or makes one where there is no file or an empty one. A store with
-  /// landmarks keeps its method and its kind of eta (std::invalid_argument for others); its other
+  /// landmarks keeps its method and its law (std::invalid_argument for others); its other
   /// options are the given ones from now on, or where none are given those it had: a new one's are
   /// then `if_new`.
   explicit MapStore(const std::filesystem::path& file,
@@ -90,8 +96,13 @@ class MapStore {
   void start(const std::string& landmark, const Vector2& position = Vector2::Zero());
   Arrival arrive(const std::string& landmark, const Traversal& leg);
   Arrival observe(const std::string& landmark, const Traversal& from_here);
-  double settle(double gain_limit);
-  double rest();
+  void start(const std::string& landmark, const LandmarkOffset& seen,
+             const Vector2& position = Vector2::Zero());
+  void compass(double reading, double sd);
+  Arrival arrive(const std::string& landmark, const Motion& motion,
+                 const LandmarkOffset& seen = {});
+  Arrival observe(const std::string& landmark, const LandmarkOffset& seen);
+  double relax();
 
   /// Many calls as one: what `drive` does to the builder is kept as a whole or, where it throws,
   /// not at all. It calls the builder, which stays the store's, and not the store

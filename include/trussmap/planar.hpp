@@ -29,6 +29,16 @@ struct Pose {
   [[nodiscard]] Vector2 position() const { return {x, y}; }
 };
 
+struct PoseEstimate {
+  Pose pose;                             ///< map axes
+  Matrix3 covariance = Matrix3::Zero();  ///< of (x, y, heading), map axes
+};
+
+struct HeadingEstimate {
+  double heading = 0.0;   ///< rad, map frame
+  double variance = 0.0;  ///< rad^2
+};
+
 /// The angle's representative in (-pi, pi].
 [[nodiscard]] double wrap_angle(double angle);
 

@@ -18,6 +18,7 @@
 #include "trussmap/recording.hpp"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,5 +46,26 @@ struct SurveyComparison {
 [[nodiscard]] double survey_rms(const LandmarkPositions& map,
                                 const std::vector<SurveyPoint>& survey,
                                 const std::vector<std::string>& leave_out);
+
+// ----------------------------------------
+// Errors as the elastic paper has them (Golfarelli, Maio & Rizzi, 1998, section 4).
+
+/// How a map is compared with the truth.
+enum class Laid {
+  as_it_is,  ///< both have the same axes and the same first landmark, which does not count
+  aligned    ///< after the best rotation and translation of the landmarks; all count
+};
+
+struct MapErrors {
+  double stretch = 0.0;            ///< sigma: mean over routes of |s_map - s|/s
+  double orientation = 0.0;        ///< rho: mean over routes of |theta_map - theta|, rad
+  std::optional<double> position;  ///< m, mean distance of landmarks from the truth, where known
+  int routes = 0;                  ///< that count: both ends in the truth, and apart there
+};
+
+/// Errors of a map's routes and landmarks as they lie in it. Landmarks that the truth lacks do not
+/// count. Throws std::invalid_argument where fewer than two do.
+[[nodiscard]] MapErrors map_errors(const LandmarkGraph& map, const LandmarkPositions& truth,
+                                   Laid laid = Laid::as_it_is);
 
 }  // namespace trussmap

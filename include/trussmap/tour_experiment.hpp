@@ -12,9 +12,14 @@
 //   dead_reckoning    positions where the landmarks were first met, never corrected
 //   weighted_average  each route's own means; it has no positions
 //   elastic_printed   the paper's two phases as printed
-//   elastic           the same, gain limited
-//   gauss_markov      exact increments, covariances pooled per route
-//   adjustment        batch least squares on the routes' means
+//   elastic           refinement by relaxation, within a scope (map_builder.hpp)
+//   gauss_markov      the same with stiffness 1/variance, of the whole map
+//   adjustment        least squares of everything at once: of routes' means; from wheels of all
+//                     poses and landmarks (pose_graph.hpp)
+//
+// What a traversal measures comes with errors of the paper's sizes, in map axes, or from simulated
+// wheels: the chain as a robot has it, from wheels to map. Without a compass the map's axes are
+// those of the robot's first heading: errors are then after the best rotation and translation.
 //
 // Golfarelli, Maio & Rizzi (1998), section 4. A seed's walk and measurements are shared by all
 // methods, and do not depend on how many seeds or threads there are.
@@ -22,21 +27,33 @@
 
 #include "trussmap/map_builder.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/survey_comparison.hpp"
 
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace trussmap {
 
-/// How far one map is from the truth.
-struct MapErrors {
-  double stretch = 0.0;
-  double orientation = 0.0;        ///< rad
-  std::optional<double> position;  ///< m, where the method has positions
+/// When a robot on wheels reads its compass.
+enum class CompassReadings {
+  none,      ///< it has none
+  tour,      ///< once at the start of each tour
+  landmark,  ///< once at each landmark, before it turns
+  row        ///< at the end of each row of wheel travels
+};
+
+/// "none", "tour", "landmark" or "row"; std::invalid_argument on another name.
+[[nodiscard]] CompassReadings parse_compass_readings(std::string_view name);
+
+struct TourWheels {
+  double noise = 0.003;     ///< k of both wheels, m^(1/2)
+  double wheelbase = 0.34;  ///< m
+  CompassReadings readings = CompassReadings::landmark;
 };
 
 /// One seed's errors, of all methods.
@@ -55,7 +72,12 @@ struct TourOptions {
   /// Mean absolute errors, as in the paper; standard deviations are sqrt(pi/2) times these.
   double odometry_error = 0.05;  ///< fraction of the stretch
   double compass_error = 0.03;   ///< rad
-  Eta eta{.kind = Eta::Kind::all};
+  /// Measurements from wheels, in place of `odometry_error`; `compass_error` is a reading's.
+  std::optional<TourWheels> wheels = {};
+  RefinementScope scope = {};            ///< of elastic and elastic_printed
+  std::optional<StiffnessLaw> law = {};  ///< of elastic
+  /// Gets the first seed's maps after each tour: method, tour (1, 2, ...), map. By one thread.
+  std::function<void(const std::string&, int, const LandmarkGraph&)> maps = {};
   std::function<void(int)> seeds_done = {};  ///< called after each seed, by one thread at a time
 };
 
@@ -78,6 +100,9 @@ struct TourResult {
   TourMetrics first_sight_before;    ///< single measurements of the first tour
   TourMetrics first_sight_after;     ///< the map after first-sight correction alone, tour 1
 };
+
+/// Whether errors are after the best rotation and translation.
+[[nodiscard]] bool errors_are_aligned(const TourOptions& options);
 
 /// Names of the methods, in the order in which they are shown.
 [[nodiscard]] const std::vector<std::string>& tour_methods();

@@ -90,19 +90,30 @@ class UnsupportedJoint : public SolveError {
 //   t       number of traversals
 //   C'      R(theta)' C R(theta): x' along the bar, y' across it                        m^2
 //
-// printed          B = R diag(t/dx, t/dy) R',  dx = sqrt(2/pi C'_11), dy = sqrt(2/pi C'_22)
+// mean_error       B = R diag(t/dx, t/dy) R',  dx = sqrt(2/pi C'_11), dy = sqrt(2/pi C'_22)
 //                  Golfarelli, Maio & Rizzi (1998), section 3.1: stiffness = 1/mean error.
 //                  C'_12 is dropped.                                                    1/m
-// gauss_markov     B = t C^-1, off-diagonal kept: stiffness = 1/variance, the weights of least
+// variance         B = t C^-1, off-diagonal kept: stiffness = 1/variance, the weights of least
 //                  squares; strain energy is then half of chi squared.                  1/m^2
+//
+// What was measured as a single number, with variance v, is a spring: a length, or an angle (then
+// with the length of the bar that it turns as its arm L).
+//
+// mean_error       k = t L / sqrt(2/pi v)                                   1/m; of angles m/rad
+// variance         k = t / v                                                1/m^2; 1/rad^2
 //
 // A law is a small value: pass it where bars are made.
 
-enum class StiffnessLaw { printed, gauss_markov };
+enum class StiffnessLaw { mean_error, variance };
 
 /// 2x2 stiffness of a bar in map axes. Throws std::invalid_argument unless C is positive definite
 /// (for `printed`: positive along and across the bar) and t > 0.
 [[nodiscard]] Matrix2 bar_stiffness(StiffnessLaw law, const Matrix2& covariance, double orientation,
                                     double traversals);
+
+/// Stiffness of a spring for a number of this variance; `arm`: L, 1 for lengths. Throws
+/// std::invalid_argument unless all are above 0.
+[[nodiscard]] double spring_stiffness(StiffnessLaw law, double variance, double traversals,
+                                      double arm = 1.0);
 
 }  // namespace trussmap

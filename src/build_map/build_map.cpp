@@ -93,10 +93,13 @@ std::optional<MapOnSurvey> laid_on_survey(const BuiltMap& built,
 }
 
 BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& clear,
-                const std::vector<SessionGuide>& guides, const BuildMapOptions& options) {
+                const Model& model, const std::vector<SessionGuide>& guides,
+                const BuildMapOptions& options) {
   const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
-  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
-  if (options.method == Method::adjustment) how.build.method = Method::gauss_markov;
+  LegByLegOptions how{options, landmarks};
+  how.stood_on = landmarks_stood_on(clear, guides);
+  how.guided = options.method == Method::adjustment;
+  if (how.guided) how.build.method = Method::gauss_markov;
   const bool ranges_alone = std::none_of(clear.begin(), clear.end(), has_stops);
   if (ranges_alone && options.method != Method::adjustment) {
     throw InputError(clear.front().recording.name, 0,
@@ -104,13 +107,22 @@ BuiltMap map_of(const MapFitState& best, const std::vector<ClearedRecording>& cl
   }
   BuiltMap built;
   if (!ranges_alone) {
-    MapBuilder builder = builder_for(how.build);
-    built = map_leg_by_leg(sessions_of(clear, best.fit.model, guides), how, builder);
+    MapBuilder builder = builder_for(how);
+    built = map_leg_by_leg(sessions_of(clear, model, guides), how, builder);
   }
   built.method = options.method;
   if (options.method == Method::adjustment) place_as(landmarks, built.map);
   orient_as(landmarks, 0.0, built.map);
   return built;
+}
+
+/// A robot on its way leaves nothing out beforehand.
+std::vector<SessionGuide> unguided(std::vector<SessionGuide> guides) {
+  for (SessionGuide& guide : guides) {
+    guide.left_out.assign(guide.left_out.size(), false);
+    guide.yaw_left_out.assign(guide.yaw_left_out.size(), false);
+  }
+  return guides;
 }
 
 /// How an adjusted recording is turned into a map's axes.
@@ -187,10 +199,16 @@ BuiltMap build_paths(const std::vector<Recording>& recordings, const Model& mode
 }
 
 /// What the fit says of the map, and what speaks against it.
-BuiltMap judged(BuiltMap built, const MapFitState& best, const std::vector<Recording>& recordings,
-                const Model& model, const std::vector<SightedDrive>& believed) {
+BuiltMap judged(BuiltMap built, const MapFitState& best, bool guided,
+                const std::vector<Recording>& recordings, const Model& model,
+                const std::vector<SightedDrive>& believed) {
   take_fit(built, best);
-  built.rejected = left_out_of(best.fit);
+  const bool on_its_way = built.method != Method::adjustment && !guided;
+  if (on_its_way) {
+    built.freed.clear();
+  } else {
+    built.rejected = left_out_of(best.fit);
+  }
   ReckonedMap reckoned = reckoned_map(believed);
   built.quality = quality_of(built, best, reckoned);
   built.dead_reckoned = std::move(reckoned.places);
@@ -209,8 +227,12 @@ BuiltMap build_map(const std::vector<Recording>& recordings, const Model& model,
   const MapFitState best = fit_map(recordings, model, options.gate);
   const std::vector<SessionGuide> guides = guides_of(best.fit);
   const std::vector<ClearedRecording> believed = cleared(recordings, model);
-  BuiltMap built = map_of(best, best.freed.empty() ? believed : cleared(best.fit), guides, options);
-  return judged(std::move(built), best, recordings, model, sessions_of(believed, model, guides));
+  const bool guided = options.method == Method::adjustment;
+  BuiltMap built = guided ? map_of(best, best.freed.empty() ? believed : cleared(best.fit),
+                                   best.fit.model, guides, options)
+                          : map_of(best, believed, model, unguided(guides), options);
+  return judged(std::move(built), best, guided, recordings, model,
+                sessions_of(believed, model, guides));
 }
 
 BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model& model,
@@ -224,7 +246,8 @@ BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model
   const std::vector<ClearedRecording> clear = best.freed.empty() ? believed : cleared(best.fit);
   const LandmarkGraph landmarks = adjusted_landmarks(best.fit);
   const bool extended = builder.landmarks() > 0;
-  LegByLegOptions how{options, landmarks, landmarks_stood_on(clear, guides)};
+  LegByLegOptions how{options, landmarks};
+  how.stood_on = landmarks_stood_on(clear, guides);
   how.build.method = builder.options().method;
   Turn turn;
   if (extended && (axes == MapAxes::landmarks || !recording.drive.has_compass())) {
@@ -239,7 +262,8 @@ BuiltMap extend_map(MapBuilder& builder, const Recording& recording, const Model
         "the recording and the map have these landmarks at different places: " +
         listed(turn.elsewhere) + "; have they moved, or were labels misread?");
   }
-  return judged(std::move(built), best, recordings, model, sessions_of(believed, model, guides));
+  return judged(std::move(built), best, true, recordings, model,
+                sessions_of(believed, model, guides));
 }
 
 }  // namespace trussmap

@@ -4,14 +4,13 @@
 
 #include "build_map/session.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/gate.hpp"
 
 #include <algorithm>
 #include <limits>
 
 namespace trussmap {
 namespace {
-
-constexpr int kRests = 2;
 
 /// Sessions with a compass first: it gives the map its direction.
 std::vector<const SightedDrive*> in_order(const std::vector<SightedDrive>& sessions) {
@@ -25,11 +24,14 @@ std::vector<const SightedDrive*> in_order(const std::vector<SightedDrive>& sessi
 
 }  // namespace
 
-MapBuilder builder_for(const BuildMapOptions& options) {
+MapBuilder builder_for(const LegByLegOptions& options) {
   MapBuilderOptions how;
-  how.method = options.method;
-  how.eta = options.eta;
-  how.gate = std::numeric_limits<double>::infinity();  // the best fit has left out what is wrong
+  how.method = options.build.method;
+  how.scope = options.build.scope;
+  how.law = options.build.law;
+  // The best fit has left out what is wrong, where it guides.
+  how.gate = options.guided ? std::numeric_limits<double>::infinity()
+                            : options.build.gate.value_or(kMapGate);
   return MapBuilder(how);
 }
 
@@ -41,8 +43,8 @@ BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions, const LegByLe
   for (const SightedDrive* session : in_order(sessions)) {
     Session(*session, options, builder, result).run();
   }
-  // Stiffness follows the routes' directions in the map, which the first rest may change.
-  for (int round = 0; round < kRests; ++round) builder.rest();
+  result.relaxed = options.build.relax;
+  if (options.build.relax) builder.relax();
   result.map = builder.map();
   result.new_landmarks = builder.landmarks() - before;
   if (result.legs == 0) {

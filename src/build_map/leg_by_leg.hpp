@@ -7,9 +7,9 @@
 //                   if a leg ends here: arrive at its reference; the stop's other sightings are
 //                   routes from that reference
 //
-// What the best fit of everything left out is left out here too, and where there is no compass the
-// heading at each stop is that fit's (SessionGuide). Sessions with a compass come first. At the end
-// an elastic map comes to rest as a whole.
+// Guided (adjustments, and maps in a store): what the best fit of everything left out is left out
+// here too, and where there is no compass the heading at each stop is that fit's (SessionGuide).
+// On its own: what a robot would have had on its way. Sessions with a compass come first.
 #pragma once
 
 #include "build_map/sighted_drive.hpp"
@@ -24,12 +24,13 @@ namespace trussmap {
 struct LegByLegOptions {
   BuildMapOptions build;       ///< with a method that a map builder has
   const LandmarkGraph& guide;  ///< landmarks with their uncertainties as the best fit has them
+  bool guided = true;          ///< else nothing of the best fit is known on the way
   std::set<std::string> stood_on = {};   ///< landmarks that the robot stands on somewhere
   Matrix2 to_map = Matrix2::Identity();  ///< turns the guide's axes into the map's
 };
 
 /// For these options, empty.
-[[nodiscard]] MapBuilder builder_for(const BuildMapOptions& options);
+[[nodiscard]] MapBuilder builder_for(const LegByLegOptions& options);
 
 /// Onto what the builder has. Throws as build_map does.
 [[nodiscard]] BuiltMap map_leg_by_leg(const std::vector<SightedDrive>& sessions,

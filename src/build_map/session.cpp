@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -19,6 +22,7 @@ constexpr double kGuidedHeading = 0.01;  // rad, standard deviation of a first h
 Session::Session(const SightedDrive& drive, const LegByLegOptions& options, MapBuilder& builder,
                  BuiltMap& result)
     : drive_(drive),
+      own_axes_(!options.guided && !drive.recording().drive.has_compass()),
       recording_(drive.recording()),
       options_(options),
       builder_(builder),
@@ -26,12 +30,21 @@ Session::Session(const SightedDrive& drive, const LegByLegOptions& options, MapB
       path_(driven_path(drive.drive())) {}
 
 void Session::run() {
+  for (const SurveyPoint& point : recording_.survey) {
+    survey_.emplace(point.landmark, Vector2(point.x, point.y));
+  }
+  if (!options_.guided) tour_ends_ = tour_ends();
   for (const Stop& stop : stops_of(recording_.sightings)) {
     if (reference_ == nullptr) {
       begin(stop);
     } else {
       visit(stop);
     }
+  }
+  const bool within_tour = tour_ends_.empty() || legs_ > tour_ends_.back();
+  if (!options_.guided && legs_ > 0 && within_tour) {
+    note_tour();
+    if (!result_.tours.empty()) result_.tours.back().complete = false;
   }
   if (reference_ == nullptr && builder_.landmarks() > 0) {
     throw SolveError(recording_.name +
@@ -49,7 +62,11 @@ void Session::begin(const Stop& stop) {
   if (at == seen.end()) return;
   const InitialHeading first = drive_.heading_at(stop.t);
   readings_used_until_ = first.reading_time;
-  builder_.start(at->sighting->landmark);
+  if (own_axes_) {
+    builder_.start(at->sighting->landmark, at->offset);
+  } else {
+    builder_.start(at->sighting->landmark);
+  }
   settle(stop, *at, first_heading(*at->sighting, first));
   seen.erase(at);
   observe(seen);
@@ -57,12 +74,13 @@ void Session::begin(const Stop& stop) {
 
 /// By the compass; without one as the best fit has it.
 HeadingEstimate Session::first_heading(const Sighting& at, const InitialHeading& first) const {
-  if (recording_.drive.has_compass()) return with_yaw(at, first.heading);
+  if (recording_.drive.has_compass() || !options_.guided) return with_yaw(at, first.heading);
   return {drive_.guided_heading(at), kGuidedHeading * kGuidedHeading};
 }
 
 /// Taken together with what the sighting's yaw and the landmark's orientation in the best fit say.
 HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& heading) const {
+  if (!options_.guided) return heading;
   const Landmark& landmark = options_.guide.landmark(*options_.guide.find(at.landmark));
   const double yaw = drive_.yaw_of(at);
   if (std::isnan(yaw) || !landmark.heading) return heading;
@@ -94,17 +112,35 @@ void Session::visit(const Stop& stop) {
   std::vector<Accepted> accepted = accepted_at(stop);
   if (accepted.empty() || accepted.front().sighting->landmark == reference_->landmark) return;
   if (path_at(recording_.drive, path_, stop.t) - leg_start_ < options_.build.min_drive) return;
+  if (!has_map_axes() && !builder_.find(accepted.front().sighting->landmark)) return;
   arrive(stop, accepted.front());
   accepted.erase(accepted.begin());
   observe(accepted);
 }
 
+/// A new landmark cannot be placed while nothing tells a further session's heading.
+bool Session::has_map_axes() const {
+  return !own_axes_ || builder_.landmarks() < 2 || builder_.pose().has_value();
+}
+
+Arrival Session::arrive_at(const Accepted& at) {
+  if (own_axes_) {
+    return builder_.arrive(at.sighting->landmark, Motion{pose_.pose, pose_.covariance}, at.offset);
+  }
+  return builder_.arrive(at.sighting->landmark, in_map(landmark_from_pose(pose_, at.offset)));
+}
+
 void Session::arrive(const Stop& stop, const Accepted& at) {
-  const PositionEstimate place = landmark_from_pose(pose_, at.offset);
-  const HeadingEstimate heading = heading_after(at, place);
-  const Arrival arrival = builder_.arrive(at.sighting->landmark, in_map(place));
+  const HeadingEstimate heading =
+      own_axes_ ? HeadingEstimate{} : heading_after(at, landmark_from_pose(pose_, at.offset));
+  const Arrival arrival = arrive_at(at);
   ++result_.legs;
-  if (arrival.kind == Arrival::Kind::first_sight) ++result_.first_sight;
+  ++legs_;
+  if (std::ranges::binary_search(tour_ends_, legs_)) note_tour();
+  // Exact methods share nothing out along chains: any loop that closes counts.
+  const bool closes =
+      arrival.kind == Arrival::Kind::new_route && options_.build.method == Method::gauss_markov;
+  if (closes || arrival.kind == Arrival::Kind::first_sight) ++result_.first_sight;
   if (arrival.kind == Arrival::Kind::refinement) ++result_.refinements;
   if (arrival.kind == Arrival::Kind::left_out) result_.off_map.push_back(at.sighting->landmark);
   settle(stop, at, heading);
@@ -119,7 +155,9 @@ Traversal Session::in_map(const PositionEstimate& place) const {
 /// from the landmarks at both ends of the leg.
 HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimate& place) const {
   const HeadingEstimate reckoned{pose_.pose.heading, pose_.covariance(2, 2)};
-  if (recording_.drive.has_compass()) return with_yaw(*at.sighting, reckoned);
+  if (recording_.drive.has_compass() || !options_.guided) {
+    return with_yaw(*at.sighting, reckoned);
+  }
   const Landmark& from = options_.guide.landmark(*options_.guide.find(reference_->landmark));
   const Landmark& to = options_.guide.landmark(*options_.guide.find(at.sighting->landmark));
   const double heading = drive_.guided_heading(*at.sighting);
@@ -134,10 +172,49 @@ HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimat
 /// Everything from here on is reckoned from this landmark, seen at this stop.
 void Session::settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading) {
   reference_ = at.sighting;
-  pose_ = pose_from_landmark(heading, at.offset);
+  pose_ = own_axes_ ? PoseEstimate{} : pose_from_landmark(heading, at.offset);
   start_heading_variance_ = heading.variance;
+  reference_offset_ = at.offset;
   time_ = stop.t;
   leg_start_ = path_at(recording_.drive, path_, stop.t);
+}
+
+/// Numbers of legs after which every route that the recording drives has been driven once more.
+std::vector<std::size_t> Session::tour_ends() const {
+  using Way = std::pair<std::string, std::string>;
+  std::vector<Way> ways;
+  const Sighting* last = nullptr;
+  double begun = 0.0;
+  for (const Stop& stop : stops_of(recording_.sightings)) {
+    const std::vector<Accepted> seen = accepted_at(stop);
+    if (seen.empty()) continue;
+    const Sighting* next = seen.front().sighting;
+    const double at = path_at(recording_.drive, path_, stop.t);
+    if (last != nullptr) {
+      if (next->landmark == last->landmark || at - begun < options_.build.min_drive) continue;
+      ways.emplace_back(std::minmax(last->landmark, next->landmark));
+    }
+    last = next;
+    begun = at;
+  }
+  const std::set<Way> all(ways.begin(), ways.end());
+  std::vector<std::size_t> ends;
+  std::set<Way> driven;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    driven.insert(ways[k]);
+    if (driven.size() < all.size()) continue;
+    ends.push_back(k + 1);
+    driven.clear();
+  }
+  return ends;
+}
+
+void Session::note_tour() {
+  constexpr int kFewest = 3;
+  const LandmarkGraph map = builder_.map();
+  int known = 0;
+  for (const auto& [name, place] : survey_) known += map.find(name) ? 1 : 0;
+  if (known >= kFewest) result_.tours.push_back({map_errors(map, survey_, Laid::aligned), true});
 }
 
 /// The paper's averages are plain and its stiffness is that of the mean error: sightings far poorer
@@ -157,6 +234,14 @@ bool Session::dilutes(const std::string& landmark, const Matrix2& covariance) co
 void Session::observe(const std::vector<Accepted>& others) {
   for (const Accepted& other : others) {
     if (other.sighting->landmark == reference_->landmark) continue;
+    if (own_axes_) {
+      const Vector2 apart = other.offset.offset_robot - reference_offset_.offset_robot;
+      if (apart.squaredNorm() <= 0.0) continue;
+      if (!has_map_axes() && !builder_.find(other.sighting->landmark)) continue;
+      builder_.observe(other.sighting->landmark, other.offset);
+      ++result_.side_sightings;
+      continue;
+    }
     const PositionEstimate place = landmark_from_pose(pose_, other.offset);
     if (place.position.squaredNorm() <= 0.0) continue;  // two landmarks stood on at once
     if (dilutes(other.sighting->landmark, place.covariance)) continue;

@@ -34,6 +34,10 @@ class Session {
   [[nodiscard]] std::vector<Accepted> accepted_at(const Stop& stop) const;
   void arrive(const Stop& stop, const Accepted& at);
   void observe(const std::vector<Accepted>& others);
+  [[nodiscard]] bool has_map_axes() const;
+  [[nodiscard]] Arrival arrive_at(const Accepted& at);
+  [[nodiscard]] std::vector<std::size_t> tour_ends() const;
+  void note_tour();
   [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
   [[nodiscard]] Traversal in_map(const PositionEstimate& place) const;
   void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
@@ -44,6 +48,7 @@ class Session {
   [[nodiscard]] HeadingEstimate with_yaw(const Sighting& at, const HeadingEstimate& heading) const;
 
   const SightedDrive& drive_;
+  bool own_axes_;  // legs are handed on in the robot's own axes: no compass, no guide
   const Recording& recording_;
   const LegByLegOptions& options_;
   MapBuilder& builder_;
@@ -51,9 +56,13 @@ class Session {
   std::vector<double> path_;
   const Sighting* reference_ = nullptr;  // where the present leg began
   PoseEstimate pose_;                    // from that landmark, map axes
+  LandmarkOffset reference_offset_;      // of that landmark, where the leg began
   double time_ = 0.0;                    // of pose_
   double leg_start_ = 0.0;               // driven path at the leg's start
   double start_heading_variance_ = 0.0;
+  std::size_t legs_ = 0;                // driven
+  std::vector<std::size_t> tour_ends_;  // legs at which all routes have been driven (again)
+  LandmarkPositions survey_;
   double readings_used_until_ =
       -std::numeric_limits<double>::infinity();  // compass readings that the start heading rests on
 };

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/tour_experiment.hpp"
 
+#include "experiment/tour_robot.hpp"
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
 #include "parallel/parallel_for.hpp"
-#include "simulation/route_robot.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -21,7 +22,7 @@ namespace {
 using Errors = MapErrors;
 using MethodErrors = std::map<std::string, MapErrors>;
 
-/// Errors of routes whose vectors (from -> to of the mesh) are given.
+/// Errors of routes whose vectors (from -> to of the mesh) are given; they have no positions.
 Errors route_errors(const Mesh& mesh, const std::function<Vector2(const MeshRoute&)>& vector) {
   Errors errors;
   for (const MeshRoute& route : mesh.routes) {
@@ -35,45 +36,39 @@ Errors route_errors(const Mesh& mesh, const std::function<Vector2(const MeshRout
   return errors;
 }
 
-/// Errors of a map, by the positions of the mesh's landmarks; landmark 0 is the first.
-Errors map_errors(const Mesh& mesh, const std::vector<Vector2>& positions) {
-  Errors errors = route_errors(mesh, [&positions](const MeshRoute& route) -> Vector2 {
-    return positions[idx(route.to)] - positions[idx(route.from)];
-  });
-  double sum = 0.0;
-  for (int k = 1; k < mesh.landmarks(); ++k) {
-    sum += (positions[idx(k)] - mesh.positions[idx(k)]).norm();
-  }
-  errors.position = mesh.landmarks() > 1 ? sum / (mesh.landmarks() - 1) : 0.0;
-  return errors;
-}
-
-std::vector<Vector2> positions_by_mesh(const Mesh& mesh, const LandmarkGraph& map) {
-  std::vector<Vector2> positions;
-  positions.reserve(idx(mesh.landmarks()));
+LandmarkPositions truth_of(const Mesh& mesh) {
+  LandmarkPositions truth;
   for (int k = 0; k < mesh.landmarks(); ++k) {
-    positions.push_back(map.landmark(*map.find(landmark_name(mesh, k))).position);
+    truth[landmark_name(mesh, k)] = mesh.positions[idx(k)];
   }
-  return positions;
+  return truth;
 }
 
 /// One seed's robot and all the maps it builds.
 class SeedRun {
  public:
-  SeedRun(const TourOptions& options, std::uint64_t seed)
+  SeedRun(const TourOptions& options, std::uint64_t seed, bool shows_maps)
       : options_(options),
+        shows_maps_(shows_maps && options.maps != nullptr),
+        laid_(errors_are_aligned(options) ? Laid::aligned : Laid::as_it_is),
+        truth_(truth_of(options.mesh)),
         walk_random_(random_stream(seed, Stream::walk)),
-        error_random_(random_stream(seed, Stream::wheels)) {
+        robot_(options, seed) {
     for (const Method method : {Method::elastic_printed, Method::elastic, Method::gauss_markov}) {
       MapBuilderOptions builder;
       builder.method = method;
-      builder.eta = options.eta;
+      builder.scope = options.scope;
+      // As the paper has it: all landmarks, with the first held.
+      const bool automatic = options.scope.kind == RefinementScope::Kind::automatic;
+      if (method == Method::elastic_printed && automatic) {
+        builder.scope.kind = RefinementScope::Kind::all;
+      }
+      if (method == Method::elastic) builder.law = options.law;
       builder.pooled = true;
+      builder.gate = std::numeric_limits<double>::infinity();
       builders_.emplace(name_of(method), MapBuilder(builder));
     }
     MapBuilderOptions only_first_sight;
-    only_first_sight.method = Method::elastic_printed;
-    only_first_sight.eta = options.eta;
     only_first_sight.refine = false;
     builders_.emplace(kFirstSight, MapBuilder(only_first_sight));
   }
@@ -89,12 +84,12 @@ class SeedRun {
     SeedErrors errors;
     std::size_t step = 0;
     for (const std::size_t end : tours.ends) {
+      robot_.begin_tour();
       for (; step < end; ++step) drive(tours.walk[step], tours.walk[step + 1]);
-      errors.tours.push_back(errors_now());
+      errors.tours.push_back(errors_now(static_cast<int>(errors.tours.size()) + 1));
       if (errors.tours.size() == 1) {
         errors.first_sight_before = errors.tours.back().at("raw");
-        errors.first_sight_after =
-            map_errors(mesh, positions_by_mesh(mesh, builders_.at(kFirstSight).map()));
+        errors.first_sight_after = errors_of(builders_.at(kFirstSight).map());
         builders_.erase(kFirstSight);
       }
     }
@@ -104,20 +99,28 @@ class SeedRun {
  private:
   static constexpr const char* kFirstSight = "first sight";
 
+  [[nodiscard]] Errors errors_of(const LandmarkGraph& map) const {
+    return map_errors(map, truth_, laid_);
+  }
+
   void drive(int from, int to) {
     const Mesh& mesh = options_.mesh;
-    const MeasuredRoute measured =
-        measure_route(mesh.displacement(from, to),
-                      {options_.odometry_error, options_.compass_error}, error_random_);
-    const Traversal traversal{measured.displacement, measured.covariance};
-    reckoned_ += measured.displacement;
-
+    const TourLeg leg = robot_.drive(mesh.displacement(from, to));
+    reckoned_ += leg.in_map.displacement;
     const std::string name = landmark_name(mesh, to);
     if (!averages_.find(name)) averages_.add_landmark(name, reckoned_);
     const int a = *averages_.find(landmark_name(mesh, from));
-    const int route = averages_.add_traversal(a, *averages_.find(name), traversal);
+    const int route = averages_.add_traversal(a, *averages_.find(name), leg.in_map);
     if (averages_.route(route).traversals == 1) raw_.push_back(averages_.route(route).displacement);
-    for (auto& [method, builder] : builders_) builder.arrive(name, traversal);
+    for (auto& [method, builder] : builders_) {
+      if (leg.reading) builder.compass(leg.reading->heading, std::sqrt(leg.reading->variance));
+      if (leg.motion) {
+        builder.arrive(name, *leg.motion);
+      } else {
+        builder.arrive(name, leg.in_map);
+      }
+    }
+    if (leg.motion) graph_.add(landmark_name(mesh, from), name, *leg.motion, leg.reading);
   }
 
   /// A route's vector in the mesh's direction, out of per-route vectors in the averages' order.
@@ -132,29 +135,37 @@ class SeedRun {
     };
   }
 
-  MethodErrors errors_now() {
+  MethodErrors errors_now(int tour) {
     const Mesh& mesh = options_.mesh;
     MethodErrors errors;
     errors["raw"] = route_errors(mesh, by_mesh([this](int k) { return raw_[idx(k)]; }));
     errors["weighted_average"] =
         route_errors(mesh, by_mesh([this](int k) { return averages_.route(k).mean_vector(); }));
-    errors["dead_reckoning"] = map_errors(mesh, positions_by_mesh(mesh, averages_));
-    errors["adjustment"] = map_errors(mesh, positions_by_mesh(mesh, adjust_linear(averages_).map));
+    errors["dead_reckoning"] = errors_of(averages_);
+    std::map<std::string, LandmarkGraph> maps;
+    maps["adjustment"] = graph_.empty() ? adjust_linear(averages_).map : graph_.adjusted(averages_);
     for (const auto& [method, builder] : builders_) {
-      if (method != kFirstSight) {
-        errors[method] = map_errors(mesh, positions_by_mesh(mesh, builder.map()));
-      }
+      if (method != kFirstSight) maps[method] = builder.map();
     }
+    for (const auto& [method, map] : maps) {
+      errors[method] = errors_of(map);
+      if (shows_maps_) options_.maps(method, tour, map);
+    }
+    if (shows_maps_) options_.maps("dead_reckoning", tour, averages_);
     return errors;
   }
 
   const TourOptions& options_;
+  bool shows_maps_;
+  Laid laid_;
+  LandmarkPositions truth_;
   std::mt19937_64 walk_random_;
-  std::mt19937_64 error_random_;
+  TourRobot robot_;
   std::map<std::string, MapBuilder> builders_;
   LandmarkGraph averages_;    // positions: where dead reckoning first met the landmarks
   std::vector<Vector2> raw_;  // per route of averages_: its first traversal
   Vector2 reckoned_ = Vector2::Zero();
+  TourGraph graph_;  // of legs by wheels
 };
 
 SeedMean seed_mean(const std::vector<double>& values) {
@@ -188,9 +199,26 @@ void check(const TourOptions& options) {
   if (!(options.odometry_error > 0.0) || !(options.compass_error > 0.0)) {
     throw std::invalid_argument("the odometry and compass errors must be above 0");
   }
+  if (options.wheels && (!(options.wheels->noise > 0.0) || !(options.wheels->wheelbase > 0.0))) {
+    throw std::invalid_argument("the noise and the distance of the wheels must be above 0");
+  }
 }
 
 }  // namespace
+
+CompassReadings parse_compass_readings(std::string_view name) {
+  if (name == "none") return CompassReadings::none;
+  if (name == "tour") return CompassReadings::tour;
+  if (name == "landmark") return CompassReadings::landmark;
+  if (name == "row") return CompassReadings::row;
+  throw std::invalid_argument("'" + std::string(name) +
+                              "' is no rate of compass readings, expected none, tour, landmark or "
+                              "row");
+}
+
+bool errors_are_aligned(const TourOptions& options) {
+  return options.wheels && options.wheels->readings == CompassReadings::none;
+}
 
 std::vector<SeedErrors> run_tour_seeds(const TourOptions& options, const std::vector<int>& seeds) {
   check(options);
@@ -199,7 +227,7 @@ std::vector<SeedErrors> run_tour_seeds(const TourOptions& options, const std::ve
   int done = 0;
   parallel_for(seeds.size(), [&](std::size_t k) {
     const auto seed = static_cast<std::uint64_t>(seeds[k]);
-    results[k] = SeedRun(options, options.first_seed + seed).run();
+    results[k] = SeedRun(options, options.first_seed + seed, seeds[k] == 0).run();
     const std::scoped_lock lock(reporting);
     ++done;
     if (options.seeds_done) options.seeds_done(done);

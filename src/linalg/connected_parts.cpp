@@ -4,28 +4,43 @@
 
 #include "geometry/index.hpp"
 
-#include <algorithm>
 #include <numeric>
 
+#include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>
+
 namespace trussmap {
+namespace {
+
+/// Of two sets the one of higher rank names both: here the one that begins lower. Ranks are never
+/// the same, so none is ever raised.
+struct LowerRanksHigher {
+  using key_type = int;
+  using value_type = int;
+  using reference = int;
+  using category = boost::readable_property_map_tag;
+
+  friend int get(LowerRanksHigher /*ranks*/, int node) { return -node; }
+  friend void put(LowerRanksHigher /*ranks*/, int /*node*/, int /*rank*/) {}
+};
+
+auto sets_of(std::vector<int>& up) {
+  return boost::disjoint_sets<LowerRanksHigher, int*, boost::find_with_path_halving>(
+      LowerRanksHigher(), up.data());
+}
+
+}  // namespace
 
 DisjointSets::DisjointSets(int nodes) : up_(idx(nodes)) {
   std::iota(up_.begin(), up_.end(), 0);
 }
 
 int DisjointSets::lowest(int node) {
-  while (up_[idx(node)] != node) {
-    int& up = up_[idx(node)];
-    up = up_[idx(up)];
-    node = up;
-  }
-  return node;
+  return sets_of(up_).find_set(node);
 }
 
 void DisjointSets::join(int a, int b) {
-  a = lowest(a);
-  b = lowest(b);
-  up_[idx(std::max(a, b))] = std::min(a, b);
+  sets_of(up_).union_set(a, b);
 }
 
 std::vector<int> connected_parts(int nodes, const std::vector<NodePair>& pairs) {

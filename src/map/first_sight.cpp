@@ -31,6 +31,32 @@ std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses
   return result;
 }
 
+std::vector<Vector2> turning_displacements(const std::vector<TurningLeg>& legs, const Vector2& end,
+                                           const Vector2& imposed) {
+  Matrix2 yields = Matrix2::Zero();
+  for (const TurningLeg& leg : legs) {
+    const Vector2 lever = quarter_turn(end - leg.from);
+    yields += leg.compliance + leg.turning * lever * lever.transpose();
+  }
+  const Vector2 lambda = yields.inverse() * imposed;
+  std::vector<Vector2> result(legs.size(), Vector2::Zero());
+  if (!lambda.allFinite()) return result;
+  Vector2 stretched = Vector2::Zero();
+  double turned = 0.0;
+  Vector2 about = Vector2::Zero();  // sum of phi_e p_e
+  for (std::size_t e = 0; e < legs.size(); ++e) {
+    const TurningLeg& leg = legs[e];
+    const double phi = leg.turning * lambda.dot(quarter_turn(end - leg.from));
+    stretched += leg.compliance * lambda;
+    turned += phi;
+    about += phi * leg.from;
+    const Vector2& at = e + 1 < legs.size() ? legs[e + 1].from : end;
+    result[e] = stretched + quarter_turn(turned * at - about);
+  }
+  result.back() = imposed;
+  return result;
+}
+
 void OpenChain::reserve(int count) {
   const std::size_t size = idx(count);
   if (chain_.capacity() < size) chain_.reserve(std::max(size, 2 * chain_.capacity()));

@@ -12,6 +12,14 @@
 // S_i the sum of the compliances B^-1 from k up to landmark i: u_i = S_i S_n^-1 u. No system to
 // solve. Golfarelli, Maio & Rizzi (1998), section 3.2, with the closing route in the chain.
 //
+// Legs in the robot's own axes know their direction by the corner with the leg before. Turning at a
+// corner, phi, carries all that comes after about it:
+//
+//   u_i = sum_{e < i} (S_e lambda + phi_e J (p_i - p_e)),  phi_e = c_e lambda . J (p_n - p_e)
+//
+// S_e a bar's compliance, c_e a corner's, J the quarter turn, and lambda the force at the end for
+// which u_n = u: with all c_e = 0 the chain above.
+//
 // Which landmark is k:  b itself if it is on the chain (closed polygonal); else the landmark of
 // the chain on which the loop that holds b hangs; else the chain's start (open polygonal). A new
 // route between two settled landmarks closes a chain of one bar: nothing moves.
@@ -29,6 +37,19 @@ namespace trussmap {
 /// map axes, in order. Throws std::invalid_argument on an empty chain.
 [[nodiscard]] std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses,
                                                        const Vector2& imposed);
+
+/// A leg of a chain whose directions hang on one another.
+struct TurningLeg {
+  Vector2 from = Vector2::Zero();        ///< where it begins, m
+  Matrix2 compliance = Matrix2::Zero();  ///< S_e, map axes
+  double turning = 0.0;                  ///< c_e, of the corner where it begins
+};
+
+/// The same of a chain with corners that yield; `end`: where the last leg ends, m. Zero where
+/// nothing yields in the direction of `imposed`.
+[[nodiscard]] std::vector<Vector2> turning_displacements(const std::vector<TurningLeg>& legs,
+                                                         const Vector2& end,
+                                                         const Vector2& imposed);
 
 /// The chain of routes not yet corrected, and where settled loops hang. A call that throws leaves
 /// it as it was.

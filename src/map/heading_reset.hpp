@@ -13,7 +13,6 @@
 // bounded, without it its errors grow for ever.
 #pragma once
 
-#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/planar.hpp"
 
 namespace trussmap {

@@ -18,7 +18,7 @@ LinearAdjustment adjust_linear(const LandmarkGraph& map) {
   for (int number = 0; number < map.routes(); ++number) {
     const Route& route = map.route(number);
     stiffnesses.push_back(
-        bar_stiffness(StiffnessLaw::gauss_markov, route.covariance, 0.0, route.traversals));
+        bar_stiffness(StiffnessLaw::variance, route.covariance, 0.0, route.traversals));
     truss.add(route.source, route.target, route.displacement, stiffnesses.back());
   }
   try {

@@ -64,13 +64,12 @@ struct NearestLandmarks::Index {
     place = to;
   }
 
-  void build(const LandmarkGraph& map) {
+  void build(const std::vector<Vector2>& positions) {
     std::vector<Entry> entries;
-    entries.reserve(idx(map.landmarks()));
-    places.clear();
-    for (int k = 0; k < map.landmarks(); ++k) {
-      places.push_back(map.landmark(k).position);
-      entries.push_back(entry(k, places.back()));
+    entries.reserve(positions.size());
+    places = positions;
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      entries.push_back(entry(static_cast<int>(k), positions[k]));
     }
     tree = Tree(entries);
     farthest = 0.0;
@@ -89,13 +88,17 @@ void NearestLandmarks::move(int landmark, const Vector2& to) noexcept {
   index_->follow([&] { index_->move(landmark, to); });
 }
 
-std::vector<int> NearestLandmarks::nearest(const LandmarkGraph& map, const Vector2& to,
+void NearestLandmarks::drop() noexcept {
+  index_->follows = false;
+}
+
+std::vector<int> NearestLandmarks::nearest(const std::vector<Vector2>& positions, const Vector2& to,
                                            int count) const {
-  if (!index_->follows) index_->build(map);
+  if (!index_->follows) index_->build(positions);
   std::vector<Entry> found;
   index_->tree.query(bg::index::nearest(entry(0, to).first, static_cast<unsigned>(count)),
                      std::back_inserter(found));
-  const auto distance = [&](int landmark) { return (map.landmark(landmark).position - to).norm(); };
+  const auto distance = [&](int landmark) { return (positions[idx(landmark)] - to).norm(); };
   double reach = 0.0;
   for (const Entry& one : found) reach = std::max(reach, distance(one.second));
   index_->reach = reach;

@@ -10,7 +10,7 @@
 // and built anew when it is next asked. So insert and move never fail.
 #pragma once
 
-#include "trussmap/landmark_map.hpp"
+#include "trussmap/planar.hpp"
 
 #include <memory>
 #include <vector>
@@ -25,9 +25,12 @@ class NearestLandmarks {
   void insert(int landmark, const Vector2& position) noexcept;
   void move(int landmark, const Vector2& to) noexcept;
 
-  /// The `count` nearest landmarks of the map, which is the one that was followed, in ascending
-  /// order of their numbers; of those equally far the ones with the lowest numbers.
-  [[nodiscard]] std::vector<int> nearest(const LandmarkGraph& map, const Vector2& to,
+  /// Most landmarks have moved: build the index anew when it is next asked.
+  void drop() noexcept;
+
+  /// The `count` landmarks nearest to a point, of those at `positions` (which were followed), in
+  /// ascending order of their numbers; of those equally far the ones with the lowest numbers.
+  [[nodiscard]] std::vector<int> nearest(const std::vector<Vector2>& positions, const Vector2& to,
                                          int count) const;
 
  private:

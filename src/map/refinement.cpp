@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "map/refinement.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace trussmap {
 
 RefinementLoads refinement_loads(const Vector2& present, const Vector2& target,
@@ -18,14 +15,6 @@ RefinementLoads refinement_loads(const Vector2& present, const Vector2& target,
   if (adjacent_i) loads.force_i += *adjacent_i * loads.desired_i;
   if (adjacent_j) loads.force_j += *adjacent_j * loads.desired_j;
   return loads;
-}
-
-double limited_gain(const Vector2& obtained, const Vector2& desired, double limit) {
-  const double wanted = desired.squaredNorm();
-  if (!(wanted > 0.0)) return 1.0;
-  const double alpha =
-      std::max(obtained.dot(desired) / wanted, obtained.norm() / std::sqrt(wanted));
-  return alpha > limit ? limit / alpha : 1.0;
 }
 
 }  // namespace trussmap

@@ -16,8 +16,9 @@
 //                                           driven route (none: the term is absent)
 //
 // The forces are then applied to a larger part of the map. Golfarelli, Maio & Rizzi (1998),
-// section 3.3. On a lattice of unequal routes the change reached exceeds the one desired (gain
-// up to 2 and more), and the map diverges: limited_gain() is the repair.
+// section 3.3. The change reached on a lattice exceeds the one desired where bars are stiffer one
+// way than the other: at a ratio of 9 by 1.13, at 36 by 2, and beyond the map diverges (near
+// borders earlier). Relaxation (truss/relaxation.hpp) does not.
 #pragma once
 
 #include "trussmap/planar.hpp"
@@ -39,10 +40,5 @@ struct RefinementLoads {
                                                const Matrix2& stiffness,
                                                const std::optional<Matrix2>& adjacent_i,
                                                const std::optional<Matrix2>& adjacent_j);
-
-/// Factor <= 1 for all displacements such that the change obtained on the route, `obtained` =
-/// u_j - u_i, stays within `limit` of the one desired: 1 or limit/alpha with
-/// alpha = max(obtained.desired/|desired|^2, |obtained|/|desired|), desired = w - d.
-[[nodiscard]] double limited_gain(const Vector2& obtained, const Vector2& desired, double limit);
 
 }  // namespace trussmap

@@ -161,4 +161,41 @@ double survey_rms(const LandmarkPositions& map, const std::vector<SurveyPoint>& 
   return common.names.size() < 2 ? 0.0 : align_rigidly(common.in_map, common.surveyed).rms;
 }
 
+MapErrors map_errors(const LandmarkGraph& map, const LandmarkPositions& truth, Laid laid) {
+  std::vector<Vector2> found;
+  std::vector<Vector2> true_places;
+  for (int k = 0; k < map.landmarks(); ++k) {
+    const auto at = truth.find(map.landmark(k).name);
+    if (at == truth.end()) continue;
+    found.push_back(map.landmark(k).position);
+    true_places.push_back(at->second);
+  }
+  if (found.size() < 2) throw std::invalid_argument("the truth has fewer than two landmarks");
+  Alignment onto;
+  if (laid == Laid::aligned) onto = align_rigidly(found, true_places);
+  MapErrors errors;
+  const std::size_t first = laid == Laid::aligned ? 0 : 1;
+  double sum = 0.0;
+  for (std::size_t k = first; k < found.size(); ++k) {
+    sum += (onto.apply(found[k]) - true_places[k]).norm();
+  }
+  errors.position = sum / static_cast<double>(found.size() - first);
+  for (int number = 0; number < map.routes(); ++number) {
+    const Landmark& source = map.landmark(map.route(number).source);
+    const Landmark& target = map.landmark(map.route(number).target);
+    const auto from = truth.find(source.name);
+    const auto to = truth.find(target.name);
+    if (from == truth.end() || to == truth.end()) continue;
+    const Vector2 way = to->second - from->second;
+    if (!(way.norm() > 0.0)) continue;
+    const Vector2 lies = rotation(onto.angle) * (target.position - source.position);
+    errors.stretch += std::abs(lies.norm() - way.norm()) / way.norm();
+    errors.orientation += std::abs(wrap_angle(direction(lies) - direction(way)));
+    ++errors.routes;
+  }
+  errors.stretch /= std::max(1, errors.routes);
+  errors.orientation /= std::max(1, errors.routes);
+  return errors;
+}
+
 }  // namespace trussmap

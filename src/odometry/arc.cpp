@@ -155,4 +155,17 @@ Motion then(const Motion& first, const Motion& second) {
       symmetrised(F * first.covariance * F.transpose() + T * second.covariance * T.transpose())};
 }
 
+LandmarkOffset seen_at(double range, double bearing, double sd_range, double sd_bearing) {
+  const bool finite = std::isfinite(range) && std::isfinite(bearing) && std::isfinite(sd_range) &&
+                      std::isfinite(sd_bearing);
+  if (!finite || !(range > 0.0) || !(sd_range > 0.0) || !(sd_bearing >= 0.0)) {
+    throw std::invalid_argument(
+        "a sighting needs a finite range and bearing with their standard deviations, the range's "
+        "above 0");
+  }
+  const Matrix2 R = rotation(bearing);
+  const Vector2 variances(sd_range * sd_range, range * range * sd_bearing * sd_bearing);
+  return {R.col(0) * range, R * variances.asDiagonal() * R.transpose()};
+}
+
 }  // namespace trussmap

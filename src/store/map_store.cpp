@@ -21,9 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kVersion = 2;
 constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::gauss_markov};
-constexpr std::array kEtas{Eta::Kind::all, Eta::Kind::fixed, Eta::Kind::estimated};
+constexpr std::array kScopes{RefinementScope::Kind::automatic, RefinementScope::Kind::all,
+                             RefinementScope::Kind::nearest, RefinementScope::Kind::estimated};
+constexpr std::array kLaws{StiffnessLaw::mean_error, StiffnessLaw::variance};
 constexpr int kCallKinds = 5;
 
 constexpr const char* kTaken = "is being written by another program, expected one at a time";
@@ -69,9 +71,15 @@ fs::path lock_of(const fs::path& place) {
   return followed;
 }
 
-std::string eta_name(Eta::Kind kind) {
-  if (kind == Eta::Kind::all) return "all";
-  return kind == Eta::Kind::fixed ? "fixed" : "estimated";
+std::string scope_name(RefinementScope::Kind kind) {
+  if (kind == RefinementScope::Kind::automatic) return "automatic";
+  if (kind == RefinementScope::Kind::all) return "all";
+  return kind == RefinementScope::Kind::nearest ? "nearest" : "estimated";
+}
+
+std::string law_name(const std::optional<StiffnessLaw>& law) {
+  if (!law) return "own";
+  return *law == StiffnessLaw::variance ? "variance" : "mean error";
 }
 
 class Facts {
@@ -106,10 +114,10 @@ class Facts {
 
 void put_options(Facts& facts, const MapBuilderOptions& options) {
   facts.put("method", name_of(options.method));
-  facts.put("eta", eta_name(options.eta.kind));
-  facts.put("eta_count", options.eta.count);
-  facts.put("hold_first", options.eta.hold_first ? 1 : 0);
-  facts.put("gain_limit", options.gain_limit);
+  facts.put("scope", scope_name(options.scope.kind));
+  facts.put("eta", options.scope.eta);
+  facts.put("groups", options.scope.groups ? 1 : 0);
+  facts.put("law", law_name(options.law));
   facts.put("refine", options.refine ? 1 : 0);
   facts.put("pooled", options.pooled ? 1 : 0);
   facts.put("gate", options.gate);
@@ -118,19 +126,24 @@ void put_options(Facts& facts, const MapBuilderOptions& options) {
 MapBuilderOptions options_in(Facts& facts) {
   MapBuilderOptions options;
   const std::string method = facts.text("method");
-  const std::string eta = facts.text("eta");
+  const std::string scope = facts.text("scope");
+  const std::string law = facts.text("law");
   const auto named = std::find_if(kMethods.begin(), kMethods.end(),
                                   [&](Method one) { return name_of(one) == method; });
-  const auto kind =
-      std::find_if(kEtas.begin(), kEtas.end(), [&](Eta::Kind one) { return eta_name(one) == eta; });
-  if (named == kMethods.end() || kind == kEtas.end()) {
+  const auto kind = std::find_if(kScopes.begin(), kScopes.end(), [&](RefinementScope::Kind one) {
+    return scope_name(one) == scope;
+  });
+  const auto lawful = std::find_if(kLaws.begin(), kLaws.end(),
+                                   [&](StiffnessLaw one) { return law_name(one) == law; });
+  if (named == kMethods.end() || kind == kScopes.end() ||
+      (lawful == kLaws.end() && law != law_name({}))) {
     throw std::invalid_argument("a method that is unknown");
   }
   options.method = *named;
-  options.eta.kind = *kind;
-  options.eta.count = static_cast<int>(std::clamp(facts.real("eta_count"), 0.0, 1e9));
-  options.eta.hold_first = facts.real("hold_first") != 0.0;
-  options.gain_limit = facts.real("gain_limit");
+  options.scope.kind = *kind;
+  options.scope.eta = static_cast<int>(std::clamp(facts.real("eta"), 0.0, 1e9));
+  options.scope.groups = facts.real("groups") != 0.0;
+  if (lawful != kLaws.end()) options.law = *lawful;
   options.refine = facts.real("refine") != 0.0;
   options.pooled = facts.real("pooled") != 0.0;
   options.gate = facts.real("gate");
@@ -145,8 +158,9 @@ void make(const Database& database, const MapBuilderOptions& options) {
     CREATE TABLE sessions(number INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE,
                           name TEXT NOT NULL, first_leg INTEGER NOT NULL, legs INTEGER NOT NULL);
     CREATE TABLE legs(number INTEGER PRIMARY KEY, session INTEGER, kind INTEGER NOT NULL,
-                      source INTEGER, target INTEGER, dx REAL, dy REAL, c_xx REAL, c_xy REAL,
-                      c_yy REAL, gain REAL, outcome INTEGER);
+                      source INTEGER, target INTEGER, own_axes INTEGER, dx REAL, dy REAL,
+                      turn REAL, c_xx REAL, c_xy REAL, c_yy REAL, c_xt REAL, c_yt REAL, c_tt REAL,
+                      ox REAL, oy REAL, o_xx REAL, o_xy REAL, o_yy REAL, outcome INTEGER);
   )sql");
   create_memory_tables(database);
   Facts facts(database);
@@ -165,11 +179,13 @@ std::string on_one_line(const std::string& text) {
 
 /// How the store's tables were made, and all triggers. Statements in either could do anything.
 std::vector<std::string> tables_of(const Database& database) {
-  Statement rows(database,
-                 "SELECT type || ' ' || name || ' ' || ifnull(sql, '') FROM sqlite_schema "
-                 "WHERE type = 'trigger' OR tbl_name COLLATE NOCASE IN ('facts', 'sessions', "
-                 "'legs', 'landmarks', 'routes', 'chain', 'misfits', 'left_out', 'state', 'map') "
-                 "ORDER BY 1");
+  Statement rows(
+      database,
+      "SELECT type || ' ' || name || ' ' || ifnull(sql, '') FROM sqlite_schema "
+      "WHERE type = 'trigger' OR tbl_name COLLATE NOCASE IN ('facts', 'sessions', "
+      "'legs', 'landmarks', 'routes', 'reckoned', 'corners', 'chain', 'misfits', 'left_out', "
+      "'state', 'map') "
+      "ORDER BY 1");
   std::vector<std::string> tables;
   while (rows.step()) tables.push_back(on_one_line(rows.text(0)));
   return tables;
@@ -266,7 +282,9 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     database_.run("COMMIT");
     rows_.emplace(database_);
     facts_.emplace(database_);
-    put_leg_.emplace(database_, "INSERT INTO legs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    put_leg_.emplace(
+        database_,
+        "INSERT INTO legs VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     version_ = database_.number("PRAGMA data_version");
     load();
     if (options) take(*options);
@@ -310,8 +328,9 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     naming(file_, [&] {
       const Busy busy(busy_);
       Statement rows(database_,
-                     "SELECT kind, source, target, dx, dy, c_xx, c_xy, c_yy, gain, session, "
-                     "outcome, number FROM legs ORDER BY number");
+                     "SELECT kind, source, target, own_axes, dx, dy, turn, c_xx, c_xy, c_yy, c_xt, "
+                     "c_yt, c_tt, ox, oy, o_xx, o_xy, o_yy, session, outcome, number FROM legs "
+                     "ORDER BY number");
       const LandmarkGraph& graph = BuilderAccess::memory(builder()).graph;
       const std::int64_t count = std::ssize(sessions());
       const auto name = [&](int column) {
@@ -326,7 +345,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
       };
       std::int64_t number = 0;
       while (rows.step()) {
-        if (rows.integer(11) != number++) throw misnumbered();
+        if (rows.integer(20) != number++) throw misnumbered();
         StoredLeg one;
         const std::int64_t kind = rows.integer(0);
         if (kind < 0 || kind >= kCallKinds) {
@@ -335,15 +354,20 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
         one.kind = static_cast<StoredLeg::Kind>(kind);
         one.from = name(1);
         one.to = name(2);
-        one.leg.displacement = {rows.real(3), rows.real(4)};
-        one.leg.covariance << rows.real(5), rows.real(6), rows.real(6), rows.real(7);
-        one.gain = rows.real(8);
-        const std::int64_t session = rows.is_null(9) ? -1 : rows.integer(9);
+        one.own_axes = rows.integer(3) != 0;
+        one.leg.displacement = {rows.real(4), rows.real(5)};
+        one.leg.covariance << rows.real(7), rows.real(8), rows.real(8), rows.real(9);
+        one.motion.displacement = {rows.real(4), rows.real(5), rows.real(6)};
+        one.motion.covariance << one.leg.covariance, Vector2(rows.real(10), rows.real(11)),
+            rows.real(10), rows.real(11), rows.real(12);
+        one.seen.offset_robot = {rows.real(13), rows.real(14)};
+        one.seen.covariance_robot << rows.real(15), rows.real(16), rows.real(16), rows.real(17);
+        const std::int64_t session = rows.is_null(18) ? -1 : rows.integer(18);
         if (session >= count) {
           throw InputError(file_.string(), 0, "is damaged: it has a leg of no session");
         }
         one.session = static_cast<int>(std::max<std::int64_t>(session, -1));
-        if (!rows.is_null(10)) one.outcome = outcome_of(rows.integer(10));
+        if (!rows.is_null(19)) one.outcome = outcome_of(rows.integer(19));
         visit(one);
       }
       if (number != legs_) throw misnumbered();
@@ -479,11 +503,20 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     if (in_session) put.bind(1, session_ - 1);  // places in sessions() count from 0
     if (call.from >= 0) put.bind(3, call.from);
     if (call.to >= 0) put.bind(4, call.to);
-    if (call.kind <= BuilderCall::Kind::observe) {
-      put.bind(5, call.leg.displacement).bind(7, call.leg.covariance);
+    put.bind(5, call.reckoned ? 1 : 0);
+    if (call.reckoned || call.kind == BuilderCall::Kind::compass) {
+      const Pose& moved = call.motion.displacement;
+      const Matrix3& C = call.motion.covariance;
+      put.bind(6, moved.position()).bind(8, moved.heading);
+      put.bind(9, Matrix2(C.topLeftCorner<2, 2>())).bind(12, C(0, 2)).bind(13, C(1, 2));
+      put.bind(14, C(2, 2));
+    } else if (call.kind <= BuilderCall::Kind::observe) {
+      put.bind(6, call.leg.displacement).bind(9, call.leg.covariance);
     }
-    if (call.kind == BuilderCall::Kind::settle) put.bind(10, call.gain);
-    if (call.outcome) put.bind(11, static_cast<int>(*call.outcome));
+    if (call.reckoned || call.kind == BuilderCall::Kind::start) {
+      put.bind(15, call.seen.offset_robot).bind(17, call.seen.covariance_robot);
+    }
+    if (call.outcome) put.bind(20, static_cast<int>(*call.outcome));
     put.run();
   }
 
@@ -538,6 +571,11 @@ void MapStore::start(const std::string& landmark, const Vector2& position) {
   impl_->keep([&] { impl_->builder().start(landmark, position); });
 }
 
+void MapStore::start(const std::string& landmark, const LandmarkOffset& seen,
+                     const Vector2& position) {
+  impl_->keep([&] { impl_->builder().start(landmark, seen, position); });
+}
+
 Arrival MapStore::arrive(const std::string& landmark, const Traversal& leg) {
   Arrival arrival;
   impl_->keep([&] { arrival = impl_->builder().arrive(landmark, leg); });
@@ -550,15 +588,26 @@ Arrival MapStore::observe(const std::string& landmark, const Traversal& from_her
   return arrival;
 }
 
-double MapStore::settle(double gain_limit) {
-  double largest_move = 0.0;
-  impl_->keep([&] { largest_move = impl_->builder().settle(gain_limit); });
-  return largest_move;
+void MapStore::compass(double reading, double sd) {
+  impl_->keep([&] { impl_->builder().compass(reading, sd); });
 }
 
-double MapStore::rest() {
+Arrival MapStore::arrive(const std::string& landmark, const Motion& motion,
+                         const LandmarkOffset& seen) {
+  Arrival arrival;
+  impl_->keep([&] { arrival = impl_->builder().arrive(landmark, motion, seen); });
+  return arrival;
+}
+
+Arrival MapStore::observe(const std::string& landmark, const LandmarkOffset& seen) {
+  Arrival arrival;
+  impl_->keep([&] { arrival = impl_->builder().observe(landmark, seen); });
+  return arrival;
+}
+
+double MapStore::relax() {
   double largest_move = 0.0;
-  impl_->keep([&] { largest_move = impl_->builder().rest(); });
+  impl_->keep([&] { largest_move = impl_->builder().relax(); });
   return largest_move;
 }
 

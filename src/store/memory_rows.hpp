@@ -30,17 +30,27 @@ class MemoryRows {
   struct Written {
     std::vector<Vector2> positions;
     std::vector<int> roots;
-    std::vector<int> traversals;  ///< per route, which change whenever the route does
+    struct RouteRow {
+      int traversals = 0;
+      double orientation = 0.0;
+      bool operator==(const RouteRow&) const = default;
+    };
+    std::vector<RouteRow> routes;  ///< of which either changes whenever the route does
+    std::vector<ReckonedRoute> reckoned;
+    std::vector<CornerAverage> corners;
     std::vector<int> chain;
     std::vector<double> misfits;
     std::vector<LeftOutArrival> left_out;
   };
 
   void load_landmarks(BuilderMemory& memory);
-  void load_routes(BuilderMemory& memory, bool with_bars);
+  void load_routes(BuilderMemory& memory, bool weighed);
+  void load_reckoned(BuilderMemory& memory);
   void load_rest(BuilderMemory& memory);
+  void load_state(BuilderMemory& memory);
   void save_landmarks(const BuilderMemory& memory);
-  void save_routes(const BuilderMemory& memory, bool with_bars);
+  void save_routes(const BuilderMemory& memory, bool weighed);
+  void save_reckoned(const BuilderMemory& memory);
   void save_chain(const BuilderMemory& memory);
   void save_gate(const BuilderMemory& memory);
   void save_state(const BuilderMemory& memory);
@@ -50,6 +60,8 @@ class MemoryRows {
   Statement put_landmark_;
   Statement move_landmark_;
   Statement put_route_;
+  Statement put_reckoned_;
+  Statement put_corner_;
   Statement put_link_;
   Statement cut_chain_;
   Statement put_misfit_;

@@ -22,7 +22,7 @@ void require(bool condition) {
 Matrix2 bar_stiffness(StiffnessLaw law, const Matrix2& covariance, double orientation,
                       double traversals) {
   require(traversals > 0.0);
-  if (law == StiffnessLaw::gauss_markov) {
+  if (law == StiffnessLaw::variance) {
     require(covariance(0, 0) > 0.0 && covariance.determinant() > 0.0);
     return traversals * covariance.inverse();
   }
@@ -32,6 +32,12 @@ Matrix2 bar_stiffness(StiffnessLaw law, const Matrix2& covariance, double orient
   const double dx = std::sqrt(2.0 / std::numbers::pi * along_bar(0, 0));
   const double dy = std::sqrt(2.0 / std::numbers::pi * along_bar(1, 1));
   return R * Vector2(traversals / dx, traversals / dy).asDiagonal() * R.transpose();
+}
+
+double spring_stiffness(StiffnessLaw law, double variance, double traversals, double arm) {
+  require(variance > 0.0 && traversals > 0.0 && arm > 0.0);
+  if (law == StiffnessLaw::variance) return traversals / variance;
+  return traversals * arm / std::sqrt(2.0 / std::numbers::pi * variance);
 }
 
 }  // namespace trussmap

@@ -10,6 +10,7 @@
 #include "shared_data.hpp"
 
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ struct Curve {
 
 void expect_close(const SeedMean& ours, const json& curve, const std::string& key,
                   std::size_t tour) {
-  const double reference = curve[key][tour];
+  const double reference = curve[key == "abs" ? "abs_m" : key][tour];
   const double error = curve[key + "_se"][tour];
   EXPECT_LE(std::abs(ours.mean - reference), 4.0 * std::hypot(ours.standard_error, error))
       << key << " after tour " << tour + 1 << ": " << ours.mean << ", reference " << reference;
@@ -66,19 +67,90 @@ TEST(SlowTour, EveryCurveAgreesWithTheReferenceAfterEveryTour) {
     EXPECT_LE(tour.at("gauss_markov").position_error->mean,
               1.15 * tour.at("adjustment").position_error->mean);
   }
-  // The limited gain has no reference: it comes within a quarter of the batch.
-  const MethodMetrics& tour10 = result.tours[9];
-  EXPECT_LE(tour10.at("elastic").stretch_error.mean,
-            1.25 * tour10.at("adjustment").stretch_error.mean);
 }
 
-TEST(SlowTour, OnAnUnevenMeshThePrintedGainDivergesAndTheLimitedDoesNot) {
+struct RelaxationCurve {
+  const char* world;
+  const char* curve;
+  TourOptions options;
+};
+
+/// Refinement by relaxation against curves of a dense program (tests/reference/relaxation.json).
+TEST(SlowTour, RelaxationAgreesWithTheReferenceAfterEveryTour) {
+  const json curves = testing::reference("relaxation.json")["curves"];
+  using Kind = RefinementScope::Kind;
+  const Mesh even = even_mesh({6, 6}, 1.0);
+  const Mesh larger = even_mesh({8, 8}, 1.0);
+  const Mesh uneven = mesh_of_lines({0, 1, 9, 11, 21, 22}, {0, 6, 7, 8, 17, 20});
+  const std::string six = "6x6, 1 m, 5 %, 0.03 rad";
+  const std::string eight = "8x8, 1 m, 10 %, 0.02 rad";
+  int compared = 0;
+  for (const auto& [world, of_world] : curves.items()) {
+    TourOptions options;
+    if (world == six) {
+      options.mesh = even;
+    } else if (world == eight) {
+      options.mesh = larger;
+      options.odometry_error = 0.10;
+      options.compass_error = 0.02;
+    } else if (world.find("uneven") != std::string::npos ||
+               world.find("1 to 10") != std::string::npos) {
+      options.mesh = uneven;
+    } else {
+      continue;
+    }
+    for (const auto& [name, curve] : of_world.items()) {
+      if (name.find("closings too") == std::string::npos) continue;
+      SCOPED_TRACE(world + ": " + name);
+      options.law = name.find("variance") == 0 ? StiffnessLaw::variance : StiffnessLaw::mean_error;
+      const std::size_t at = name.find("eta ") + 4;
+      options.scope = name.compare(at, 3, "all") == 0
+                          ? RefinementScope{Kind::all}
+                          : RefinementScope{Kind::nearest, std::stoi(name.substr(at)), false};
+      const TourResult result = run_tours(options);
+      ++compared;
+      for (std::size_t tour = 0; tour < result.tours.size(); ++tour) {
+        const TourMetrics& ours = result.tours[tour].at("elastic");
+        expect_close(ours.stretch_error, curve, "sigma", tour);
+        expect_close(ours.orientation_error, curve, "rho", tour);
+        expect_close(*ours.position_error, curve, "abs", tour);
+      }
+    }
+  }
+  EXPECT_GE(compared, 12);
+}
+
+TEST(SlowTour, OnAnUnevenMeshThePrintedRefinementDivergesAndRelaxationDoesNot) {
   TourOptions options;
   options.mesh = mesh_of_lines({0, 1, 9, 11, 21, 22}, {0, 6, 7, 8, 17, 20});
   options.tours = 10;
   const TourResult result = run_tours(options);
   EXPECT_LT(result.tours[9].at("elastic").stretch_error.mean, 0.016);
   EXPECT_GT(result.tours[9].at("elastic_printed").stretch_error.mean, 0.1);
+}
+
+/// From wheels to map, with a compass once per landmark, once per tour, in each row, or without.
+TEST(Tour, FromWheelsTheElasticMapIsNearlyTheBest) {
+  for (const CompassReadings readings : {CompassReadings::none, CompassReadings::tour,
+                                         CompassReadings::landmark, CompassReadings::row}) {
+    TourOptions options;
+    options.mesh = even_mesh({5, 5}, 5.0);
+    options.tours = 3;
+    options.seeds = 6;
+    options.wheels = TourWheels{0.003, 0.34, readings};
+    const TourResult result = run_tours(options);
+    SCOPED_TRACE(static_cast<int>(readings));
+    const MethodMetrics& last = result.tours[2];
+    const double best = last.at("adjustment").position_error->mean;
+    EXPECT_LT(last.at("elastic").position_error->mean, 1.5 * best);
+    EXPECT_LT(last.at("gauss_markov").position_error->mean, 1.5 * best);
+    for (const MethodMetrics& tour : result.tours) {
+      EXPECT_LT(tour.at("elastic").position_error->mean,
+                0.5 * tour.at("dead_reckoning").position_error->mean);
+    }
+    EXPECT_LT(last.at("elastic").orientation_error.mean,
+              0.5 * last.at("raw").orientation_error.mean);
+  }
 }
 
 TEST(Tour, SeedsDoNotDependOnOneAnother) {

@@ -262,8 +262,8 @@ void fuzz_store(std::string_view bytes) {
           session.arrive(first, leg);
         });
       });
-      may_decline(store, [&] { store.settle(0.5); });
-      may_decline(store, [&] { store.rest(); });
+      may_decline(store, [&] { store.compass(0.1, 0.05); });
+      may_decline(store, [&] { store.relax(); });
       store.set_note("page", "p");
       left = all_of(store);
     }

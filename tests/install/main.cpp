@@ -11,7 +11,7 @@
 int main() {
   using namespace trussmap;
   const Matrix2 covariance = 0.01 * Matrix2::Identity();
-  const Matrix2 stiffness = bar_stiffness(StiffnessLaw::gauss_markov, covariance, 0.0, 1.0);
+  const Matrix2 stiffness = bar_stiffness(StiffnessLaw::variance, covariance, 0.0, 1.0);
   const Vector2 misclosure(0.4, -0.2);
   const Deflection deflection =
       solve_truss(5, {{0, 1, stiffness}, {1, 2, stiffness}, {2, 3, stiffness}, {3, 4, stiffness}},

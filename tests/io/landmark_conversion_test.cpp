@@ -37,7 +37,7 @@ TEST(LandmarkConversion, AdjustsToTheGaussMarkovTruss) {
   for (int k = 0; k < map.routes(); ++k) {
     const Route& r = map.route(k);
     const Matrix2 B =
-        bar_stiffness(StiffnessLaw::gauss_markov, r.covariance, r.orientation, r.traversals);
+        bar_stiffness(StiffnessLaw::variance, r.covariance, r.orientation, r.traversals);
     bars.push_back({r.source, r.target, B});
     loads.push_back({r.target, B * r.displacement});
     loads.push_back({r.source, -B * r.displacement});

@@ -75,17 +75,19 @@ void drive_on(MapBuilder& builder) {
   builder.arrive("I", leg(0.1, 9.0));
   builder.arrive("C", leg(-10.1, -9.2));
   builder.arrive("D", leg(-9.9, 0.1));
-  builder.settle(0.5);
+  builder.relax();
 }
 
 std::vector<MapBuilderOptions> every_kind_of_builder() {
   std::vector<MapBuilderOptions> kinds;
-  for (const Eta::Kind eta : {Eta::Kind::fixed, Eta::Kind::all, Eta::Kind::estimated}) {
+  using Kind = RefinementScope::Kind;
+  for (const Kind kind : {Kind::nearest, Kind::all, Kind::estimated}) {
     for (const Method method : {Method::elastic, Method::elastic_printed}) {
-      kinds.push_back({.method = method, .eta = {eta, 4}});
+      kinds.push_back({.method = method, .scope = {kind, 4}});
     }
   }
-  kinds.push_back({.eta = {Eta::Kind::all, 4, false}});
+  kinds.push_back({.scope = {Kind::nearest, 4, false}});
+  kinds.push_back({.law = StiffnessLaw::variance});
   kinds.push_back({.method = Method::gauss_markov});
   kinds.push_back({.method = Method::gauss_markov, .pooled = true});
   kinds.push_back({.refine = false});
@@ -93,8 +95,9 @@ std::vector<MapBuilderOptions> every_kind_of_builder() {
 }
 
 std::string words(const MapBuilderOptions& options) {
-  return name_of(options.method) + ", eta " + std::to_string(static_cast<int>(options.eta.kind)) +
-         (options.pooled ? ", pooled" : "") + (options.refine ? "" : ", first sight only");
+  return name_of(options.method) + ", scope " +
+         std::to_string(static_cast<int>(options.scope.kind)) + (options.pooled ? ", pooled" : "") +
+         (options.refine ? "" : ", first sight only");
 }
 
 struct Call {
@@ -108,7 +111,7 @@ std::vector<Call> every_call() {
       {"a new route", [](MapBuilder& b) { b.arrive("C", leg(-20.0, 10.3)); }},
       {"a known route", [](MapBuilder& b) { b.arrive("G", leg(0.3, 10.2)); }},
       {"a sighting of a new one", [](MapBuilder& b) { b.observe("J", leg(9.0, 1.0)); }},
-      {"settle", [](MapBuilder& b) { b.settle(0.5); }},
+      {"all at once", [](MapBuilder& b) { b.relax(); }},
       {"a new session", [](MapBuilder& b) { b.start("C"); }},
   };
 }
@@ -219,26 +222,6 @@ TEST(MapBuilderFailure, NumbersThatCannotBeSolvedChangeNothing) {
   EXPECT_GT(beside, 10);
 }
 
-/// The far end of a street, reached by legs of absurd covariances that first sight took in, cannot
-/// be solved. Settling has moved the near end when it gets there.
-TEST(MapBuilderFailure, SettlingThatFailsHalfWayMovesNothing) {
-  MapBuilderOptions options{.eta = {Eta::Kind::fixed, 3}, .refine = false};
-  MapBuilder builder(options);
-  builder.start("A");
-  const char* const names[] = {"B", "C", "D", "E", "F"};
-  for (int k = 0; k < 5; ++k) builder.arrive(names[k], leg(100.0, 0.0, k < 3 ? 0.1 : 1e9));
-  builder.arrive("G", leg(100.0, 0.0, 1e-9));
-  builder.start("A");
-  builder.arrive("B", leg(101.0, 0.0));
-  const LandmarkGraph before = builder.map();
-  EXPECT_THROW(builder.settle(0.5), SolveError);
-  for (int k = 0; k < before.landmarks(); ++k) {
-    EXPECT_EQ(builder.position(k), before.landmark(k).position) << before.landmark(k).name;
-  }
-  EXPECT_THROW(builder.settle(0.0), std::invalid_argument);
-  EXPECT_THROW(builder.settle(std::nan("")), std::invalid_argument);
-}
-
 TEST(MapBuilderFailure, AStartThatIsRefusedChangesNothing) {
   MapBuilder builder;
   EXPECT_THROW(builder.start("A", {std::nan(""), 0.0}), std::invalid_argument);
@@ -253,7 +236,7 @@ TEST(MapBuilderFailure, AStartThatIsRefusedChangesNothing) {
 
 /// The message names the landmark, not a joint of some structure.
 TEST(MapBuilderFailure, NamesTheLandmarkThatCannotBeSolved) {
-  MapBuilder builder;
+  MapBuilder builder({.method = Method::elastic_printed});
   builder.start("dock");
   builder.arrive("door", leg(10.0, 0.0, 1e-9));
   builder.arrive("shed", leg(10.0, 0.0, 1e9));

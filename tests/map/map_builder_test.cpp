@@ -9,9 +9,9 @@
 #include "trussmap/truss.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <random>
 
 #include <Eigen/Dense>
@@ -61,19 +61,23 @@ MapBuilder built(const Walk& walk, const MapBuilderOptions& options) {
   return builder;
 }
 
+constexpr std::array kScopes{RefinementScope::Kind::automatic, RefinementScope::Kind::all,
+                             RefinementScope::Kind::nearest, RefinementScope::Kind::estimated};
+
 TEST(MapBuilder, NoiseFreeLegsGiveTheExactMapByEveryMethod) {
   const Walk walk = random_walk(12, 150, 0.0, 3);
   for (const Method method : {Method::elastic, Method::elastic_printed, Method::gauss_markov}) {
-    for (const Eta::Kind kind : {Eta::Kind::all, Eta::Kind::fixed, Eta::Kind::estimated}) {
+    for (const RefinementScope::Kind kind : kScopes) {
       MapBuilderOptions options;
       options.method = method;
-      options.eta = {kind, 5};
+      options.scope = {kind, 5};
       const MapBuilder builder = built(walk, options);
       for (int k = 0; k < builder.landmarks(); ++k) {
         const auto known = builder.find(name(k));
         ASSERT_TRUE(known);
         EXPECT_LE((builder.position(*known) - walk.truth[idx(k)]).norm(), 1e-9);
       }
+      EXPECT_LE(builder.energy(), 1e-12);
     }
   }
 }
@@ -111,103 +115,49 @@ TEST(MapBuilder, GaussMarkovIsTheBatchLeastSquaresMap) {
   }
 }
 
-/// The same recursion with K built anew, densely, at every traversal.
-TEST(MapBuilder, PooledGaussMarkovIsItsRecursion) {
+/// Pooled, it is the least-squares map of the routes' means.
+TEST(MapBuilder, PooledGaussMarkovIsTheBatchOfTheMeans) {
   const Walk walk = random_walk(8, 120, 1.0, 9);
   MapBuilderOptions options;
   options.method = Method::gauss_markov;
   options.pooled = true;
-  MapBuilder builder(options);
-  builder.start(name(0), walk.truth[0]);
-  std::map<std::string, Vector2> expected{{name(0), walk.truth[0]}};
-  LandmarkGraph graph;
-  graph.add_landmark(name(0), walk.truth[0]);
-  for (std::size_t k = 0; k < walk.legs.size(); ++k) {
-    const std::string from = name(walk.visits[k]);
-    const std::string to = name(walk.visits[k + 1]);
-    builder.arrive(to, walk.legs[k]);
-    const bool known = expected.contains(to);
-    if (!known) {
-      expected[to] = expected[from] + walk.legs[k].displacement;
-      graph.add_landmark(to, expected[to]);
-    }
-    const int i = *graph.find(from);
-    const int j = *graph.find(to);
-    const Matrix2 one = graph.route(graph.add_traversal(i, j, walk.legs[k])).covariance.inverse();
-    if (!known) continue;
-    const int n = 2 * graph.landmarks();
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-    for (int number = 0; number < graph.routes(); ++number) {
-      const Route& route = graph.route(number);
-      const Matrix2 B = route.traversals * route.covariance.inverse();
-      K.block<2, 2>(2 * route.source, 2 * route.source) += B;
-      K.block<2, 2>(2 * route.target, 2 * route.target) += B;
-      K.block<2, 2>(2 * route.source, 2 * route.target) -= B;
-      K.block<2, 2>(2 * route.target, 2 * route.source) -= B;
-    }
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
-    const Vector2 force = one * (walk.legs[k].displacement - (expected[to] - expected[from]));
-    f.segment<2>(2 * j) += force;
-    f.segment<2>(2 * i) -= force;
-    const Eigen::VectorXd u = K.bottomRightCorner(n - 2, n - 2).ldlt().solve(f.tail(n - 2));
-    for (int m = 1; m < graph.landmarks(); ++m) {
-      expected[graph.landmark(m).name] += u.segment<2>(2 * (m - 1));
-    }
+  options.gate = std::numeric_limits<double>::infinity();
+  const LandmarkGraph map = built(walk, options).map();
+  const int n = 2 * map.landmarks();
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
+  for (int number = 0; number < map.routes(); ++number) {
+    const Route& route = map.route(number);
+    const int i = 2 * route.source;
+    const int j = 2 * route.target;
+    const Matrix2 B = route.traversals * route.covariance.inverse();
+    K.block<2, 2>(i, i) += B;
+    K.block<2, 2>(j, j) += B;
+    K.block<2, 2>(i, j) -= B;
+    K.block<2, 2>(j, i) -= B;
+    f.segment<2>(j) += B * route.displacement;
+    f.segment<2>(i) -= B * route.displacement;
   }
-  for (const auto& [landmark, position] : expected) {
-    EXPECT_LE((builder.position(*builder.find(landmark)) - position).norm(), 1e-9) << landmark;
+  const Eigen::VectorXd p = K.bottomRightCorner(n - 2, n - 2).ldlt().solve(f.tail(n - 2));
+  for (int k = 1; k < map.landmarks(); ++k) {
+    const Vector2 expected = walk.truth[0] + p.segment<2>(2 * (k - 1));
+    EXPECT_LE((map.landmark(k).position - expected).norm(), 1e-9);
   }
 }
 
 TEST(MapBuilder, ASmallEtaMovesNoMoreLandmarksAndNeverTheFirst) {
   const Walk walk = random_walk(40, 400, 1.0, 5);
   MapBuilderOptions options;
-  options.eta.count = 8;
+  options.scope = {RefinementScope::Kind::nearest, 8, false};
   MapBuilder builder(options);
   builder.start(name(0), walk.truth[0]);
   for (std::size_t k = 0; k < walk.legs.size(); ++k) {
     const Arrival arrival = builder.arrive(name(walk.visits[k + 1]), walk.legs[k]);
+    EXPECT_LE(arrival.eta, 10);
     if (arrival.kind == Arrival::Kind::refinement) {
-      EXPECT_LE(arrival.eta, 10);
+      EXPECT_LE(arrival.landmarks_moved, 10);
     }
     EXPECT_LE((builder.position(0) - walk.truth[0]).norm(), 1e-9);
-  }
-}
-
-/// The part of the desired change that each refinement reached on its own route.
-std::vector<double> gains(const Walk& walk, const MapBuilderOptions& options) {
-  std::vector<double> result;
-  MapBuilder builder(options);
-  builder.start(name(0), walk.truth[0]);
-  for (std::size_t k = 0; k < walk.legs.size(); ++k) {
-    const int from = builder.here();
-    const auto to = builder.find(name(walk.visits[k + 1]));
-    const Vector2 before =
-        to ? Vector2(builder.position(*to) - builder.position(from)) : Vector2(Vector2::Zero());
-    const Arrival arrival = builder.arrive(name(walk.visits[k + 1]), walk.legs[k]);
-    if (arrival.kind != Arrival::Kind::refinement) continue;
-    const Route route = *builder.route_between(from, *to);
-    const Vector2 target =
-        route.source == from ? route.mean_vector() : Vector2(-route.mean_vector());
-    const Vector2 after = builder.position(*to) - builder.position(from);
-    result.push_back((after - before).norm() / (target - before).norm());
-  }
-  return result;
-}
-
-/// As printed some refinements reach more than the limit; limited they all stay within it, and
-/// those that would reach more reach just as much.
-TEST(MapBuilder, TheElasticGainIsLimitedAndThePrintedOneIsNot) {
-  const Walk walk = random_walk(10, 200, 1.0, 6);
-  for (const double limit : {0.5, 0.2}) {
-    MapBuilderOptions options;
-    options.gain_limit = limit;
-    const std::vector<double> limited = gains(walk, options);
-    options.method = Method::elastic_printed;
-    const std::vector<double> printed = gains(walk, options);
-    ASSERT_GT(limited.size(), 50U);
-    EXPECT_NEAR(*std::max_element(limited.begin(), limited.end()), limit, 1e-9);
-    EXPECT_GT(*std::max_element(printed.begin(), printed.end()), 1.1 * limit);
   }
 }
 
@@ -222,10 +172,10 @@ TEST(MapBuilder, ARejectedLegChangesNothing) {
     const LandmarkGraph before = builder.map();
     const int here = builder.here();
     const std::string other = name(here == *builder.find(name(1)) ? 2 : 1);
-    EXPECT_THROW(builder.arrive(other, {{nan, 0.0}, C}), std::invalid_argument);
-    EXPECT_THROW(builder.arrive("new", {{0.0, 0.0}, C}), std::invalid_argument);
-    EXPECT_THROW(builder.arrive(other, {{1.0, 0.0}, -C}), std::invalid_argument);
-    EXPECT_THROW(builder.arrive(before.landmark(here).name, {{1.0, 0.0}, C}),
+    EXPECT_THROW(builder.arrive(other, Traversal{{nan, 0.0}, C}), std::invalid_argument);
+    EXPECT_THROW(builder.arrive("new", Traversal{{0.0, 0.0}, C}), std::invalid_argument);
+    EXPECT_THROW(builder.arrive(other, Traversal{{1.0, 0.0}, -C}), std::invalid_argument);
+    EXPECT_THROW(builder.arrive(before.landmark(here).name, Traversal{{1.0, 0.0}, C}),
                  std::invalid_argument);
     EXPECT_THROW(builder.start("never seen"), SolveError);
     const LandmarkGraph after = builder.map();
@@ -240,9 +190,9 @@ TEST(MapBuilder, ARejectedLegChangesNothing) {
       EXPECT_EQ(after.route(k).stretch, before.route(k).stretch);
     }
   }
-  EXPECT_THROW(MapBuilder().arrive("A", {{1.0, 0.0}, C}), std::invalid_argument);
+  EXPECT_THROW(MapBuilder().arrive("A", Traversal{{1.0, 0.0}, C}), std::invalid_argument);
   MapBuilderOptions bad;
-  bad.gain_limit = 0.0;
+  bad.scope.eta = 1;
   EXPECT_THROW(MapBuilder{bad}, std::invalid_argument);
 }
 
@@ -257,7 +207,7 @@ TEST(MapBuilder, AClosedPolygonSharesItsMisclosureOut) {
     const double angle = k * 1.0471975511965976 + 0.02 * k;
     const Vector2 leg(std::cos(angle), std::sin(angle));
     sum += leg;
-    last = builder.arrive(name((k + 1) % 6), {leg, 0.01 * Matrix2::Identity()});
+    last = builder.arrive(name((k + 1) % 6), Traversal{leg, 0.01 * Matrix2::Identity()});
   }
   EXPECT_EQ(last.kind, Arrival::Kind::first_sight);
   EXPECT_EQ(last.landmarks_moved, 5);
@@ -266,36 +216,68 @@ TEST(MapBuilder, AClosedPolygonSharesItsMisclosureOut) {
   EXPECT_LE((builder.position(1) - (Vector2(1.0, 0.0) - sum / 6.0)).norm(), 1e-12);
 }
 
-TEST(MapBuilder, SettlingComesToRest) {
-  const Walk walk = random_walk(10, 120, 1.0, 8);
-  MapBuilder builder = built(walk, {});
-  const double first = builder.settle(0.5);
-  double later = first;
-  for (int round = 2; round <= 40; ++round) later = builder.settle(0.5 / round);
-  EXPECT_LT(later, 0.2 * first);
+/// At equilibrium the routes' forces balance at every landmark but the held first.
+TEST(MapBuilder, WithAllLandmarksFreeNoForceIsLeft) {
+  for (const StiffnessLaw law : {StiffnessLaw::mean_error, StiffnessLaw::variance}) {
+    MapBuilderOptions options;
+    options.law = law;
+    options.pooled = true;
+    const MapBuilder builder = built(random_walk(10, 120, 1.0, 9), options);
+    const LandmarkGraph map = builder.map();
+    std::vector<Vector2> force(idx(map.landmarks()), Vector2::Zero());
+    double largest = 0.0;
+    double energy = 0.0;
+    for (int k = 0; k < map.routes(); ++k) {
+      const Route& route = map.route(k);
+      const Vector2 span =
+          map.landmark(route.target).position - map.landmark(route.source).position;
+      const Matrix2 B = bar_stiffness(law, route.covariance, route.orientation, route.traversals);
+      const Vector2 rest = law == StiffnessLaw::variance ? route.displacement : route.mean_vector();
+      const Vector2 pull = B * (rest - span);
+      energy += 0.5 * pull.dot(rest - span);
+      largest = std::max(largest, pull.norm());
+      force[idx(route.target)] += pull;
+      force[idx(route.source)] -= pull;
+    }
+    for (int k = 1; k < map.landmarks(); ++k) EXPECT_LE(force[idx(k)].norm(), 1e-9 * largest) << k;
+    EXPECT_NEAR(builder.energy(), energy, 1e-9 * energy);
+  }
 }
 
-/// At rest the routes' forces balance at every landmark but the held first: the minimum of their
-/// strain energy, solved densely here.
-TEST(MapBuilder, AtRestNoForceIsLeft) {
-  MapBuilder builder = built(random_walk(10, 120, 1.0, 9), {});
-  builder.rest();
-  EXPECT_LE(builder.rest(), 1e-2);  // stiffness has followed the routes' directions
-  for (int round = 0; round < 10; ++round) builder.rest();
-  const LandmarkGraph map = builder.map();
-  std::vector<Vector2> force(idx(map.landmarks()), Vector2::Zero());
-  double largest = 0.0;
-  for (int k = 0; k < map.routes(); ++k) {
-    const Route& route = map.route(k);
-    const Vector2 span = map.landmark(route.target).position - map.landmark(route.source).position;
-    const Matrix2 B =
-        bar_stiffness(StiffnessLaw::printed, route.covariance, direction(span), route.traversals);
-    const Vector2 pull = B * (route.mean_vector() - span);
-    largest = std::max(largest, pull.norm());
-    force[idx(route.target)] += pull;
-    force[idx(route.source)] -= pull;
+/// Whatever the scope, the energy at the end of many tours is that of the equilibrium, or near.
+TEST(MapBuilder, RelaxingTheWholeLetsTheEnergyFallToItsLeast) {
+  const Walk walk = random_walk(40, 400, 1.0, 9);
+  MapBuilder exact = built(walk, {});
+  const double least = exact.energy();
+  for (const bool groups : {false, true}) {
+    MapBuilderOptions options;
+    options.scope = {RefinementScope::Kind::nearest, 9, groups};
+    MapBuilder builder = built(walk, options);
+    EXPECT_GE(builder.energy(), least * (1.0 - 1e-9));
+    EXPECT_LE(builder.energy(), least * (groups ? 1.05 : 3.0));
+    builder.relax();
+    EXPECT_NEAR(builder.energy(), least, 1e-9 * least);
+    for (int k = 0; k < builder.landmarks(); ++k) {
+      const Vector2 other = exact.position(*exact.find(builder.map().landmark(k).name));
+      EXPECT_LE((builder.position(k) - other).norm(), 1e-7);
+    }
   }
-  for (int k = 1; k < map.landmarks(); ++k) EXPECT_LE(force[idx(k)].norm(), 1e-6 * largest) << k;
+}
+
+TEST(MapBuilder, KnowsTheNearestLandmarksOfAPoint) {
+  const Walk walk = random_walk(30, 300, 1.0, 10);
+  const MapBuilder builder = built(walk, {});
+  const Vector2 point(8.0, 3.0);
+  const std::vector<int> near = builder.nearest(point, 7);
+  ASSERT_EQ(near.size(), 7U);
+  std::vector<double> all;
+  for (int k = 0; k < builder.landmarks(); ++k) all.push_back((builder.position(k) - point).norm());
+  std::sort(all.begin(), all.end());
+  for (std::size_t n = 0; n < near.size(); ++n) {
+    EXPECT_EQ((builder.position(near[n]) - point).norm(), all[n]);
+  }
+  EXPECT_EQ(builder.nearest(point, 1000).size(), idx(builder.landmarks()));
+  EXPECT_THROW((void)builder.nearest(point, 0), std::invalid_argument);
 }
 
 /// Exact increments know no more of the past than the routes' averages where the covariances of all
@@ -306,7 +288,7 @@ TEST(MapBuilder, GoesOnFromAMap) {
   for (const Method method : {Method::elastic, Method::gauss_markov}) {
     MapBuilderOptions options;
     options.method = method;
-    options.eta = {Eta::Kind::fixed, 5, false};
+    options.scope = {RefinementScope::Kind::nearest, 5};
     options.gate = std::numeric_limits<double>::infinity();
     Walk half = walk;
     half.legs.resize(120);

@@ -30,7 +30,7 @@ constexpr double kTolerance = 1e-10;
 class RefinementStep : public ::testing::TestWithParam<testing::Case> {};
 
 Matrix2 stiffness_of(const json& bar) {
-  return bar_stiffness(StiffnessLaw::printed, matrix<2, 2>(bar["C"]), bar["theta"], bar["t"]);
+  return bar_stiffness(StiffnessLaw::mean_error, matrix<2, 2>(bar["C"]), bar["theta"], bar["t"]);
 }
 
 std::optional<Matrix2> adjacent(const json& c, const std::string& key) {
@@ -75,7 +75,7 @@ TEST_P(DrivenRoute, TheMapBuilderChoosesTheSameNeighboursAndMoves) {
   const std::size_t refined = c["route"];
   MapBuilderOptions options;
   options.method = Method::elastic_printed;
-  options.eta.kind = Eta::Kind::all;
+  options.scope.kind = RefinementScope::Kind::all;
   options.refine = false;
   const auto node = [&c](int n) { return vector2(c["nodes"][idx(n)]); };
   const auto name = [](int n) { return "n" + std::to_string(n); };
@@ -98,7 +98,7 @@ TEST_P(DrivenRoute, TheMapBuilderChoosesTheSameNeighboursAndMoves) {
       const int before = bar["t"].get<int>() - (b == refined ? 1 : 0);
       for (int t = 0; t < before; ++t) {
         builder.start(name(from));
-        builder.arrive(name(to), {node(to) - node(from), matrix<2, 2>(bar["C"])});
+        builder.arrive(name(to), Traversal{node(to) - node(from), matrix<2, 2>(bar["C"])});
       }
       driven[b] = true;
       met[idx(to)] = true;
@@ -119,8 +119,8 @@ TEST_P(DrivenRoute, TheMapBuilderChoosesTheSameNeighboursAndMoves) {
   builder.set_options(options);
   builder.start(name(i));
   const Arrival arrival = builder.arrive(
-      name(j),
-      {stretch * Vector2(std::cos(orientation), std::sin(orientation)), matrix<2, 2>(bar["C"])});
+      name(j), Traversal{stretch * Vector2(std::cos(orientation), std::sin(orientation)),
+                         matrix<2, 2>(bar["C"])});
   EXPECT_EQ(arrival.kind, Arrival::Kind::refinement);
   for (int n = 0; n < static_cast<int>(c["nodes"].size()); ++n) {
     const Vector2 expected = node(n) + vector2(c["displacements"][idx(n)]);

@@ -108,9 +108,11 @@ void expect_alike(const MapBuilder& a, const MapBuilder& b, double tolerance) {
 std::vector<MapBuilderOptions> many_options() {
   std::vector<MapBuilderOptions> result;
   for (const Method method : {Method::elastic, Method::elastic_printed, Method::gauss_markov}) {
-    for (const Eta::Kind kind : {Eta::Kind::all, Eta::Kind::fixed, Eta::Kind::estimated}) {
+    for (const RefinementScope::Kind kind :
+         {RefinementScope::Kind::all, RefinementScope::Kind::nearest,
+          RefinementScope::Kind::estimated}) {
       result.push_back(
-          {.method = method, .eta = {kind, 5, false}, .pooled = kind == Eta::Kind::all});
+          {.method = method, .scope = {kind, 5}, .pooled = kind == RefinementScope::Kind::all});
     }
   }
   return result;
@@ -158,8 +160,8 @@ TEST_F(MapStoreTest, EveryLegIsKeptAsItWasGiven) {
   store.start(name(0), {3.0, -1.0});
   store.append("monday", "Monday's tour", [&](MapBuilder& builder) {
     for (const Step& step : steps) take(builder, step);
-    builder.settle(0.25);
-    builder.rest();
+    builder.compass(0.1, 0.05);
+    builder.relax();
   });
   EXPECT_EQ(store.legs(), 123);
   ASSERT_EQ(store.sessions().size(), 1U);
@@ -181,10 +183,11 @@ TEST_F(MapStoreTest, EveryLegIsKeptAsItWasGiven) {
         return static_cast<void>(again.arrive(one.to, one.leg));
       case StoredLeg::Kind::observe:
         return static_cast<void>(again.observe(one.to, one.leg));
-      case StoredLeg::Kind::settle:
-        return static_cast<void>(again.settle(one.gain));
-      case StoredLeg::Kind::rest:
-        return static_cast<void>(again.rest());
+      case StoredLeg::Kind::compass:
+        return again.compass(one.motion.displacement.heading,
+                             std::sqrt(one.motion.covariance(2, 2)));
+      case StoredLeg::Kind::relax:
+        return static_cast<void>(again.relax());
     }
   });
   EXPECT_EQ(in_session, 122);
@@ -199,7 +202,7 @@ TEST_F(MapStoreTest, ASessionThatThrowsIsNotKeptAtAll) {
   store.start(name(0));
   const auto halfway = [&](MapBuilder& builder) {
     for (std::size_t k = 0; k < 30; ++k) take(builder, steps[k]);
-    builder.arrive("nowhere", {});  // no leg
+    builder.arrive("nowhere", Traversal{});  // no leg
   };
   EXPECT_THROW(store.append("s", "s", halfway), std::invalid_argument);
   EXPECT_FALSE(store.has_session("s"));
@@ -208,7 +211,7 @@ TEST_F(MapStoreTest, ASessionThatThrowsIsNotKeptAtAll) {
   for (const Step& step : steps) {
     take(twin, step);
     take(store, step);
-    EXPECT_THROW(store.arrive("nowhere", {}), std::invalid_argument);
+    EXPECT_THROW(store.arrive("nowhere", Traversal{}), std::invalid_argument);
   }
   expect_alike(store.builder(), twin, kExact);
   EXPECT_EQ(store.legs(), 61);
@@ -220,7 +223,7 @@ TEST_F(MapStoreTest, ASessionThatThrowsIsNotKeptAtAll) {
 TEST_F(MapStoreTest, OneWriterAtATimeAndReadersMeanwhile) {
   MapStore store(file_);
   store.start("dock");
-  store.arrive("door", {{4.0, 0.3}, 0.01 * Matrix2::Identity()});
+  store.arrive("door", Traversal{{4.0, 0.3}, 0.01 * Matrix2::Identity()});
   try {
     MapStore second(file_);
     FAIL() << "two writers";
@@ -232,7 +235,7 @@ TEST_F(MapStoreTest, OneWriterAtATimeAndReadersMeanwhile) {
   const StoredMap read = read_map_store(file_);
   EXPECT_EQ(read.map.landmarks(), 2);
   EXPECT_EQ(read.legs, 2);
-  store.arrive("stairs", {{0.0, 3.0}, 0.01 * Matrix2::Identity()});
+  store.arrive("stairs", Traversal{{0.0, 3.0}, 0.01 * Matrix2::Identity()});
   EXPECT_EQ(read_map_store(file_).map.landmarks(), 3);
   store = MapStore(scratch_.path() / "other.db");
   EXPECT_FALSE(fs::exists(file_.string() + "-wal"));
@@ -272,22 +275,25 @@ TEST_F(MapStoreTest, AMapGoesInAndOut) {
 
 TEST_F(MapStoreTest, OptionsAreKeptOrTaken) {
   {
-    MapStore store(file_, MapBuilderOptions{.eta = {Eta::Kind::fixed, 7}, .gain_limit = 0.3});
+    MapStore store(file_, MapBuilderOptions{.scope = {RefinementScope::Kind::nearest, 7},
+                                            .law = StiffnessLaw::variance});
     store.set_note("axes", "compass");
     store.start("A");
   }
   {
     MapStore store(file_);
-    EXPECT_EQ(store.builder().options().eta.count, 7);
-    EXPECT_EQ(store.builder().options().gain_limit, 0.3);
+    EXPECT_EQ(store.builder().options().scope.eta, 7);
+    EXPECT_EQ(store.builder().options().law, StiffnessLaw::variance);
     EXPECT_EQ(store.note("axes"), "compass");
     EXPECT_EQ(store.note("other"), "");
   }
   EXPECT_THROW(MapStore(file_, MapBuilderOptions{.method = Method::gauss_markov}),
                std::invalid_argument);
-  EXPECT_THROW(MapStore(file_, MapBuilderOptions{.gain_limit = 2.0}), std::invalid_argument);
-  MapStore(file_, MapBuilderOptions{.gain_limit = 0.4});
-  EXPECT_EQ(MapStore(file_).builder().options().gain_limit, 0.4);
+  EXPECT_THROW(MapStore(file_, MapBuilderOptions{.scope = {RefinementScope::Kind::nearest, 1}}),
+               std::invalid_argument);
+  MapStore(file_, MapBuilderOptions{.scope = {RefinementScope::Kind::nearest, 8},
+                                    .law = StiffnessLaw::variance});
+  EXPECT_EQ(MapStore(file_).builder().options().scope.eta, 8);
   const double infinity = std::numeric_limits<double>::infinity();
   const fs::path ungated = scratch_.path() / "ungated.db";
   MapStore(ungated, MapBuilderOptions{.method = Method::gauss_markov, .gate = infinity});
@@ -336,12 +342,12 @@ TEST_F(MapStoreTest, NothingIsLeftOfACallWithinACall) {
   EXPECT_THROW(store.append("s", "s", exchanged), std::logic_error);
   const auto set = [](MapBuilder& builder) {
     MapBuilderOptions options = builder.options();
-    options.gain_limit = 0.1;
+    options.scope.eta = 9;
     builder.set_options(options);
     throw std::runtime_error("enough");
   };
   EXPECT_THROW(store.append("s", "s", set), std::runtime_error);
-  EXPECT_EQ(store.builder().options().gain_limit, MapBuilderOptions().gain_limit);
+  EXPECT_EQ(store.builder().options().scope.eta, MapBuilderOptions().scope.eta);
   EXPECT_EQ(store.builder().landmarks(), 2);
   store.arrive("C", leg);
   EXPECT_EQ(store.legs(), 3);
@@ -412,7 +418,7 @@ TEST_F(MapStoreTest, DamagedFilesAreRefused) {
       static_cast<void>(read_map_store(file_));
       MapStore store(file_);
       store.start(name(0));
-      store.arrive(name(1), {{1.0, 2.0}, 0.01 * Matrix2::Identity()});
+      store.arrive(name(1), Traversal{{1.0, 2.0}, 0.01 * Matrix2::Identity()});
     } catch (const InputError&) {
       ++refused;
     } catch (const SolveError&) {
@@ -434,7 +440,7 @@ TEST_F(MapStoreTest, FilesOfTheFirstVersionGoOn) {
     MapStore store(file_);
     const int before = store.builder().landmarks();
     store.start(before > 0 ? "a" : "first");
-    store.arrive("another", {{3.0, 4.0}, 0.01 * Matrix2::Identity()});
+    store.arrive("another", Traversal{{3.0, 4.0}, 0.01 * Matrix2::Identity()});
     return std::pair(before, store.legs());
   };
   EXPECT_EQ(gone_on("elastic"), std::pair(5, std::int64_t{14}));

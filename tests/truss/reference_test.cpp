@@ -28,9 +28,10 @@ TEST_P(ElementStiffness, BothLawsEqualTheReference) {
   const auto C = matrix<2, 2>(c["C"]);
   const auto printed = matrix<4, 4>(c["K"]);
   const auto inverse = matrix<4, 4>(c["K_inverse_covariance"]);
-  const Eigen::Matrix4d K = bar_matrix(bar_stiffness(StiffnessLaw::printed, C, c["theta"], c["t"]));
+  const Eigen::Matrix4d K =
+      bar_matrix(bar_stiffness(StiffnessLaw::mean_error, C, c["theta"], c["t"]));
   const Eigen::Matrix4d G =
-      bar_matrix(bar_stiffness(StiffnessLaw::gauss_markov, C, c["theta"], c["t"]));
+      bar_matrix(bar_stiffness(StiffnessLaw::variance, C, c["theta"], c["t"]));
   EXPECT_LE((K - printed).cwiseAbs().maxCoeff(), kTolerance * printed.cwiseAbs().maxCoeff());
   EXPECT_LE((G - inverse).cwiseAbs().maxCoeff(), kTolerance * inverse.cwiseAbs().maxCoeff());
 }
@@ -43,7 +44,7 @@ std::vector<Bar> bars_of(const json& c) {
   for (const json& b : c["bars"]) {
     bars.push_back(
         {b["i"], b["j"],
-         bar_stiffness(StiffnessLaw::printed, matrix<2, 2>(b["C"]), b["theta"], b["t"])});
+         bar_stiffness(StiffnessLaw::mean_error, matrix<2, 2>(b["C"]), b["theta"], b["t"])});
   }
   return bars;
 }

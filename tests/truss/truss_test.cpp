@@ -173,11 +173,10 @@ TEST(Truss, RefusesWhatIsNoTruss) {
   EXPECT_THROW((void)solve_truss(2, {{0, 1, B}}, {held[0], held[0]}, {}), std::invalid_argument);
   EXPECT_THROW((void)solve_truss(2, {{0, 1, B}}, held, {{5, Vector2::Zero()}}),
                std::invalid_argument);
-  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::printed, Matrix2::Zero(), 0.0, 1.0),
+  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::mean_error, Matrix2::Zero(), 0.0, 1.0),
                std::invalid_argument);
-  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::gauss_markov, -B, 0.0, 1.0),
-               std::invalid_argument);
-  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::printed, B, 0.0, 0.0), std::invalid_argument);
+  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::variance, -B, 0.0, 1.0), std::invalid_argument);
+  EXPECT_THROW((void)bar_stiffness(StiffnessLaw::mean_error, B, 0.0, 0.0), std::invalid_argument);
 }
 
 }  // namespace

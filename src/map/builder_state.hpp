@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a map builder is: its memory, and the truss that the memory's averages make.
+//
+//   a measurement --averages--> elements of the truss --first sight, relaxation--> positions
+//
+// A step changes copies of averages and the truss, which takes everything back where something
+// fails; what is remembered changes last, by what cannot fail.
+#pragma once
+
+#include "map/builder_memory.hpp"
+#include "map/map_mechanics.hpp"
+#include "trussmap/map_builder.hpp"
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace trussmap {
+
+/// A measured way from one landmark to another, ready to be taken in.
+struct MeasuredLeg {
+  int from = -1;
+  Traversal in_map;                     ///< m, map axes
+  const Chord* chord = nullptr;         ///< of a leg in the robot's own axes
+  std::optional<MeasuredAngle> corner;  ///< with the chord that came from `corner_from`
+  int corner_from = -1;
+  std::optional<MeasuredAngle> direction;  ///< of the way, map axes
+  bool by_compass = false;                 ///< the direction is
+};
+
+class __attribute__((visibility("hidden"))) MapBuilder::State {
+ public:
+  State(const MapBuilderOptions& options, BuilderMemory memory);
+
+  void set_options(const MapBuilderOptions& options);
+  void start(const std::string& landmark, const LandmarkOffset& seen, const Vector2& position);
+  void compass(double reading, double sd);
+  Arrival arrive(const std::string& landmark, const Traversal& leg);
+  Arrival observe(const std::string& landmark, const Traversal& from_here);
+  Arrival arrive(const std::string& landmark, const Motion& motion, const LandmarkOffset& seen);
+  Arrival observe(const std::string& landmark, const LandmarkOffset& seen);
+  double relax();
+
+  [[nodiscard]] std::optional<PoseEstimate> pose() const;
+  [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
+  [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
+  [[nodiscard]] const BuilderMemory& memory() const { return m_; }
+  [[nodiscard]] const MapMechanics& mechanics() const { return mechanics_; }
+
+  std::vector<BuilderCall>* journal = nullptr;
+
+ private:
+  /// Elements of a route in the truss, -1: none.
+  struct RouteElements {
+    int bar = -1;
+    int length = -1;
+    int direction = -1;
+  };
+  /// Averages as a step would leave them.
+  struct Step;
+
+  [[nodiscard]] StiffnessLaw law() const;
+  [[nodiscard]] bool printed() const { return options_.method == Method::elastic_printed; }
+  [[nodiscard]] bool weighs_each() const;
+  [[nodiscard]] const Vector2& at(int landmark) const {
+    return m_.graph.landmark(landmark).position;
+  }
+  void make_truss();
+
+  [[nodiscard]] int standing() const;
+  [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;
+  Arrival travel(const std::string& landmark, const MeasuredLeg& leg);
+  Arrival travel_gated(const std::string& landmark, const MeasuredLeg& leg);
+  [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
+  void take_back_in(Arrival& arrival);
+  Arrival take_in(const std::string& landmark, const MeasuredLeg& leg);
+
+  [[nodiscard]] Step averaged(int to, bool is_new, const MeasuredLeg& leg) const;
+  void average_corner(Step& step, const MeasuredLeg& leg) const;
+  [[nodiscard]] Element bar_of(const Step& step) const;
+  void put_elements(Step& step);
+  void close_chain(const Step& step, const OpenChain::Closing& closing, const MeasuredLeg& leg);
+  [[nodiscard]] TurningLeg turning_leg(int from, int to, const RouteElements& elements,
+                                       int corner_element) const;
+  int refine(const Step& step);
+  int refine_as_printed(const Step& step);
+  void remember(const Step& step, const std::string& landmark, const Traversal& in_map);
+  void note_moves(Arrival& arrival) noexcept;
+
+  [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to, const Chord& chord) const;
+  [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord) const;
+  [[nodiscard]] HeadingEstimate heading_after(bool was_known, int to, const Chord& chord,
+                                              const HeadingEstimate& before) const;
+  void settle_frame() noexcept;
+  void turn_map(double angle);
+
+  MapBuilderOptions options_;
+  BuilderMemory m_;
+  MapMechanics mechanics_;
+  std::vector<RouteElements> elements_;          ///< per route
+  std::vector<int> reckoned_at_;                 ///< per route: its place in m_.reckoned, or -1
+  std::vector<int> corner_elements_;             ///< per corner
+  std::map<std::array<int, 3>, int> corner_at_;  ///< by its landmarks i, j, k
+};
+
+}  // namespace trussmap

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "map/map_mechanics.hpp"
+
+#include "map/make_room.hpp"
+#include "trussmap/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace trussmap {
+namespace {
+
+constexpr Enough kLocal{.rounds = 2};                  // more comes at the next arrival
+constexpr Enough kWhole{.rounds = 12, .gain = 1e-11};  // a further one would gain less
+constexpr double kNegligible = 0.1;  // of what a route yields to its own uncertainty
+constexpr int kFreeGroups = 25;      // at each scale: they cover several of the next
+constexpr int kMostMembers = 6000;   // landmarks in the groups that are free at a scale
+
+[[noreturn]] void refuse() {
+  throw SolveError("the covariances of the map's traversals span too many magnitudes");
+}
+
+}  // namespace
+
+void MapMechanics::roll_back() noexcept {
+  truss_.roll_back();
+  equilibrium_.drop();
+  from_.resize(idx(truss_.joints()));
+  if (grouped_ > truss_.joints() || tied_ > truss_.elements()) {
+    groups_.clear();
+    grouped_ = tied_ = 0;
+  }
+}
+
+void MapMechanics::commit() noexcept {
+  if (exact()) {
+    index_.drop();
+  } else {
+    for (const auto& [landmark, before] : truss_.moved()) {
+      index_.move(landmark, truss_.position(landmark));
+    }
+  }
+  truss_.commit();
+}
+
+int MapMechanics::add_landmark(const Vector2& position, int from) {
+  make_room(from_);
+  const int number = truss_.add_joint(position);
+  from_.push_back(from);
+  index_.insert(number, position);
+  return number;
+}
+
+int MapMechanics::add_element(const Element& element) {
+  const int number = truss_.add_element(element);
+  equilibrium_.changed(number);
+  return number;
+}
+
+void MapMechanics::set_element(int number, const Element& element) {
+  truss_.set_element(number, element);
+  equilibrium_.changed(number);
+}
+
+bool MapMechanics::exact() const {
+  using Kind = RefinementScope::Kind;
+  return scope_.kind == Kind::all ||
+         (scope_.kind == Kind::automatic && truss_.joints() <= kMostExact);
+}
+
+int MapMechanics::relax(int i, int j) {
+  if (exact()) {
+    relax_all();
+    return truss_.joints();
+  }
+  return relax_nearest(i, j);
+}
+
+void MapMechanics::relax_all() {
+  try {
+    equilibrium_.relax(truss_, kWhole);
+  } catch (const NotPositiveDefinite&) {
+    refuse();
+  }
+}
+
+std::vector<Vector2> MapMechanics::pull(int i, int j, const Vector2& force) {
+  try {
+    return equilibrium_.pull(truss_, i, j, force);
+  } catch (const NotPositiveDefinite&) {
+    refuse();
+  }
+}
+
+std::vector<int> MapMechanics::members(int i, int j) const {
+  std::vector<int> members;
+  const int count =
+      scope_.kind == RefinementScope::Kind::estimated ? estimated_eta(i, j) : scope_.eta;
+  if (scope_.kind == RefinementScope::Kind::all || count >= truss_.joints()) {
+    members.resize(idx(truss_.joints()));
+    std::iota(members.begin(), members.end(), 0);
+    return members;
+  }
+  members = nearest(0.5 * (truss_.position(i) + truss_.position(j)), count);
+  for (const int end : {i, j}) {  // both may be far from a long one's middle
+    const auto place = std::lower_bound(members.begin(), members.end(), end);
+    if (place == members.end() || *place != end) members.insert(place, end);
+  }
+  return members;
+}
+
+int MapMechanics::estimated_eta(int i, int j) const {
+  std::vector<int> ring{i, j};
+  std::set<int> piece{i, j};
+  double force = 0.0;
+  for (const int end : ring) {
+    Vector2 sum = Vector2::Zero();
+    for (const int number : truss_.elements_at(end)) {
+      const auto& joints = truss_.element(number).joints;
+      const auto own = std::find(joints.begin(), joints.end(), end) - joints.begin();
+      sum += truss_.tangent(number).force[static_cast<std::size_t>(own)];
+    }
+    force = std::max(force, sum.norm());
+  }
+  while (!ring.empty()) {
+    double cut = 0.0;
+    double stiffest = 0.0;
+    std::set<int> next;
+    for (const int landmark : ring) {
+      for (const int number : truss_.elements_at(landmark)) {
+        const Element& one = truss_.element(number);
+        if (one.kind == Element::Kind::corner || one.kind == Element::Kind::direction) continue;
+        const int other = one.joints[0] == landmark ? one.joints[1] : one.joints[0];
+        if (piece.contains(other)) continue;
+        next.insert(other);
+        const double k = one.kind == Element::Kind::bar ? 0.5 * one.B.trace() : one.k;
+        cut += k;
+        stiffest = std::max(stiffest, k);
+      }
+    }
+    const double yields =
+        law_ == StiffnessLaw::variance ? 1.0 / std::sqrt(stiffest) : 1.0 / stiffest;
+    if (next.empty() || force < kNegligible * yields * cut) break;
+    piece.insert(next.begin(), next.end());
+    ring.assign(next.begin(), next.end());
+  }
+  return static_cast<int>(piece.size());
+}
+
+int MapMechanics::relax_nearest(int i, int j) {
+  const Vector2 middle = 0.5 * (truss_.position(i) + truss_.position(j));
+  const std::vector<int> near = members(i, j);
+  std::vector<FreeJoint> free;
+  free.reserve(near.size());
+  for (const int landmark : near) {
+    if (landmark > 0) free.push_back({landmark, static_cast<int>(free.size())});
+  }
+  relaxation_.relax(truss_, free, 1, kLocal);
+  const bool whole = static_cast<int>(near.size()) == truss_.joints();
+  if (scope_.groups && !whole) {
+    grow_groups();
+    for (int level = 0; level < groups_.levels(); ++level) {
+      if (relax_groups(level, i, j, middle) == 0) break;
+    }
+  }
+  for (const FreeJoint& one : free) {
+    if (!truss_.position(one.joint).allFinite()) refuse();
+  }
+  return static_cast<int>(near.size());
+}
+
+/// 0: more landmarks than a correction may move.
+int MapMechanics::relax_groups(int level, int i, int j, const Vector2& middle) {
+  const std::vector<int> near = groups_.nearest(
+      level, i, j, std::min(kFreeGroups, scope_.eta),
+      [&](int landmark) { return (truss_.position(landmark) - middle).squaredNorm(); });
+  std::vector<FreeJoint> free;
+  std::vector<int> members;
+  int block = 0;
+  for (const int group : near) {
+    members.clear();
+    groups_.members(level, group, members);
+    if (std::ssize(free) + std::ssize(members) > kMostMembers) return 0;
+    Vector2 centre = Vector2::Zero();
+    for (const int landmark : members) centre += truss_.position(landmark);
+    centre /= static_cast<double>(members.size());
+    double reach = 0.0;
+    for (const int landmark : members) {
+      reach = std::max(reach, (truss_.position(landmark) - centre).norm());
+    }
+    if (!(reach > 0.0)) reach = 1.0;
+    for (const int landmark : members) {
+      const Vector2 at = (truss_.position(landmark) - centre) / reach;
+      free.push_back({landmark, block, {1.0, at.x(), at.y()}});
+    }
+    ++block;
+  }
+  relaxation_.relax(truss_, free, 3, kLocal);
+  return block;
+}
+
+void MapMechanics::grow_groups() {
+  try {
+    for (; grouped_ < truss_.joints(); ++grouped_) groups_.add(grouped_, from_[idx(grouped_)]);
+    for (; tied_ < truss_.elements(); ++tied_) {
+      const Element& one = truss_.element(tied_);
+      if (one.kind != Element::Kind::corner) groups_.tie(one.joints[0], one.joints[1]);
+    }
+  } catch (...) {
+    groups_.clear();
+    grouped_ = tied_ = 0;
+    throw;
+  }
+}
+
+}  // namespace trussmap

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A map's truss as a map builder drives it on: joints are landmarks, by the same numbers, and after
+// a route's averages have changed the map is relaxed within a scope.
+//
+//   nearest      the eta landmarks nearest to the route's middle come to equilibrium, all others
+//                held; then, scale by scale, the nearest groups of landmarks, each moved, turned
+//                and sheared as one
+//   all          the equilibrium of the whole (truss/equilibrium.hpp)
+//   automatic    all, up to kMostExact landmarks; beyond, nearest at every scale
+//   estimated    nearest, eta by a bound: round the route, ring by ring of neighbours, until
+//
+//                  F / (sum of the stiffnesses of elements that leave the piece)
+//
+//                is below a tenth of what the stiffest of them yields to its own uncertainty; F the
+//                force that is out of balance at the route's ends. No more than F crosses a cut.
+//
+// Every step is a minimisation over a subspace: the energy of the whole never rises.
+#pragma once
+
+#include "map/nearest_landmarks.hpp"
+#include "map/scale_groups.hpp"
+#include "truss/elastic_truss.hpp"
+#include "truss/equilibrium.hpp"
+#include "truss/relaxation.hpp"
+#include "trussmap/map_builder.hpp"
+
+#include <vector>
+
+namespace trussmap {
+
+/// Landmarks up to which `automatic` is `all`: a correction takes a millisecond or two there.
+inline constexpr int kMostExact = 10000;
+
+class MapMechanics {
+ public:
+  MapMechanics(const RefinementScope& scope, StiffnessLaw law) : scope_(scope), law_(law) {}
+
+  void set_scope(const RefinementScope& scope) { scope_ = scope; }
+
+  [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
+
+  // Changes from begin() on are taken back by roll_back(), which does not fail.
+  void begin() noexcept { truss_.begin(); }
+  void roll_back() noexcept;
+  /// Lets the spatial index and the groups follow what has moved.
+  void commit() noexcept;
+
+  /// Reached from an earlier landmark; -1: the first.
+  int add_landmark(const Vector2& position, int from);
+  int add_element(const Element& element);
+  void set_element(int number, const Element& element);
+  void move(int landmark, const Vector2& to) { truss_.move(landmark, to); }
+
+  /// After the route between two landmarks has changed. Returns how many landmarks, or members of
+  /// groups, were let free. Throws SolveError where stiffnesses span too many magnitudes.
+  int relax(int i, int j);
+  /// The whole comes to equilibrium, whatever the scope.
+  void relax_all();
+
+  /// The landmarks nearest to a point, in ascending order.
+  [[nodiscard]] std::vector<int> nearest(const Vector2& to, int count) const {
+    return index_.nearest(truss_.positions(), to, count);
+  }
+
+  /// The landmarks that a refinement of the route between two lets free, the first one and the
+  /// route's ends among them: all, the nearest, or as many as are estimated to move. Ascending.
+  [[nodiscard]] std::vector<int> members(int i, int j) const;
+
+  /// Displacements under a pull of two landmarks apart.
+  [[nodiscard]] std::vector<Vector2> pull(int i, int j, const Vector2& force);
+
+ private:
+  [[nodiscard]] bool exact() const;
+  int relax_nearest(int i, int j);
+  [[nodiscard]] int estimated_eta(int i, int j) const;
+  int relax_groups(int level, int i, int j, const Vector2& middle);
+  void grow_groups();
+
+  RefinementScope scope_;
+  StiffnessLaw law_;
+  ElasticTruss truss_;
+  Relaxation relaxation_;
+  Equilibrium equilibrium_;
+  NearestLandmarks index_;
+  std::vector<int> from_;  ///< per landmark
+  ScaleGroups groups_;     ///< of the first grouped_ landmarks and tied_ elements
+  int grouped_ = 0;
+  int tied_ = 0;
+};
+
+}  // namespace trussmap

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// A robot on two wheels that turns on the spot at a landmark and drives straight to the next one,
+// exactly; what its wheels say of that is noisy.
+//
+//   recorded travel of a wheel in a row = true travel d + k sqrt(|d|) e,   e standard normal
+#pragma once
+
+#include "trussmap/arc.hpp"
+
+#include <random>
+#include <vector>
+
+namespace trussmap {
+
+/// Rows of wheel travels as recorded: of a turn on the spot by `turn` (rad), then of `length` (m)
+/// straight on. `wheelbase` in m.
+[[nodiscard]] std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase,
+                                                   const WheelNoise& noise,
+                                                   std::mt19937_64& random);
+
+}  // namespace trussmap

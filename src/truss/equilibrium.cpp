@@ -1,0 +1,339 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "truss/equilibrium.hpp"
+
+#include "linalg/block_system.hpp"
+#include "linalg/dense.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace trussmap {
+namespace {
+
+// Places kept free: few, because every row added at the end lengthens all later updates; not too
+// few, because of what a new factor costs.
+constexpr int kLeastSpare = 32;
+constexpr int kJointsPerSpare = 64;
+constexpr double kTurned = 1e-3;     // change of a gradient, as a share of it
+constexpr int kFewTurned = 100;      // more: a new factor is cheaper
+constexpr double kShortest = 1e-3;   // of a step, when it is halved
+constexpr double kRounding = 1e-14;  // of the energy: no rise
+
+/// Columns W with W W' = |B|, those of negative eigenvalues first, and how many these are.
+std::pair<Matrix2, int> signed_root(const Matrix2& B) {
+  const PlanarModes axes = planar_modes(B);
+  const Vector2 size = axes.eigenvalues;
+  const int negative = (size[0] < 0.0 ? 1 : 0) + (size[1] < 0.0 ? 1 : 0);  // these ascend
+  return {axes.eigenvectors * size.cwiseAbs().cwiseSqrt().asDiagonal(), negative};
+}
+
+}  // namespace
+
+void Equilibrium::drop() noexcept {
+  factored_ = false;
+  changed_.clear();
+}
+
+double Equilibrium::factor_nonzeros() const {
+  return factored_ ? cholesky_.factor_nonzeros() : 0.0;
+}
+
+Equilibrium::Term Equilibrium::term_of(const ElasticTruss& truss, int element) {
+  const Element& one = truss.element(element);
+  Term term;
+  if (one.kind == Element::Kind::bar) {
+    term.B = one.B;
+  } else {
+    term.k = one.k;
+    term.gradient = strain_of(truss, one).gradient;
+  }
+  return term;
+}
+
+void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
+  if (truss.joints() < 2) return;
+  follow(truss);
+  std::vector<Vector2> before(idx(truss.joints()));
+  for (int round = 0; round < enough.rounds; ++round) {
+    const double then = evaluate(truss);
+    if (!turned_.empty()) {
+      for (const int element : turned_) changed_.push_back(element);
+      follow(truss);
+      static_cast<void>(evaluate(truss));  // in a new factor's order
+    }
+    Eigen::VectorXd u = f_;
+    solve(u);
+    const double gain = 0.5 * f_.dot(u);
+    if (!std::isfinite(gain)) {
+      drop();
+      throw NotPositiveDefinite(0);
+    }
+    if (!(gain > 0.0)) return;
+    for (int joint = 1; joint < truss.joints(); ++joint) before[idx(joint)] = truss.position(joint);
+    bool fallen = false;
+    for (double share = 1.0; share > kShortest && !fallen; share *= 0.5) {
+      for (int joint = 1; joint < truss.joints(); ++joint) {
+        truss.move(joint, before[idx(joint)] + share * u.segment<2>(unknown_[idx(joint)]));
+      }
+      fallen = linear_ || truss.energy() <= then + kRounding * then;
+    }
+    if (!fallen) {
+      for (int joint = 1; joint < truss.joints(); ++joint) truss.move(joint, before[idx(joint)]);
+      return;
+    }
+    if (linear_ || gain <= enough.gain * then) return;
+  }
+}
+
+std::vector<Vector2> Equilibrium::pull(const ElasticTruss& truss, int i, int j,
+                                       const Vector2& force) {
+  follow(truss);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(f_.size());
+  if (!held(j)) u.segment<2>(unknown_[idx(j)]) += force;
+  if (!held(i)) u.segment<2>(unknown_[idx(i)]) -= force;
+  solve(u);
+  std::vector<Vector2> displacements(idx(truss.joints()), Vector2::Zero());
+  for (int joint = 1; joint < truss.joints(); ++joint) {
+    displacements[idx(joint)] = u.segment<2>(unknown_[idx(joint)]);
+  }
+  return displacements;
+}
+
+void Equilibrium::solve(Eigen::VectorXd& x) {
+  cholesky_.solve_updated(x);
+}
+
+/// Forces at all joints; returns the energy.
+double Equilibrium::evaluate(const ElasticTruss& truss) {
+  f_.setZero();
+  turned_.clear();
+  double energy = 0.0;
+  const auto pull_at = [this](int joint, const Vector2& force) {
+    if (!held(joint)) f_.segment<2>(unknown_[idx(joint)]) += force;
+  };
+  for (int number = 0; number < truss.elements(); ++number) {
+    const Element& one = truss.element(number);
+    if (one.kind == Element::Kind::bar) {
+      const Vector2 strain =
+          one.w - (truss.position(one.joints[1]) - truss.position(one.joints[0]));
+      const Vector2 force = one.B * strain;
+      energy += 0.5 * strain.dot(force);
+      pull_at(one.joints[1], force);
+      pull_at(one.joints[0], -force);
+      continue;
+    }
+    const Strain strain = strain_of(truss, one);
+    energy += 0.5 * one.k * strain.value * strain.value;
+    double off = 0.0;
+    double size = 0.0;
+    for (int n = 0; n < one.count(); ++n) {
+      pull_at(one.joints[idx(n)], one.k * strain.value * strain.gradient[idx(n)]);
+      off = std::max(off, (strain.gradient[idx(n)] - terms_[idx(number)].gradient[idx(n)]).norm());
+      size = std::max(size, strain.gradient[idx(n)].norm());
+    }
+    if (off > kTurned * size) turned_.push_back(number);
+  }
+  return energy;
+}
+
+/// The factor goes with the truss, or is made anew.
+void Equilibrium::follow(const ElasticTruss& truss) {
+  const bool room = truss.joints() <= static_cast<int>(unknown_.size());
+  if (!factored_ || !room || std::ssize(changed_) > kFewTurned) {
+    factorise(truss);
+    return;
+  }
+  if (changed_.empty()) return;
+  try {
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    const auto last_joint = [&truss](int number) {
+      const auto& joints = truss.element(number).joints;
+      return *std::max_element(joints.begin(), joints.end());
+    };
+    while (joints_ < truss.joints()) {
+      std::vector<int> at_joint;
+      for (const int number : changed_) {
+        if (last_joint(number) == joints_) at_joint.push_back(number);
+      }
+      take_in_joint(truss, joints_, at_joint);
+      ++joints_;
+    }
+    for (const int number : changed_) {
+      linear_ = linear_ && truss.element(number).kind == Element::Kind::bar;
+      change_term(truss, number, term_of(truss, number));
+    }
+    changed_.clear();
+  } catch (const NotPositiveDefinite&) {
+    factorise(truss);
+  } catch (...) {
+    drop();
+    throw;
+  }
+}
+
+/// Its place has been waiting for it, tied to the ground alone.
+void Equilibrium::take_in_joint(const ElasticTruss& truss, int joint,
+                                const std::vector<int>& elements) {
+  terms_.resize(std::max(terms_.size(), idx(truss.elements())));
+  std::map<int, Matrix2> row;  // K between a joint and this one
+  row[joint] = Matrix2::Zero();
+  for (const int number : elements) {
+    const Element& one = truss.element(number);
+    const Term term = term_of(truss, number);
+    std::vector<Column> on_others;
+    if (one.kind == Element::Kind::bar) {
+      const int other = one.joints[0] == joint ? one.joints[1] : one.joints[0];
+      row[joint] += term.B;
+      if (!held(other)) {
+        row.try_emplace(other, Matrix2::Zero()).first->second -= term.B;
+        const Matrix2 W = signed_root(term.B).first;
+        on_others = {{{{other, W.col(0)}}}, {{{other, W.col(1)}}}};
+      }
+    } else {
+      std::size_t own = 0;
+      while (one.joints[own] != joint) ++own;
+      Column column;
+      for (int n = 0; n < one.count(); ++n) {
+        const int other = one.joints[idx(n)];
+        if (held(other)) continue;
+        row.try_emplace(other, Matrix2::Zero()).first->second +=
+            term.k * term.gradient[idx(n)] * term.gradient[own].transpose();
+        if (other != joint) {
+          column.parts.emplace_back(other, std::sqrt(term.k) * term.gradient[idx(n)]);
+        }
+      }
+      if (!column.parts.empty()) on_others = {column};
+    }
+    update(on_others, true);
+    terms_[idx(number)] = term;
+  }
+  for (int c = 0; c < 2; ++c) {
+    SparseMatrix column(f_.size(), 1);
+    std::vector<std::pair<int, double>> entries;
+    for (const auto& [other, K] : row) {
+      for (int r = 0; r < 2; ++r) {
+        if (other == joint && r > c) continue;
+        entries.emplace_back(unknown_[idx(other)] + r, K(r, c));
+      }
+    }
+    std::sort(entries.begin(), entries.end());
+    column.reserve(static_cast<Eigen::Index>(entries.size()));
+    for (const auto& [at, value] : entries) column.insert(at, 0) = value;
+    column.makeCompressed();
+    cholesky_.add_row(unknown_[idx(joint)] + c, column);
+  }
+}
+
+void Equilibrium::change_term(const ElasticTruss& truss, int element, const Term& now) {
+  terms_.resize(std::max(terms_.size(), idx(truss.elements())));
+  const Element& one = truss.element(element);
+  const Term then = terms_[idx(element)];
+  if (one.kind == Element::Kind::bar) {
+    const Matrix2 change = now.B - then.B;
+    if (change.isZero(0.0)) return;
+    const auto [W, negative] = signed_root(change);
+    // What it adds goes in first, so that K stays definite.
+    std::vector<Column> more;
+    std::vector<Column> less;
+    for (int c = 0; c < 2; ++c) {
+      std::vector<Column>& to = c < negative ? less : more;
+      to.push_back({{{one.joints[0], -W.col(c)}, {one.joints[1], W.col(c)}}});
+    }
+    update(more, true);
+    update(less, false);
+  } else {
+    const auto column = [&one](const Term& term) {
+      Column result;
+      for (int n = 0; n < one.count(); ++n) {
+        result.parts.emplace_back(one.joints[idx(n)], std::sqrt(term.k) * term.gradient[idx(n)]);
+      }
+      return result;
+    };
+    if (now.k == then.k && now.gradient == then.gradient) return;
+    if (now.k > 0.0) update({column(now)}, true);
+    if (then.k > 0.0) update({column(then)}, false);
+  }
+  terms_[idx(element)] = now;
+}
+
+void Equilibrium::update(const std::vector<Column>& columns, bool add) {
+  if (columns.empty()) return;
+  SparseMatrix W(f_.size(), static_cast<Eigen::Index>(columns.size()));
+  W.reserve(Eigen::VectorXi::Constant(W.cols(), 6));
+  Eigen::Index c = 0;
+  for (const Column& column : columns) {
+    for (const auto& [joint, value] : column.parts) {
+      if (held(joint)) continue;
+      for (int r = 0; r < 2; ++r) W.insert(unknown_[idx(joint)] + r, c) = value[r];
+    }
+    ++c;
+  }
+  W.makeCompressed();
+  if (add) {
+    cholesky_.update(W);
+  } else {
+    cholesky_.downdate(W);
+  }
+}
+
+void Equilibrium::factorise(const ElasticTruss& truss) {
+  drop();
+  const int places = truss.joints() + std::max(kLeastSpare, truss.joints() / kJointsPerSpare);
+  linear_ = true;
+  terms_.assign(idx(truss.elements()), {});
+  std::vector<NodePair> pairs;      // of all joints
+  std::vector<NodePair> couplings;  // of the joints from 1 on
+  const auto couple = [&](int i, int j) {
+    pairs.push_back({i, j});
+    if (i > 0 && j > 0) couplings.push_back({i - 1, j - 1});
+  };
+  for (int number = 0; number < truss.elements(); ++number) {
+    const Element& one = truss.element(number);
+    terms_[idx(number)] = term_of(truss, number);
+    couple(one.joints[0], one.joints[1]);
+    if (one.kind != Element::Kind::bar) linear_ = false;
+    if (one.count() < 3) continue;
+    couple(one.joints[1], one.joints[2]);
+    couple(one.joints[0], one.joints[2]);
+  }
+  std::vector<int> order{0};  // which is held
+  for (const int joint : elimination_order(truss.joints() - 1, couplings)) {
+    order.push_back(joint + 1);
+  }
+  for (int spare = truss.joints(); spare < places; ++spare) order.push_back(spare);
+  std::vector<int> sizes(idx(places), 2);
+  sizes[0] = 0;
+  BlockSystem system(sizes, pairs, order, Kernel::cholmod);
+  int pair = 0;
+  for (int number = 0; number < truss.elements(); ++number) {
+    const Element& one = truss.element(number);
+    const Term& term = terms_[idx(number)];
+    const auto K = [&](std::size_t n, std::size_t m) -> Matrix2 {
+      if (one.kind == Element::Kind::bar) return n == m ? term.B : Matrix2(-term.B);
+      return term.k * term.gradient[n] * term.gradient[m].transpose();
+    };
+    for (int n = 0; n < one.count(); ++n) {
+      system.add_diagonal(one.joints[idx(n)], K(idx(n), idx(n)));
+    }
+    system.add_coupling(pair++, K(0, 1));
+    if (one.count() < 3) continue;
+    system.add_coupling(pair++, K(1, 2));
+    system.add_coupling(pair++, K(0, 2));
+  }
+  for (int spare = truss.joints(); spare < places; ++spare) {
+    system.add_diagonal(spare, Matrix2(Matrix2::Identity()));
+  }
+  cholesky_.analyse(system.matrix());
+  cholesky_.factorise(system.matrix());
+  unknown_.assign(idx(places), -1);
+  for (int joint = 1; joint < places; ++joint) unknown_[idx(joint)] = system.offset(joint);
+  f_ = Eigen::VectorXd::Zero(system.unknowns());
+  joints_ = truss.joints();
+  factored_ = true;
+}
+
+}  // namespace trussmap

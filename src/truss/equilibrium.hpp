@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The equilibrium of a whole truss, joint 0 held, again and again while the truss grows.
+//
+//   K u = f    K  stiffness of all elements as they lie       f  what strain is left at the joints
+//
+// CHOLMOD factorises K; after that the factor is kept alive: an element that changes is an update
+// of rank 1 (a bar: 2), a new joint a row added in a place kept free at the end, until these places
+// are used up and K is factorised anew, in a new order. Elements other than bars are linearised
+// anew where they have turned noticeably since. The factor only saves time: where a change of it
+// fails, it is dropped and built anew when next needed.
+//
+// Bars alone: one solution is exact. Cost: one pass over the factor and one over the elements.
+#pragma once
+
+#include "linalg/sparse_cholesky.hpp"
+#include "truss/elastic_truss.hpp"
+
+#include <array>
+#include <vector>
+
+namespace trussmap {
+
+class Equilibrium {
+ public:
+  /// An element that was added, or whose stiffness may have changed.
+  void changed(int element) { changed_.push_back(element); }
+
+  /// The truss is another one, or was rolled back.
+  void drop() noexcept;
+
+  /// Brings the truss to equilibrium . Its energy does not rise. Throws NotPositiveDefinite where
+  /// stiffnesses span too many magnitudes for an answer, and leaves moves to the truss to roll
+  /// back.
+  void relax(ElasticTruss& truss, const Enough& enough = {});
+
+  /// Displacements of all joints under `force` on j and its opposite on i. Throws likewise.
+  [[nodiscard]] std::vector<Vector2> pull(const ElasticTruss& truss, int i, int j,
+                                          const Vector2& force);
+
+  /// Numbers in the factor; 0: there is none.
+  [[nodiscard]] double factor_nonzeros() const;
+
+ private:
+  /// An element as the factor has it.
+  struct Term {
+    Matrix2 B = Matrix2::Zero();
+    double k = 0.0;
+    std::array<Vector2, 3> gradient{Vector2::Zero(), Vector2::Zero(), Vector2::Zero()};
+  };
+  struct Column {
+    std::vector<std::pair<int, Vector2>> parts;  ///< joint, value
+  };
+
+  [[nodiscard]] static Term term_of(const ElasticTruss& truss, int element);
+  [[nodiscard]] bool held(int joint) const { return joint == 0; }
+  void follow(const ElasticTruss& truss);
+  void take_in_joint(const ElasticTruss& truss, int joint, const std::vector<int>& elements);
+  void change_term(const ElasticTruss& truss, int element, const Term& now);
+  void update(const std::vector<Column>& columns, bool add);
+  void factorise(const ElasticTruss& truss);
+  double evaluate(const ElasticTruss& truss);
+  void solve(Eigen::VectorXd& x);
+
+  std::vector<Term> terms_;   ///< of the elements in the factor
+  std::vector<int> changed_;  ///< since then
+  std::vector<int> turned_;   ///< elements noticeably, by the last evaluation
+  std::vector<int> unknown_;  ///< per place: its joint's first unknown
+  int joints_ = 0;            ///< in the factor
+  bool factored_ = false;
+  bool linear_ = true;  ///< bars alone
+  Eigen::VectorXd f_;
+  SparseCholesky cholesky_{Ordering::fixed};
+};
+
+}  // namespace trussmap
