@@ -205,9 +205,22 @@ class MapBuilder {
   /// axes are in it as the robot's heading in the map turned them.
   [[nodiscard]] std::optional<Route> route_between(int a, int b) const;
 
-  /// The map: present positions, and the routes with their averages. A builder knows no covariances
-  /// of positions: marginal_covariances (pose_graph.hpp) has them, of a graph with a displacement
-  /// edge per route; build_map's adjustment as well.
+  /// Covariance of where landmark b lies from landmark a, m^2, by all that the map was told: the
+  /// flexibility of the truss with stiffness 1/variance. Exact to first order, as far as what was
+  /// measured is independent; the refinement's scope may lie some percent above it. Cost: one
+  /// factorisation of the whole truss. Throws std::invalid_argument on numbers that no landmark
+  /// has, SolveError where the stiffnesses span too many magnitudes.
+  [[nodiscard]] Matrix2 covariance_between(int a, int b) const;
+
+  /// The same of every landmark from the first one, all at once; that of the first is zero. Cost:
+  /// about two factorisations.
+  [[nodiscard]] std::vector<Matrix2> covariances() const;
+
+  /// The landmarks along the shortest or the surest way over routes that were driven
+  /// (landmark_map.hpp); empty where there is none.
+  [[nodiscard]] std::vector<int> path(int from, int to, PathBy by = PathBy::length) const;
+
+  /// The map: present positions, and the routes with their averages.
   [[nodiscard]] LandmarkGraph map() const;
 
  private:

@@ -104,6 +104,11 @@ class MapStore {
   Arrival observe(const std::string& landmark, const LandmarkOffset& seen);
   double relax();
 
+  /// A new store that goes on with a builder as it is, with all that it remembers. Throws where the
+  /// file is there already. read_builder() has it back.
+  [[nodiscard]] static MapStore create(const std::filesystem::path& file,
+                                       const MapBuilder& builder);
+
   /// Many calls as one: what `drive` does to the builder is kept as a whole or, where it throws,
   /// not at all. It calls the builder, which stays the store's, and not the store
   /// (std::logic_error; neither does a visitor of legs). `key` tells the session from others;
@@ -132,6 +137,10 @@ class MapStore {
   explicit MapStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// The builder that a store holds, as of the last call kept, also while another program writes it:
+/// it goes on by itself, and what it does is not kept.
+[[nodiscard]] MapBuilder read_builder(const std::filesystem::path& file);
 
 /// What a store holds.
 struct StoredMap {

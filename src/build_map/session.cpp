@@ -214,7 +214,13 @@ void Session::note_tour() {
   const LandmarkGraph map = builder_.map();
   int known = 0;
   for (const auto& [name, place] : survey_) known += map.find(name) ? 1 : 0;
-  if (known >= kFewest) result_.tours.push_back({map_errors(map, survey_, Laid::aligned), true});
+  if (known < kFewest) return;
+  LandmarkPositions truth = survey_;
+  for (const std::string& name :
+       compare_with_survey(positions_of(map), recording_.survey).contradicting) {
+    truth.erase(name);
+  }
+  result_.tours.push_back({map_errors(map, truth, Laid::aligned), true});
 }
 
 /// The paper's averages are plain and its stiffness is that of the mean error: sightings far poorer

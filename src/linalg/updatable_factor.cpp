@@ -197,13 +197,18 @@ void UpdatableFactor::add_row(int place, const std::vector<FactorEntry>& column)
     }
   }
   const std::vector<int> alone{place};
+  const auto has_place = [&](int j) {
+    const Column& one = columns_[idx(j)];
+    const auto begin = rows_.begin() + static_cast<std::ptrdiff_t>(one.begin);
+    return std::binary_search(begin, begin + one.count, place);
+  };
   while (!reached.empty()) {
     const int j = reached.top();
     reached.pop();
     marked_[idx(j)] = 0;
     const double y = work_[idx(j)][0];
     work_[idx(j)][0] = 0.0;
-    if (!missing_in(j, alone).empty()) insert(j, alone);
+    if (!has_place(j)) insert(j, alone);
     const Column& one = columns_[idx(j)];
     const int* row = rows_.data() + one.begin;
     double* value = values_.data() + one.begin;

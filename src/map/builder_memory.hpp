@@ -31,7 +31,8 @@ struct CornerAverage {
   int i = -1;
   int j = -1;
   int k = -1;
-  Average angle;  ///< rad
+  Average angle;     ///< rad
+  double arm = 0.0;  ///< m, mean length of its two routes when it was last driven
 };
 
 /// Of law `variance`, not pooled: all traversals of a route, each with its own weight.

@@ -129,12 +129,43 @@ void MapBuilder::State::make_truss() {
     const CornerAverage& one = m_.corners[n];
     corner_at_[{one.i, one.j, one.k}] = static_cast<int>(n);
     Step step;
-    step.average = graph.route(*graph.route_between(one.j, one.k));
     step.corner = one;
     put_elements(step);
     corner_elements_.push_back(step.corner_element);
   }
   mechanics_.begin();
+}
+
+/// The same map's truss with stiffness 1/variance: its flexibility is the map's covariance.
+ElasticTruss MapBuilder::State::by_variance() const {
+  MapBuilderOptions options = options_;
+  options.method = Method::gauss_markov;
+  options.law.reset();
+  options.pooled = !weighs_each();
+  return State(options, m_).mechanics_.truss();
+}
+
+Matrix2 MapBuilder::State::covariance_between(int a, int b) const {
+  const ElasticTruss truss = by_variance();
+  Equilibrium equilibrium;
+  Matrix2 C;
+  try {
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const std::vector<Vector2> u = equilibrium.pull(truss, a, b, Matrix2::Identity().col(c));
+      C.col(c) = u[idx(b)] - u[idx(a)];
+    }
+  } catch (const NotPositiveDefinite&) {
+    throw SolveError("the covariances of the map's traversals span too many magnitudes");
+  }
+  return 0.5 * (C + C.transpose());
+}
+
+std::vector<Matrix2> MapBuilder::State::covariances() const {
+  try {
+    return flexibilities(by_variance());
+  } catch (const NotPositiveDefinite&) {
+    throw SolveError("the covariances of the map's traversals span too many magnitudes");
+  }
 }
 
 // ---------------------------------------- where the robot is
@@ -179,8 +210,9 @@ int MapBuilder::State::standing() const {
 }
 
 std::optional<int> MapBuilder::State::other_landmark(const std::string& name) const {
+  const int here = standing();
   const std::optional<int> known = m_.graph.find(name);
-  if (known && *known == standing()) {
+  if (known && *known == here) {
     throw std::invalid_argument("the robot stands on " + name + " already");
   }
   return known;
@@ -572,7 +604,7 @@ void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const
   if (!leg.corner || leg.corner_from == step.to) return;
   const bool forward = leg.corner_from < step.to;
   CornerAverage corner{
-      std::min(leg.corner_from, step.to), leg.from, std::max(leg.corner_from, step.to), {}};
+      std::min(leg.corner_from, step.to), leg.from, std::max(leg.corner_from, step.to), {}, 0.0};
   const auto known = corner_at_.find({corner.i, corner.j, corner.k});
   step.corner_place =
       known == corner_at_.end() ? static_cast<int>(m_.corners.size()) : known->second;
@@ -580,6 +612,8 @@ void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const
     corner = m_.corners[idx(known->second)];
     step.corner_element = corner_elements_[idx(known->second)];
   }
+  const Route& came_by = m_.graph.route(*m_.graph.route_between(leg.corner_from, leg.from));
+  corner.arm = 0.5 * (came_by.stretch + step.average.stretch);
   corner.angle.take_angle(forward ? leg.corner->value : -leg.corner->value, leg.corner->variance);
   step.corner = corner;
   if (step.reckoned->corner < 0) step.reckoned->corner = step.corner_place;
@@ -607,13 +641,7 @@ void MapBuilder::State::put_elements(Step& step) {
   const int j = step.average.target;
   if (step.corner) {
     const CornerAverage& one = *step.corner;
-    const auto stretch = [&](int a, int b) {
-      const bool this_one = (a == i && b == j) || (a == j && b == i);
-      return this_one ? step.average.stretch
-                      : m_.graph.route(*m_.graph.route_between(a, b)).stretch;
-    };
-    const double arm = 0.5 * (stretch(one.i, one.j) + stretch(one.j, one.k));
-    const double k = spring_stiffness(law(), one.angle.variance, one.angle.count, arm);
+    const double k = spring_stiffness(law(), one.angle.variance, one.angle.count, one.arm);
     put(step.corner_element, corner_element(one.i, one.j, one.k, k, one.angle.mean));
   }
   if (step.route < 0) return;

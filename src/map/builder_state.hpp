@@ -46,6 +46,8 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   double relax();
 
   [[nodiscard]] std::optional<PoseEstimate> pose() const;
+  [[nodiscard]] Matrix2 covariance_between(int a, int b) const;
+  [[nodiscard]] std::vector<Matrix2> covariances() const;
   [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
   [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
   [[nodiscard]] const BuilderMemory& memory() const { return m_; }
@@ -70,6 +72,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
     return m_.graph.landmark(landmark).position;
   }
   void make_truss();
+  [[nodiscard]] ElasticTruss by_variance() const;
 
   [[nodiscard]] int standing() const;
   [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;

@@ -245,6 +245,20 @@ std::optional<Route> MapBuilder::route_between(int a, int b) const {
   return state_->graph().route(*number);
 }
 
+Matrix2 MapBuilder::covariance_between(int a, int b) const {
+  static_cast<void>(position(a));
+  static_cast<void>(position(b));
+  return a == b ? Matrix2(Matrix2::Zero()) : state_->covariance_between(a, b);
+}
+
+std::vector<Matrix2> MapBuilder::covariances() const {
+  return state_->covariances();
+}
+
+std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {
+  return trussmap::path(state_->graph(), from, to, by);
+}
+
 LandmarkGraph MapBuilder::map() const {
   return state_->graph();
 }

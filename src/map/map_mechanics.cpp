@@ -36,6 +36,7 @@ void MapMechanics::roll_back() noexcept {
 }
 
 void MapMechanics::commit() noexcept {
+  if (!at_rest_ && !truss_.moved().empty()) equilibrium_.disturbed();
   if (exact()) {
     index_.drop();
   } else {
@@ -82,6 +83,7 @@ int MapMechanics::relax(int i, int j) {
 void MapMechanics::relax_all() {
   try {
     equilibrium_.relax(truss_, kWhole);
+    at_rest_ = true;
   } catch (const NotPositiveDefinite&) {
     refuse();
   }
@@ -153,6 +155,7 @@ int MapMechanics::estimated_eta(int i, int j) const {
 int MapMechanics::relax_nearest(int i, int j) {
   const Vector2 middle = 0.5 * (truss_.position(i) + truss_.position(j));
   const std::vector<int> near = members(i, j);
+  truss_.fetch(near);
   std::vector<FreeJoint> free;
   free.reserve(near.size());
   for (const int landmark : near) {

@@ -42,7 +42,10 @@ class MapMechanics {
   [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
 
   // Changes from begin() on are taken back by roll_back(), which does not fail.
-  void begin() noexcept { truss_.begin(); }
+  void begin() noexcept {
+    truss_.begin();
+    at_rest_ = false;
+  }
   void roll_back() noexcept;
   /// Lets the spatial index and the groups follow what has moved.
   void commit() noexcept;
@@ -81,6 +84,7 @@ class MapMechanics {
   RefinementScope scope_;
   StiffnessLaw law_;
   ElasticTruss truss_;
+  bool at_rest_ = false;  ///< all came to equilibrium since begin()
   Relaxation relaxation_;
   Equilibrium equilibrium_;
   NearestLandmarks index_;

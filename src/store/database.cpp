@@ -177,6 +177,14 @@ std::int64_t Database::number(const std::string& sql) const {
   return statement.step() ? statement.integer(0) : 0;
 }
 
+void Database::take_over(const Database& other) const {
+  sqlite3_backup* const backup = sqlite3_backup_init(handle(), "main", other.handle(), "main");
+  if (backup == nullptr) throw DatabaseError(sqlite3_errcode(handle()), sqlite3_errmsg(handle()));
+  const int code = sqlite3_backup_step(backup, -1);
+  sqlite3_backup_finish(backup);
+  if (code != SQLITE_DONE) throw DatabaseError(code, sqlite3_errmsg(handle()));
+}
+
 bool Database::in_transaction() const {
   return sqlite3_get_autocommit(handle()) == 0;
 }

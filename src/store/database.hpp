@@ -78,6 +78,9 @@ class Database {
   /// The first column of the first row; 0 without one.
   [[nodiscard]] std::int64_t number(const std::string& sql) const;
 
+  /// Becomes a copy of another one.
+  void take_over(const Database& other) const;
+
   [[nodiscard]] bool in_transaction() const;
   [[nodiscard]] sqlite3* handle() const { return database_.get(); }
 

@@ -5,6 +5,7 @@
 #include "geometry/index.hpp"
 #include "store/database.hpp"
 #include "store/file_lock.hpp"
+#include "store/first_version.hpp"
 #include "store/memory_rows.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
 constexpr std::int64_t kVersion = 2;
+constexpr std::int64_t kFirstVersion = 1;
 constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::gauss_markov};
 constexpr std::array kScopes{RefinementScope::Kind::automatic, RefinementScope::Kind::all,
                              RefinementScope::Kind::nearest, RefinementScope::Kind::estimated};
@@ -201,17 +203,34 @@ const std::vector<std::string>& made_tables() {
   return kTables;
 }
 
+const std::vector<std::string>& first_tables() {
+  static const std::vector<std::string> kTables = [] {
+    const Database memory(":memory:", Database::Access::write);
+    create_first_version(memory);
+    return tables_of(memory);
+  }();
+  return kTables;
+}
+
+bool is_of_first_version(const Database& database) {
+  return database.number("PRAGMA user_version") == kFirstVersion;
+}
+
+void upgrade(const Database& database) {
+  upgrade_first_version(database, [&] { make(database, {}); });
+}
+
 /// False: there is nothing yet. Throws InputError where there is something else.
 bool is_made(const fs::path& file, const Database& database) {
   const std::int64_t application = database.number("PRAGMA application_id");
   const std::int64_t version = database.number("PRAGMA user_version");
   if (application == 0 && database.number("SELECT count(*) FROM sqlite_schema") == 0) return false;
   if (application != kApplication) throw InputError(file.string(), 0, "is no map store");
-  if (version != kVersion) {
+  if (version != kVersion && version != kFirstVersion) {
     throw InputError(file.string(), 0,
                      joined("is a map store of version ", version, ", expected ", kVersion));
   }
-  if (tables_of(database) != made_tables()) {
+  if (tables_of(database) != (version == kFirstVersion ? first_tables() : made_tables())) {
     throw InputError(file.string(), 0, "is damaged: its tables are not those of a map store");
   }
   return true;
@@ -278,6 +297,8 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
       if (first != nullptr) {
         MemoryRows(database_).save(BuilderAccess::memory(*first), first->options());
       }
+    } else if (is_of_first_version(database_)) {
+      upgrade(database_);
     }
     database_.run("COMMIT");
     rows_.emplace(database_);
@@ -567,6 +588,12 @@ MapStore MapStore::create(const fs::path& file, const LandmarkGraph& map,
       naming(file, [&] { return std::make_unique<Impl>(file, options, options, &first); }));
 }
 
+MapStore MapStore::create(const fs::path& file, const MapBuilder& builder) {
+  return MapStore(naming(file, [&] {
+    return std::make_unique<Impl>(file, builder.options(), builder.options(), &builder);
+  }));
+}
+
 void MapStore::start(const std::string& landmark, const Vector2& position) {
   impl_->keep([&] { impl_->builder().start(landmark, position); });
 }
@@ -648,7 +675,11 @@ void MapStore::set_note(const std::string& name, const std::string& text) {
   impl_->set_note(name, text);
 }
 
-StoredMap read_map_store(const fs::path& file) {
+namespace {
+
+/// Calls `read` with a store's database and options, within one transaction.
+template <typename Read>
+auto reading(const fs::path& file, const Read& read) {
   return naming(file, [&] {
     std::error_code failed;
     if (!fs::exists(file, failed)) {
@@ -660,16 +691,36 @@ StoredMap read_map_store(const fs::path& file) {
     database.run("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; BEGIN");
     if (!is_made(file, database))
       throw InputError(file.string(), 0, "is empty, expected a map store");
-    return undamaged(file, [&] {
-      Facts facts(database);
-      const MapBuilderOptions options = options_in(facts);
-      StoredMap stored;
-      stored.map = BuilderAccess::restored(MemoryRows(database).load(options), options).map();
-      stored.method = options.method;
-      stored.sessions = sessions_in(database);
-      stored.legs = legs_in(database);
-      return stored;
-    });
+    const auto read_tables = [&](const Database& present) {
+      return undamaged(file, [&] {
+        Facts facts(present);
+        return read(present, options_in(facts));
+      });
+    };
+    if (!is_of_first_version(database)) return read_tables(database);
+    const Database copy(":memory:", Database::Access::write);
+    copy.take_over(database);
+    upgrade(copy);
+    return read_tables(copy);
+  });
+}
+
+}  // namespace
+
+MapBuilder read_builder(const fs::path& file) {
+  return reading(file, [](const Database& database, const MapBuilderOptions& options) {
+    return BuilderAccess::restored(MemoryRows(database).load(options), options);
+  });
+}
+
+StoredMap read_map_store(const fs::path& file) {
+  return reading(file, [](const Database& database, const MapBuilderOptions& options) {
+    StoredMap stored;
+    stored.map = BuilderAccess::restored(MemoryRows(database).load(options), options).map();
+    stored.method = options.method;
+    stored.sessions = sessions_in(database);
+    stored.legs = legs_in(database);
+    return stored;
   });
 }
 

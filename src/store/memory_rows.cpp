@@ -127,7 +127,7 @@ void create_memory_tables(const Database& database) {
                           c_yy REAL NOT NULL);
     CREATE TABLE corners(number INTEGER PRIMARY KEY, i INTEGER NOT NULL, j INTEGER NOT NULL,
                          k INTEGER NOT NULL, angles INTEGER NOT NULL, angle REAL NOT NULL,
-                         variance REAL NOT NULL);
+                         variance REAL NOT NULL, arm REAL NOT NULL);
     CREATE TABLE chain(place INTEGER PRIMARY KEY, landmark INTEGER NOT NULL);
     CREATE TABLE misfits(place INTEGER PRIMARY KEY, squared REAL NOT NULL);
     CREATE TABLE left_out(place INTEGER PRIMARY KEY, source INTEGER NOT NULL,
@@ -156,7 +156,7 @@ MemoryRows::MemoryRows(const Database& database)
       put_reckoned_(database,
                     "REPLACE INTO reckoned VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
                     "?)"),
-      put_corner_(database, "REPLACE INTO corners VALUES (?, ?, ?, ?, ?, ?, ?)"),
+      put_corner_(database, "REPLACE INTO corners VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
       put_link_(database, "REPLACE INTO chain VALUES (?, ?)"),
       cut_chain_(database, "DELETE FROM chain WHERE place >= ?"),
       put_misfit_(database, "REPLACE INTO misfits VALUES (?, ?)"),
@@ -222,7 +222,8 @@ void MemoryRows::load_reckoned(BuilderMemory& memory) {
   const int routes = memory.graph.routes();
   const int count = memory.graph.landmarks();
   Statement corners(database_,
-                    "SELECT number, i, j, k, angles, angle, variance FROM corners ORDER BY number");
+                    "SELECT number, i, j, k, angles, angle, variance, arm FROM corners ORDER BY "
+                    "number");
   while (corners.step()) {
     if (corners.integer(0) != std::ssize(memory.corners)) refuse("a corner that is misnumbered");
     CornerAverage one;
@@ -230,6 +231,8 @@ void MemoryRows::load_reckoned(BuilderMemory& memory) {
     one.j = number_at(corners, 2, 0, count, "a corner");
     one.k = number_at(corners, 3, 0, count, "a corner");
     one.angle = average_at(corners, 4, 1, "a corner");
+    one.arm = finite(corners, 7, "a corner");
+    if (!(one.arm > 0.0)) refuse("a corner without arms");
     if (one.i >= one.k || !memory.graph.route_between(one.i, one.j) ||
         !memory.graph.route_between(one.j, one.k)) {
       refuse("a corner between routes that are not there");
@@ -391,7 +394,7 @@ void MemoryRows::save_reckoned(const BuilderMemory& memory) {
     if (n < written_.corners.size() && same(one.angle, written_.corners[n].angle)) continue;
     put_corner_.bind(0, static_cast<std::int64_t>(n)).bind(1, one.i).bind(2, one.j).bind(3, one.k);
     bind_average(put_corner_, 4, one.angle);
-    put_corner_.run();
+    put_corner_.bind(7, one.arm).run();
     if (n == written_.corners.size()) written_.corners.emplace_back();
     written_.corners[n] = one;
   }

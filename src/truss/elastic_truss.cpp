@@ -141,6 +141,28 @@ Strain strain_of(const ElasticTruss& truss, const Element& element) {
   return strain;
 }
 
+void ElasticTruss::fetch(const std::vector<int>& joints) const noexcept {
+  for (const int joint : joints) {
+    __builtin_prefetch(&at_[idx(joint)]);
+    __builtin_prefetch(&positions_[idx(joint)]);
+  }
+  for (const int joint : joints) __builtin_prefetch(at_[idx(joint)].data());
+  for (const int joint : joints) {
+    for (const int number : at_[idx(joint)]) {
+      const auto* const element = reinterpret_cast<const char*>(&elements_[idx(number)]);
+      __builtin_prefetch(element);
+      __builtin_prefetch(element + sizeof(Element) - 1);
+    }
+  }
+  for (const int joint : joints) {
+    for (const int number : at_[idx(joint)]) {
+      for (int n = 0; n < element(number).count(); ++n) {
+        __builtin_prefetch(&positions_[idx(element(number).joints[idx(n)])]);
+      }
+    }
+  }
+}
+
 double ElasticTruss::energy(int number) const {
   const Element& one = element(number);
   if (one.kind == Element::Kind::bar) {

@@ -75,6 +75,10 @@ class ElasticTruss {
   /// Joints moved since begin(), each with where it was at first; may name a joint twice.
   [[nodiscard]] const std::vector<std::pair<int, Vector2>>& moved() const { return moved_; }
 
+  /// Asks memory for all that is at some joints at once: in a large truss none of it is in the
+  /// cache, and one after the other these are some hundred waits.
+  void fetch(const std::vector<int>& joints) const noexcept;
+
   [[nodiscard]] double energy(int number) const;
   /// Of all elements.
   [[nodiscard]] double energy() const;

@@ -32,9 +32,21 @@ std::pair<Matrix2, int> signed_root(const Matrix2& B) {
 
 }  // namespace
 
+void Equilibrium::changed(int element) {
+  if (!factored_) return;
+  if (std::ssize(changed_) > kFewTurned) {
+    drop();
+    return;
+  }
+  changed_.push_back(element);
+  unrest_.push_back(element);
+}
+
 void Equilibrium::drop() noexcept {
   factored_ = false;
   changed_.clear();
+  unrest_.clear();
+  sparse_ = kMostSparse;
 }
 
 double Equilibrium::factor_nonzeros() const {
@@ -56,9 +68,15 @@ Equilibrium::Term Equilibrium::term_of(const ElasticTruss& truss, int element) {
 void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
   if (truss.joints() < 2) return;
   follow(truss);
+  // Moves since its begin() are known; what came before was an equilibrium, if it was one of ours.
   std::vector<Vector2> before(idx(truss.joints()));
   for (int round = 0; round < enough.rounds; ++round) {
-    const double then = evaluate(truss);
+    double then = 0.0;
+    if (linear_ && sparse_ < kMostSparse) {
+      evaluate_changes(truss);
+    } else {
+      then = evaluate(truss);
+    }
     if (!turned_.empty()) {
       for (const int element : turned_) changed_.push_back(element);
       follow(truss);
@@ -71,7 +89,7 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
       drop();
       throw NotPositiveDefinite(0);
     }
-    if (!(gain > 0.0)) return;
+    if (!(gain > 0.0)) break;
     for (int joint = 1; joint < truss.joints(); ++joint) before[idx(joint)] = truss.position(joint);
     bool fallen = false;
     for (double share = 1.0; share > kShortest && !fallen; share *= 0.5) {
@@ -84,7 +102,44 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
       for (int joint = 1; joint < truss.joints(); ++joint) truss.move(joint, before[idx(joint)]);
       return;
     }
-    if (linear_ || gain <= enough.gain * then) return;
+    if (linear_ || gain <= enough.gain * then) break;
+  }
+  unrest_.clear();
+}
+
+/// Forces where bars have changed or joints have moved: elsewhere they balanced before and do now.
+void Equilibrium::evaluate_changes(const ElasticTruss& truss) {
+  ++sparse_;
+  f_.setZero();
+  turned_.clear();
+  seen_.resize(std::max(seen_.size(), idx(truss.joints())), 0);
+  std::vector<int> joints;
+  const auto note = [&](int joint) {
+    if (seen_[idx(joint)] != 0) return;
+    seen_[idx(joint)] = 1;
+    joints.push_back(joint);
+  };
+  for (const int number : unrest_) {
+    for (int n = 0; n < truss.element(number).count(); ++n)
+      note(truss.element(number).joints[idx(n)]);
+  }
+  for (const auto& [joint, before] : truss.moved()) {
+    note(joint);
+    for (const int number : truss.elements_at(joint)) {
+      for (int n = 0; n < 2; ++n) note(truss.element(number).joints[idx(n)]);
+    }
+  }
+  for (const int joint : joints) {
+    seen_[idx(joint)] = 0;
+    if (held(joint)) continue;
+    Vector2 sum = Vector2::Zero();
+    for (const int number : truss.elements_at(joint)) {
+      const Element& one = truss.element(number);
+      const Vector2 pull =
+          one.B * (one.w - (truss.position(one.joints[1]) - truss.position(one.joints[0])));
+      sum += one.joints[1] == joint ? pull : Vector2(-pull);
+    }
+    f_.segment<2>(unknown_[idx(joint)]) = sum;
   }
 }
 
@@ -110,6 +165,7 @@ void Equilibrium::solve(Eigen::VectorXd& x) {
 double Equilibrium::evaluate(const ElasticTruss& truss) {
   f_.setZero();
   turned_.clear();
+  sparse_ = 0;
   double energy = 0.0;
   const auto pull_at = [this](int joint, const Vector2& force) {
     if (!held(joint)) f_.segment<2>(unknown_[idx(joint)]) += force;
@@ -280,53 +336,74 @@ void Equilibrium::update(const std::vector<Column>& columns, bool add) {
   }
 }
 
+namespace {
+
+struct Pattern {
+  std::vector<NodePair> pairs;      ///< of all joints: the elements' own, in order
+  std::vector<NodePair> couplings;  ///< of the joints from 1 on
+};
+
+Pattern pattern_of(const ElasticTruss& truss) {
+  Pattern pattern;
+  const auto couple = [&pattern](int i, int j) {
+    pattern.pairs.push_back({i, j});
+    if (i > 0 && j > 0) pattern.couplings.push_back({i - 1, j - 1});
+  };
+  for (int number = 0; number < truss.elements(); ++number) {
+    const Element& one = truss.element(number);
+    couple(one.joints[0], one.joints[1]);
+    if (one.count() < 3) continue;
+    couple(one.joints[1], one.joints[2]);
+    couple(one.joints[0], one.joints[2]);
+  }
+  return pattern;
+}
+
+/// Joint 0 is held; places beyond the truss's joints come last.
+std::vector<int> order_of(const ElasticTruss& truss, const Pattern& pattern, int places) {
+  std::vector<int> order{0};
+  for (const int joint : elimination_order(truss.joints() - 1, pattern.couplings)) {
+    order.push_back(joint + 1);
+  }
+  for (int spare = truss.joints(); spare < places; ++spare) order.push_back(spare);
+  return order;
+}
+
+BlockSystem system_of(const ElasticTruss& truss, int places, Kernel kernel) {
+  const Pattern pattern = pattern_of(truss);
+  std::vector<int> sizes(idx(places), 2);
+  sizes[0] = 0;
+  BlockSystem system(sizes, pattern.pairs, order_of(truss, pattern, places), kernel);
+  int pair = 0;
+  for (int number = 0; number < truss.elements(); ++number) {
+    const Element& one = truss.element(number);
+    const Tangent tangent = truss.tangent(number);
+    for (int n = 0; n < one.count(); ++n) {
+      system.add_diagonal(one.joints[idx(n)], tangent.stiffness[idx(n)][idx(n)]);
+    }
+    system.add_coupling(pair++, tangent.stiffness[0][1]);
+    if (one.count() < 3) continue;
+    system.add_coupling(pair++, tangent.stiffness[1][2]);
+    system.add_coupling(pair++, tangent.stiffness[0][2]);
+  }
+  for (int spare = truss.joints(); spare < places; ++spare) {
+    system.add_diagonal(spare, Matrix2(Matrix2::Identity()));
+  }
+  return system;
+}
+
+}  // namespace
+
 void Equilibrium::factorise(const ElasticTruss& truss) {
   drop();
   const int places = truss.joints() + std::max(kLeastSpare, truss.joints() / kJointsPerSpare);
   linear_ = true;
   terms_.assign(idx(truss.elements()), {});
-  std::vector<NodePair> pairs;      // of all joints
-  std::vector<NodePair> couplings;  // of the joints from 1 on
-  const auto couple = [&](int i, int j) {
-    pairs.push_back({i, j});
-    if (i > 0 && j > 0) couplings.push_back({i - 1, j - 1});
-  };
   for (int number = 0; number < truss.elements(); ++number) {
-    const Element& one = truss.element(number);
     terms_[idx(number)] = term_of(truss, number);
-    couple(one.joints[0], one.joints[1]);
-    if (one.kind != Element::Kind::bar) linear_ = false;
-    if (one.count() < 3) continue;
-    couple(one.joints[1], one.joints[2]);
-    couple(one.joints[0], one.joints[2]);
+    if (truss.element(number).kind != Element::Kind::bar) linear_ = false;
   }
-  std::vector<int> order{0};  // which is held
-  for (const int joint : elimination_order(truss.joints() - 1, couplings)) {
-    order.push_back(joint + 1);
-  }
-  for (int spare = truss.joints(); spare < places; ++spare) order.push_back(spare);
-  std::vector<int> sizes(idx(places), 2);
-  sizes[0] = 0;
-  BlockSystem system(sizes, pairs, order, Kernel::cholmod);
-  int pair = 0;
-  for (int number = 0; number < truss.elements(); ++number) {
-    const Element& one = truss.element(number);
-    const Term& term = terms_[idx(number)];
-    const auto K = [&](std::size_t n, std::size_t m) -> Matrix2 {
-      if (one.kind == Element::Kind::bar) return n == m ? term.B : Matrix2(-term.B);
-      return term.k * term.gradient[n] * term.gradient[m].transpose();
-    };
-    for (int n = 0; n < one.count(); ++n) {
-      system.add_diagonal(one.joints[idx(n)], K(idx(n), idx(n)));
-    }
-    system.add_coupling(pair++, K(0, 1));
-    if (one.count() < 3) continue;
-    system.add_coupling(pair++, K(1, 2));
-    system.add_coupling(pair++, K(0, 2));
-  }
-  for (int spare = truss.joints(); spare < places; ++spare) {
-    system.add_diagonal(spare, Matrix2(Matrix2::Identity()));
-  }
+  const BlockSystem system = system_of(truss, places, Kernel::cholmod);
   cholesky_.analyse(system.matrix());
   cholesky_.factorise(system.matrix());
   unknown_.assign(idx(places), -1);
@@ -334,6 +411,18 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
   f_ = Eigen::VectorXd::Zero(system.unknowns());
   joints_ = truss.joints();
   factored_ = true;
+}
+
+std::vector<Matrix2> flexibilities(const ElasticTruss& truss) {
+  std::vector<Matrix2> result(idx(truss.joints()), Matrix2::Zero());
+  if (truss.joints() < 2) return result;
+  BlockSystem system = system_of(truss, truss.joints(), Kernel::frontal);
+  system.factorise();
+  const Eigen::MatrixXd blocks = system.inverse_blocks();
+  for (int joint = 1; joint < truss.joints(); ++joint) {
+    result[idx(joint)] = blocks.block<2, 2>(0, system.offset(joint));
+  }
+  return result;
 }
 
 }  // namespace trussmap

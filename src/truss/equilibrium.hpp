@@ -25,7 +25,10 @@ namespace trussmap {
 class Equilibrium {
  public:
   /// An element that was added, or whose stiffness may have changed.
-  void changed(int element) { changed_.push_back(element); }
+  void changed(int element);
+
+  /// Joints were moved that did not come to equilibrium.
+  void disturbed() noexcept { sparse_ = kMostSparse; }
 
   /// The truss is another one, or was rolled back.
   void drop() noexcept;
@@ -61,17 +64,26 @@ class Equilibrium {
   void update(const std::vector<Column>& columns, bool add);
   void factorise(const ElasticTruss& truss);
   double evaluate(const ElasticTruss& truss);
+  void evaluate_changes(const ElasticTruss& truss);
   void solve(Eigen::VectorXd& x);
 
-  std::vector<Term> terms_;   ///< of the elements in the factor
-  std::vector<int> changed_;  ///< since then
-  std::vector<int> turned_;   ///< elements noticeably, by the last evaluation
-  std::vector<int> unknown_;  ///< per place: its joint's first unknown
-  int joints_ = 0;            ///< in the factor
+  std::vector<Term> terms_;               ///< of the elements in the factor
+  std::vector<int> changed_;              ///< since then
+  std::vector<int> unrest_;               ///< elements that changed since the last equilibrium
+  std::vector<char> seen_;                ///< per joint, of evaluate_changes
+  static constexpr int kMostSparse = 64;  // then rounding is swept up
+  int sparse_ = kMostSparse;              ///< evaluations of changes alone since the last whole one
+  std::vector<int> turned_;               ///< elements noticeably, by the last evaluation
+  std::vector<int> unknown_;              ///< per place: its joint's first unknown
+  int joints_ = 0;                        ///< in the factor
   bool factored_ = false;
   bool linear_ = true;  ///< bars alone
   Eigen::VectorXd f_;
   SparseCholesky cholesky_{Ordering::fixed};
 };
+
+/// Diagonal blocks of K^-1 per joint, as the truss lies; zero of joint 0, which is held. Throws
+/// NotPositiveDefinite. Cost: two factorisations.
+[[nodiscard]] std::vector<Matrix2> flexibilities(const ElasticTruss& truss);
 
 }  // namespace trussmap

@@ -138,7 +138,7 @@ TEST(BuildMap, RefusesARecordingWithoutSightings) {
 }
 
 MapBuilder grown_by(const std::vector<Recording>& recordings, MapAxes axes, Method method) {
-  MapBuilder builder({.method = method, .eta = {.hold_first = false}});
+  MapBuilder builder({.method = method});
   for (const Recording& one : recordings) (void)extend_map(builder, one, Model{}, axes);
   return builder;
 }
@@ -182,7 +182,7 @@ TEST(ExtendMap, WhatCannotBeTurnedIsRefused) {
   }
   EXPECT_THROW((void)extend_map(builder, apart, Model{}, MapAxes::compass), SolveError);
   builder.start("L0_0");
-  builder.observe("close", {{0.02, 0.0}, 1e-6 * Matrix2::Identity()});
+  builder.observe("close", Traversal{{0.02, 0.0}, 1e-6 * Matrix2::Identity()});
   for (Sighting& one : one_only.sightings) {
     if (one.landmark == "L0_1")
       one.landmark = "close";

@@ -21,6 +21,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the energy before
+constexpr double kNothing = 1e-12;  // of a map that is at rest but for rounding
 
 enum class Shape { cloud, star, chain, grid, clusters };
 
@@ -146,7 +147,7 @@ void expect_falling_energy(const Trial& trial, int arrivals, unsigned seed) {
       if (!new_route || known) {
         builder.relax();
         const double after = builder.energy();
-        ASSERT_LE(after, before * (1.0 + kRounding)) << "arrival " << k;
+        ASSERT_LE(after, before * (1.0 + kRounding) + kNothing) << "arrival " << k;
         ++checked;
       }
     } catch (const SolveError&) {

@@ -264,6 +264,47 @@ TEST(MapBuilder, RelaxingTheWholeLetsTheEnergyFallToItsLeast) {
   }
 }
 
+/// Covariances are those of batch least squares: the inverse of its matrix.
+TEST(MapBuilder, CovariancesAreThoseOfLeastSquares) {
+  const Walk walk = random_walk(9, 90, 1.0, 12);
+  for (const Method method : {Method::elastic, Method::gauss_markov}) {
+    MapBuilderOptions options;
+    options.method = method;
+    options.gate = std::numeric_limits<double>::infinity();
+    const MapBuilder builder = built(walk, options);
+    const LandmarkGraph map = builder.map();
+    const int n = 2 * map.landmarks();
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    const auto add = [&](int i, int j, const Matrix2& B) {
+      K.block<2, 2>(2 * i, 2 * i) += B;
+      K.block<2, 2>(2 * j, 2 * j) += B;
+      K.block<2, 2>(2 * i, 2 * j) -= B;
+      K.block<2, 2>(2 * j, 2 * i) -= B;
+    };
+    if (method == Method::elastic) {  // which knows mean covariances alone
+      for (int number = 0; number < map.routes(); ++number) {
+        const Route& route = map.route(number);
+        add(route.source, route.target, route.traversals * route.covariance.inverse());
+      }
+    } else {
+      for (std::size_t k = 0; k < walk.legs.size(); ++k) {
+        add(*map.find(name(walk.visits[k])), *map.find(name(walk.visits[k + 1])),
+            walk.legs[k].covariance.inverse());
+      }
+    }
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
+    C.bottomRightCorner(n - 2, n - 2) = K.bottomRightCorner(n - 2, n - 2).inverse();
+    const std::vector<Matrix2> all = builder.covariances();
+    for (int k = 0; k < map.landmarks(); ++k) {
+      EXPECT_LE((all[idx(k)] - C.block<2, 2>(2 * k, 2 * k)).norm(), 1e-12);
+      const Matrix2 between = C.block<2, 2>(2 * k, 2 * k) + C.block<2, 2>(6, 6) -
+                              C.block<2, 2>(6, 2 * k) - C.block<2, 2>(2 * k, 6);
+      EXPECT_LE((builder.covariance_between(3, k) - between).norm(), 1e-12) << k;
+    }
+    EXPECT_THROW((void)builder.covariance_between(0, 99), std::invalid_argument);
+  }
+}
+
 TEST(MapBuilder, KnowsTheNearestLandmarksOfAPoint) {
   const Walk walk = random_walk(30, 300, 1.0, 10);
   const MapBuilder builder = built(walk, {});

@@ -178,13 +178,5 @@ std::vector<testing::Case> chains() {
 
 INSTANTIATE_TEST_SUITE_P(EveryCase, FirstSightChain, ::testing::ValuesIn(chains()));
 
-TEST(LimitedGain, KeepsTheObtainedChangeWithinTheLimit) {
-  const Vector2 desired(0.3, -0.4);
-  EXPECT_DOUBLE_EQ(limited_gain(0.4 * desired, desired, 0.5), 1.0);
-  EXPECT_DOUBLE_EQ(limited_gain(2.0 * desired, desired, 0.5), 0.25);
-  EXPECT_DOUBLE_EQ(limited_gain(quarter_turn(desired), desired, 0.5), 0.5);
-  EXPECT_DOUBLE_EQ(limited_gain(Vector2(1.0, 1.0), Vector2::Zero(), 0.5), 1.0);
-}
-
 }  // namespace
 }  // namespace trussmap

@@ -194,6 +194,73 @@ TEST_F(MapStoreTest, EveryLegIsKeptAsItWasGiven) {
   expect_alike(again, store.builder(), kExact);
 }
 
+/// Equilibria of corners are found to within 1e-11 of their energy, from wherever one begins.
+void expect_near(const MapBuilder& a, const MapBuilder& b) {
+  constexpr double kNear = 1e-6;  // m
+  EXPECT_EQ(a.here(), b.here());
+  ASSERT_EQ(a.landmarks(), b.landmarks());
+  for (int k = 0; k < a.landmarks(); ++k) {
+    EXPECT_LE((a.position(k) - b.position(k)).norm(), kNear) << k;
+  }
+  EXPECT_NEAR(a.energy(), b.energy(), kNear * (1.0 + b.energy()));
+}
+
+/// Legs in the robot's own axes, a compass, landmarks from afar: opened before every call, and read
+/// back from what was kept, it is the builder that never stopped.
+TEST_F(MapStoreTest, AMapOfMotionsGoesOnAsItWas) {
+  const WheelNoise noise{0.003, 0.003};
+  const auto turned = [&](double angle, double way) {
+    return then(arc_motion({-0.17 * angle, 0.17 * angle + 1e-4}, 0.34, noise),
+                arc_motion({way, way + 0.01}, 0.34, noise));
+  };
+  MapBuilder twin;
+  const auto both = [&](const auto& call) {
+    call(twin);
+    MapStore store(file_);
+    call(store);
+  };
+  both([](auto& map) { map.start("dock", seen_at(1.0, 0.2, 0.05, 0.02)); });
+  const char* const names[] = {"a", "b", "c", "dock"};
+  for (int leg = 0; leg < 11; ++leg) {
+    const LandmarkOffset seen = seen_at(0.8, 0.1 * leg, 0.05, 0.02);
+    both(
+        [&](auto& map) { map.arrive(names[leg % 4], turned(leg == 0 ? 0.0 : 1.5708, 5.0), seen); });
+    if (leg % 3 == 0) both([&](auto& map) { map.observe("lamp", seen_at(3.0, 1.0, 0.1, 0.03)); });
+    if (leg == 6) both([](auto& map) { map.compass(0.3, 0.02); });
+    if (leg == 8) both([](auto& map) { map.compass(-2.9, 0.02); });
+  }
+  both([](auto& map) { map.relax(); });
+  expect_near(MapStore(file_).builder(), twin);
+  expect_near(read_builder(file_), twin);
+  EXPECT_EQ(read_builder(file_).pose()->pose.heading,
+            MapStore(file_).builder().pose()->pose.heading);
+  MapBuilder again;
+  MapStore(file_).for_each_leg([&](const StoredLeg& one) {
+    switch (one.kind) {
+      case StoredLeg::Kind::start:
+        return again.start(one.to, one.seen, one.leg.displacement);
+      case StoredLeg::Kind::arrive:
+        return static_cast<void>(again.arrive(one.to, one.motion, one.seen));
+      case StoredLeg::Kind::observe:
+        return static_cast<void>(again.observe(one.to, one.seen));
+      case StoredLeg::Kind::compass:
+        return again.compass(one.motion.displacement.heading,
+                             std::sqrt(one.motion.covariance(2, 2)));
+      case StoredLeg::Kind::relax:
+        return static_cast<void>(again.relax());
+    }
+  });
+  expect_near(again, twin);
+  const fs::path saved = scratch_.path() / "saved.db";
+  static_cast<void>(MapStore::create(saved, twin));
+  MapBuilder back = read_builder(saved);
+  expect_near(back, twin);
+  const Motion on = turned(1.5708, 5.0);
+  back.arrive("new", on);
+  twin.arrive("new", on);
+  expect_near(back, twin);
+}
+
 TEST_F(MapStoreTest, ASessionThatThrowsIsNotKeptAtAll) {
   const std::vector<Step> steps = walk(10, 60, 7);
   MapBuilder twin;
