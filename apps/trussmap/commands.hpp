@@ -23,6 +23,7 @@ void setup_convert(const Command& app);
 void setup_diagnose(const Command& app);
 void setup_discover(const Command& app);
 void setup_effects(const Command& app);
+void setup_explore(const Command& app);
 void setup_fit(const Command& app);
 void setup_fleet(const Command& app);
 void setup_manual(const Command& app, const CLI::App& whole);

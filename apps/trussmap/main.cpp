@@ -95,6 +95,7 @@ int run(int argc, char** argv) {
   trussmap::app::setup_diagnose(commands);
   trussmap::app::setup_discover(commands);
   trussmap::app::setup_effects(commands);
+  trussmap::app::setup_explore(commands);
   trussmap::app::setup_fit(commands);
   trussmap::app::setup_fleet(commands);
   trussmap::app::setup_manual(commands, app);

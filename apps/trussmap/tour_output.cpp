@@ -62,7 +62,13 @@ void print_block(const TourResult& result, const char* title, int digits, const 
   for (const std::size_t tour : shown_tours(result.tours.size())) {
     fmt::print("  {:>4}", tour);
     for (const std::string& method : methods) {
-      fmt::print("  {:>16.{}f}", pick(result.tours[tour - 1].at(method))->mean, digits);
+      const double mean = pick(result.tours[tour - 1].at(method))->mean;
+      constexpr double kLong = 1e6;  // diverged
+      if (mean < kLong) {
+        fmt::print("  {:>16.{}f}", mean, digits);
+      } else {
+        fmt::print("  {:>16.{}g}", mean, digits);
+      }
     }
     fmt::print("\n");
   }

@@ -82,7 +82,8 @@ struct MapBuilderOptions {
   /// An arrival at a known landmark whose misfit is beyond so many standard deviations, of leg and
   /// map together, is left out: a landmark was taken for another. Where misfits have been large
   /// lately the gate is as much wider, and what was left out comes back: a systematic error is no
-  /// wrong landmark. Infinity: none is left out. Of `gauss_markov`, for legs in map axes.
+  /// wrong landmark. Infinity: none is left out. For legs in map axes; `elastic_printed` has no
+  /// gate, and legs in the robot's own axes have none yet.
   double gate = kMapGate;
 };
 
@@ -215,6 +216,11 @@ class MapBuilder {
   /// The same of every landmark from the first one, all at once; that of the first is zero. Cost:
   /// about two factorisations.
   [[nodiscard]] std::vector<Matrix2> covariances() const;
+
+  /// Per route of map(): by how much the summed variance of all landmarks (m^2) is expected to fall
+  /// when the route is driven once more, with the covariance that its traversals had on average.
+  /// Where to drive next, for a better map. Cost: one factorisation, two solutions per route.
+  [[nodiscard]] std::vector<double> expected_falls() const;
 
   /// The landmarks along the shortest or the surest way over routes that were driven
   /// (landmark_map.hpp); empty where there is none.

@@ -14,6 +14,7 @@
 #include "trussmap/calibrate.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/survey_comparison.hpp"
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
@@ -135,5 +136,22 @@ struct TruthCalibration {
 [[nodiscard]] std::string map_picture(const BuiltMap& built, const std::string& title);
 [[nodiscard]] std::string square_picture(const std::vector<SquareRuns>& rounds, double side);
 [[nodiscard]] std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate);
+
+/// A moment of an exploration.
+struct ExplorationFrame {
+  LandmarkGraph map;  ///< laid over the truth
+  int here = -1;      ///< landmark
+  double way = 0.0;   ///< m, driven so far
+};
+
+/// The map as it grows, an animated picture (SVG); without animation its end.
+[[nodiscard]] std::string exploration_picture(const std::vector<ExplorationFrame>& frames,
+                                              const LandmarkPositions& truth,
+                                              const std::string& subject);
+
+/// A file with that picture, and moments of it (HTML).
+[[nodiscard]] std::string exploration_page(const std::vector<ExplorationFrame>& frames,
+                                           const LandmarkPositions& truth,
+                                           const std::string& subject);
 
 }  // namespace trussmap

@@ -63,6 +63,10 @@ struct MapErrors {
   int routes = 0;                  ///< that count: both ends in the truth, and apart there
 };
 
+/// The map turned and moved so that its landmarks lie best on the truth's. Throws
+/// std::invalid_argument where they have fewer than two in common.
+[[nodiscard]] LandmarkGraph laid_over(const LandmarkGraph& map, const LandmarkPositions& truth);
+
 /// Errors of a map's routes and landmarks as they lie in it. Landmarks that the truth lacks do not
 /// count. Throws std::invalid_argument where fewer than two do.
 [[nodiscard]] MapErrors map_errors(const LandmarkGraph& map, const LandmarkPositions& truth,

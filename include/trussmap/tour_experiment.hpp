@@ -11,7 +11,8 @@
 //   raw               single measurements, the first of each route
 //   dead_reckoning    positions where the landmarks were first met, never corrected
 //   weighted_average  each route's own means; it has no positions
-//   elastic_printed   the paper's two phases as printed
+//   elastic_printed   the paper's two phases as printed; where it diverges beyond all numbers, its
+//                     last map stays
 //   elastic           refinement by relaxation, within a scope (map_builder.hpp)
 //   gauss_markov      the same with stiffness 1/variance, of the whole map
 //   adjustment        least squares of everything at once: of routes' means; from wheels of all

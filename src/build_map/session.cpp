@@ -73,14 +73,14 @@ void Session::begin(const Stop& stop) {
 }
 
 /// By the compass; without one as the best fit has it.
-HeadingEstimate Session::first_heading(const Sighting& at, const InitialHeading& first) const {
+HeadingEstimate Session::first_heading(const Sighting& at, const InitialHeading& first) {
   if (recording_.drive.has_compass() || !options_.guided) return with_yaw(at, first.heading);
   return {drive_.guided_heading(at), kGuidedHeading * kGuidedHeading};
 }
 
 /// Taken together with what the sighting's yaw and the landmark's orientation in the best fit say.
-HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& heading) const {
-  if (!options_.guided) return heading;
+HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& heading) {
+  if (!options_.guided) return with_own_yaw(at, heading);
   const Landmark& landmark = options_.guide.landmark(*options_.guide.find(at.landmark));
   const double yaw = drive_.yaw_of(at);
   if (std::isnan(yaw) || !landmark.heading) return heading;
@@ -90,6 +90,25 @@ HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& hea
   const double gain = heading.variance / total;
   const double off = wrap_angle(*landmark.heading - yaw - heading.heading);
   return {heading.heading + gain * off, heading.variance * own * own / total};
+}
+
+/// A landmark's orientation is what its first yaw made it, and the better known the more are read.
+HeadingEstimate Session::with_own_yaw(const Sighting& at, const HeadingEstimate& heading) {
+  const double yaw = drive_.yaw_of(at);
+  if (std::isnan(yaw) || !(heading.variance > 0.0)) return heading;
+  const double own = drive_.yaw_sd() * drive_.yaw_sd();
+  const auto [known, is_new] =
+      orientations_.try_emplace(at.landmark, HeadingEstimate{heading.heading + yaw, 0.0});
+  HeadingEstimate& orientation = known->second;
+  if (is_new) {
+    orientation.variance = heading.variance + own;
+    return heading;
+  }
+  const HeadingEstimate after = reset_heading(heading, orientation.heading - yaw - heading.heading,
+                                              orientation.variance + own);
+  orientation =
+      reset_heading(orientation, after.heading + yaw - orientation.heading, heading.variance + own);
+  return after;
 }
 
 /// Nearest first: the landmark stood on, else the nearest seen, is the stop's reference.
@@ -153,7 +172,7 @@ Traversal Session::in_map(const PositionEstimate& place) const {
 
 /// With a compass as reckoned; without, as the best fit has it, and as certain as one that is taken
 /// from the landmarks at both ends of the leg.
-HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimate& place) const {
+HeadingEstimate Session::heading_after(const Accepted& at, const PositionEstimate& place) {
   const HeadingEstimate reckoned{pose_.pose.heading, pose_.covariance(2, 2)};
   if (recording_.drive.has_compass() || !options_.guided) {
     return with_yaw(*at.sighting, reckoned);

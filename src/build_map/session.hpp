@@ -9,6 +9,8 @@
 #include "trussmap/map_builder.hpp"
 
 #include <limits>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace trussmap {
@@ -41,11 +43,10 @@ class Session {
   [[nodiscard]] bool dilutes(const std::string& landmark, const Matrix2& covariance) const;
   [[nodiscard]] Traversal in_map(const PositionEstimate& place) const;
   void settle(const Stop& stop, const Accepted& at, const HeadingEstimate& heading);
-  [[nodiscard]] HeadingEstimate first_heading(const Sighting& at,
-                                              const InitialHeading& first) const;
-  [[nodiscard]] HeadingEstimate heading_after(const Accepted& at,
-                                              const PositionEstimate& place) const;
-  [[nodiscard]] HeadingEstimate with_yaw(const Sighting& at, const HeadingEstimate& heading) const;
+  [[nodiscard]] HeadingEstimate first_heading(const Sighting& at, const InitialHeading& first);
+  [[nodiscard]] HeadingEstimate heading_after(const Accepted& at, const PositionEstimate& place);
+  [[nodiscard]] HeadingEstimate with_yaw(const Sighting& at, const HeadingEstimate& heading);
+  [[nodiscard]] HeadingEstimate with_own_yaw(const Sighting& at, const HeadingEstimate& heading);
 
   const SightedDrive& drive_;
   bool own_axes_;  // legs are handed on in the robot's own axes: no compass, no guide
@@ -63,6 +64,7 @@ class Session {
   std::size_t legs_ = 0;                // driven
   std::vector<std::size_t> tour_ends_;  // legs at which all routes have been driven (again)
   LandmarkPositions survey_;
+  std::map<std::string, HeadingEstimate> orientations_;  // of landmarks, on the way
   double readings_used_until_ =
       -std::numeric_limits<double>::infinity();  // compass readings that the start heading rests on
 };

@@ -6,6 +6,7 @@
 #include "geometry/index.hpp"
 #include "map/linear_truss.hpp"
 #include "parallel/parallel_for.hpp"
+#include "trussmap/error.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 namespace trussmap {
@@ -113,14 +115,24 @@ class SeedRun {
     const int route = averages_.add_traversal(a, *averages_.find(name), leg.in_map);
     if (averages_.route(route).traversals == 1) raw_.push_back(averages_.route(route).displacement);
     for (auto& [method, builder] : builders_) {
-      if (leg.reading) builder.compass(leg.reading->heading, std::sqrt(leg.reading->variance));
-      if (leg.motion) {
-        builder.arrive(name, *leg.motion);
-      } else {
-        builder.arrive(name, leg.in_map);
+      if (lost_.contains(method)) continue;
+      try {
+        take(builder, name, leg);
+      } catch (const SolveError&) {
+        if (method != name_of(Method::elastic_printed)) throw;
+        lost_.insert(method);  // it has diverged beyond all numbers: its last map stays
       }
     }
     if (leg.motion) graph_.add(landmark_name(mesh, from), name, *leg.motion, leg.reading);
+  }
+
+  static void take(MapBuilder& builder, const std::string& name, const TourLeg& leg) {
+    if (leg.reading) builder.compass(leg.reading->heading, std::sqrt(leg.reading->variance));
+    if (leg.motion) {
+      builder.arrive(name, *leg.motion);
+    } else {
+      builder.arrive(name, leg.in_map);
+    }
   }
 
   /// A route's vector in the mesh's direction, out of per-route vectors in the averages' order.
@@ -162,8 +174,9 @@ class SeedRun {
   std::mt19937_64 walk_random_;
   TourRobot robot_;
   std::map<std::string, MapBuilder> builders_;
-  LandmarkGraph averages_;    // positions: where dead reckoning first met the landmarks
-  std::vector<Vector2> raw_;  // per route of averages_: its first traversal
+  std::set<std::string> lost_;  // builders that have diverged
+  LandmarkGraph averages_;      // positions: where dead reckoning first met the landmarks
+  std::vector<Vector2> raw_;    // per route of averages_: its first traversal
   Vector2 reckoned_ = Vector2::Zero();
   TourGraph graph_;  // of legs by wheels
 };

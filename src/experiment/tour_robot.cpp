@@ -44,8 +44,11 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
   const double before = heading_;
   const double turn = wrap_angle(direction(displacement) - heading_);
   heading_ += turn;
-  const std::vector<WheelTravel> rows =
-      drive_route(turn, displacement.norm(), wheels.wheelbase, noise, error_random_);
+  std::vector<WheelTravel> rows;
+  for (const RecordedRow& row :
+       drive_route(turn, displacement.norm(), wheels.wheelbase, wheels.noise, error_random_)) {
+    rows.push_back({row.left, row.right});
+  }
   TourLeg leg;
   if (wheels.readings == CompassReadings::row) {
     leg.in_map = with_readings(rows, before);

@@ -58,8 +58,8 @@ PoseGraph to_pose_graph(const LandmarkGraph& map) {
   }
   for (int k = 0; k < map.routes(); ++k) {
     const Route& route = map.route(k);
-    const Matrix2 omega = bar_stiffness(StiffnessLaw::variance, route.covariance,
-                                        route.orientation, route.traversals);
+    const Matrix2 omega = bar_stiffness(StiffnessLaw::variance, route.covariance, route.orientation,
+                                        route.traversals);
     graph.displacement_edges.push_back(
         {route.source, route.target, route.displacement, 0.5 * (omega + omega.transpose())});
   }

@@ -9,6 +9,7 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -166,6 +167,35 @@ std::vector<Matrix2> MapBuilder::State::covariances() const {
   } catch (const NotPositiveDefinite&) {
     throw SolveError("the covariances of the map's traversals span too many magnitudes");
   }
+}
+
+/// P becomes P - D S^-1 D', with D the columns of P for the route's vector and S that vector's
+/// variance before the measurement and its own together.
+std::vector<double> MapBuilder::State::expected_falls() const {
+  const ElasticTruss truss = by_variance();
+  Equilibrium equilibrium;
+  std::vector<double> falls;
+  for (int number = 0; number < m_.graph.routes(); ++number) {
+    const Route& route = m_.graph.route(number);
+    std::array<std::vector<Vector2>, 2> D;
+    for (std::size_t c = 0; c < 2; ++c) {
+      D[c] = equilibrium.pull(truss, route.source, route.target,
+                              Matrix2::Identity().col(static_cast<Eigen::Index>(c)));
+    }
+    Matrix2 S = route.covariance;
+    Matrix2 squares = Matrix2::Zero();
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const std::vector<Vector2>& column = D[static_cast<std::size_t>(c)];
+      S.col(c) += column[idx(route.target)] - column[idx(route.source)];
+      for (Eigen::Index r = 0; r < 2; ++r) {
+        for (std::size_t k = 0; k < column.size(); ++k) {
+          squares(r, c) += D[static_cast<std::size_t>(r)][k].dot(column[k]);
+        }
+      }
+    }
+    falls.push_back((S.inverse() * squares).trace());
+  }
+  return falls;
 }
 
 // ---------------------------------------- where the robot is
@@ -331,11 +361,22 @@ Arrival MapBuilder::State::travel(const std::string& landmark, const MeasuredLeg
   const std::optional<int> known = other_landmark(landmark);
   MeasuredLeg measured = leg;
   measured.from = m_.here;
-  const bool gated = options_.method == Method::gauss_markov && !std::isinf(options_.gate) &&
-                     known.has_value() && leg.chord == nullptr;
+  const bool gated =
+      !printed() && !std::isinf(options_.gate) && known.has_value() && leg.chord == nullptr;
   Arrival arrival = gated ? travel_gated(landmark, measured) : take_in(landmark, measured);
   if (leg.chord == nullptr && m_.frame == Frame::open) m_.frame = Frame::axes;
   return arrival;
+}
+
+/// What the map knows between two landmarks by one way alone: more uncertain than all it knows.
+Matrix2 MapBuilder::State::along_the_surest_way(int i, int j) const {
+  Matrix2 sum = Matrix2::Zero();
+  const std::vector<int> way = trussmap::path(m_.graph, i, j, PathBy::uncertainty);
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    const Route& route = m_.graph.route(*m_.graph.route_between(way[k - 1], way[k]));
+    sum += route.covariance / route.traversals;
+  }
+  return sum;
 }
 
 /// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map.
@@ -343,7 +384,11 @@ double MapBuilder::State::squared_misfit(int i, int j, const Traversal& leg) {
   const Vector2 misfit = leg.displacement - (at(j) - at(i));
   const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
   if (m_.gate.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
-  Matrix2 of_map;
+  Matrix2 of_map = Matrix2::Zero();
+  if (options_.method != Method::gauss_markov) {
+    of_map = along_the_surest_way(i, j);
+    return misfit.dot((leg.covariance + of_map).inverse() * misfit);
+  }
   for (Eigen::Index c = 0; c < 2; ++c) {
     const std::vector<Vector2> u = mechanics_.pull(i, j, Matrix2::Identity().col(c));
     of_map.col(c) = u[idx(j)] - u[idx(i)];

@@ -48,6 +48,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] std::optional<PoseEstimate> pose() const;
   [[nodiscard]] Matrix2 covariance_between(int a, int b) const;
   [[nodiscard]] std::vector<Matrix2> covariances() const;
+  [[nodiscard]] std::vector<double> expected_falls() const;
   [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
   [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
   [[nodiscard]] const BuilderMemory& memory() const { return m_; }
@@ -78,6 +79,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;
   Arrival travel(const std::string& landmark, const MeasuredLeg& leg);
   Arrival travel_gated(const std::string& landmark, const MeasuredLeg& leg);
+  [[nodiscard]] Matrix2 along_the_surest_way(int i, int j) const;
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
   void take_back_in(Arrival& arrival);
   Arrival take_in(const std::string& landmark, const MeasuredLeg& leg);

@@ -255,6 +255,10 @@ std::vector<Matrix2> MapBuilder::covariances() const {
   return state_->covariances();
 }
 
+std::vector<double> MapBuilder::expected_falls() const {
+  return state_->expected_falls();
+}
+
 std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {
   return trussmap::path(state_->graph(), from, to, by);
 }

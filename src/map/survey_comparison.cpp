@@ -161,16 +161,43 @@ double survey_rms(const LandmarkPositions& map, const std::vector<SurveyPoint>& 
   return common.names.size() < 2 ? 0.0 : align_rigidly(common.in_map, common.surveyed).rms;
 }
 
-MapErrors map_errors(const LandmarkGraph& map, const LandmarkPositions& truth, Laid laid) {
-  std::vector<Vector2> found;
-  std::vector<Vector2> true_places;
+namespace {
+
+struct InBoth {
+  std::vector<Vector2> map;
+  std::vector<Vector2> truth;
+};
+
+InBoth in_both(const LandmarkGraph& map, const LandmarkPositions& truth) {
+  InBoth both;
   for (int k = 0; k < map.landmarks(); ++k) {
     const auto at = truth.find(map.landmark(k).name);
     if (at == truth.end()) continue;
-    found.push_back(map.landmark(k).position);
-    true_places.push_back(at->second);
+    both.map.push_back(map.landmark(k).position);
+    both.truth.push_back(at->second);
   }
-  if (found.size() < 2) throw std::invalid_argument("the truth has fewer than two landmarks");
+  if (both.map.size() < 2) {
+    throw std::invalid_argument("map and truth have fewer than two landmarks in common");
+  }
+  return both;
+}
+
+}  // namespace
+
+LandmarkGraph laid_over(const LandmarkGraph& map, const LandmarkPositions& truth) {
+  const InBoth both = in_both(map, truth);
+  const Alignment onto = align_rigidly(both.map, both.truth);
+  LandmarkGraph laid = map;
+  for (int k = 0; k < map.landmarks(); ++k) {
+    laid.set_position(k, onto.apply(map.landmark(k).position));
+  }
+  return laid;
+}
+
+MapErrors map_errors(const LandmarkGraph& map, const LandmarkPositions& truth, Laid laid) {
+  const InBoth both = in_both(map, truth);
+  const std::vector<Vector2>& found = both.map;
+  const std::vector<Vector2>& true_places = both.truth;
   Alignment onto;
   if (laid == Laid::aligned) onto = align_rigidly(found, true_places);
   MapErrors errors;

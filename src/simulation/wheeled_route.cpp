@@ -13,16 +13,16 @@ constexpr double kWayPerRow = 0.25;  // m
 
 }  // namespace
 
-std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase,
-                                     const WheelNoise& noise, std::mt19937_64& random) {
+std::vector<RecordedRow> drive_route(double turn, double length, double wheelbase, double noise,
+                                     std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  std::vector<WheelTravel> rows;
+  std::vector<RecordedRow> rows;
   const auto drive = [&](double left, double right, int count) {
     for (int row = 0; row < count; ++row) {
       const double l = left / count;
       const double r = right / count;
-      const double seen_left = l + noise.left * std::sqrt(std::abs(l)) * normal(random);
-      const double seen_right = r + noise.right * std::sqrt(std::abs(r)) * normal(random);
+      const double seen_left = l + noise * std::sqrt(std::abs(l)) * normal(random);
+      const double seen_right = r + noise * std::sqrt(std::abs(r)) * normal(random);
       rows.push_back({seen_left, seen_right});
     }
   };

@@ -7,17 +7,19 @@
 //   recorded travel of a wheel in a row = true travel d + k sqrt(|d|) e,   e standard normal
 #pragma once
 
-#include "trussmap/arc.hpp"
-
 #include <random>
 #include <vector>
 
 namespace trussmap {
 
-/// Rows of wheel travels as recorded: of a turn on the spot by `turn` (rad), then of `length` (m)
-/// straight on. `wheelbase` in m.
-[[nodiscard]] std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase,
-                                                   const WheelNoise& noise,
-                                                   std::mt19937_64& random);
+struct RecordedRow {
+  double left = 0.0;   ///< m, signed travel
+  double right = 0.0;  ///< m
+};
+
+/// Rows as recorded: of a turn on the spot by `turn` (rad), then of `length` (m)
+/// straight on. `wheelbase` in m, `noise`: k of both wheels, m^(1/2).
+[[nodiscard]] std::vector<RecordedRow> drive_route(double turn, double length, double wheelbase,
+                                                   double noise, std::mt19937_64& random);
 
 }  // namespace trussmap

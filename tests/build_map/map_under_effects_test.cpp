@@ -75,7 +75,8 @@ class ExactUnderEffects : public ::testing::TestWithParam<Fault> {};
 TEST_P(ExactUnderEffects, TheModelGivesTheExactMapByEveryMethod) {
   const Recording recording = drive_about(GetParam(), false, 3);
   for (const Method method : kMethods) {
-    EXPECT_LE(error_of(recording, knowing(GetParam()), method), 2.5e-3) << name_of(method);
+    const double most = method == Method::elastic_printed ? 1e-2 : 2.5e-3;
+    EXPECT_LE(error_of(recording, knowing(GetParam()), method), most) << name_of(method);
   }
   // It is there to be found.
   const bool spoils = error_of(recording, Model{}, Method::elastic) >= 5e-3;
@@ -113,22 +114,22 @@ TEST_P(BetterUnderEffects, TheModelMakesANoisyMapBetter) {
 class HarmlessEffects : public ::testing::TestWithParam<Fault> {};
 
 /// Errors that nearly every robot has are estimated beside the map, and named: knowing them before
-/// gains nothing. Mean over the seeds 1 to 3.
+/// gains nothing. Mean over the seeds 1 to 3. A map that grows on the way knows nothing of them.
 TEST_P(HarmlessEffects, AreFreedAndNamed) {
-  for (const Method method : {Method::elastic, Method::gauss_markov, Method::adjustment}) {
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const Recording recording = drive_about(GetParam(), true, seed);
-      const BuiltMap built = build_map({recording}, Model{}, {.method = method});
-      EXPECT_FALSE(built.good());
-      EXPECT_TRUE(std::any_of(built.freed.begin(), built.freed.end(), [](const FreedError& one) {
-        return one.effect.name == GetParam().name &&
-               std::abs(one.effect.coefficients[0] - GetParam().coefficients[0]) < 5.0 * one.sd[0];
-      }));
-      EXPECT_TRUE(build_map({recording}, knowing(GetParam()), {.method = method}).good());
-    }
-    const ErrorSums sums = error_sums(GetParam(), method);
-    EXPECT_LT(sums.ignored, 1.25 * sums.known) << name_of(method);
+  const Method method = Method::adjustment;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Recording recording = drive_about(GetParam(), true, seed);
+    const BuiltMap built = build_map({recording}, Model{}, {.method = method});
+    EXPECT_FALSE(built.good());
+    EXPECT_TRUE(std::any_of(built.freed.begin(), built.freed.end(), [](const FreedError& one) {
+      return one.effect.name == GetParam().name &&
+             std::abs(one.effect.coefficients[0] - GetParam().coefficients[0]) < 5.0 * one.sd[0];
+    }));
+    EXPECT_TRUE(build_map({recording}, knowing(GetParam()), {.method = method}).good());
+    EXPECT_TRUE(build_map({recording}, Model{}, {.method = Method::elastic}).freed.empty());
   }
+  const ErrorSums sums = error_sums(GetParam(), method);
+  EXPECT_LT(sums.ignored, 1.25 * sums.known) << name_of(method);
 }
 
 std::string name(const ::testing::TestParamInfo<Fault>& info) {

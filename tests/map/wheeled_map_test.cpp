@@ -28,7 +28,7 @@ constexpr double kWheelbase = 0.34;  // m
 class Robot {
  public:
   Robot(const Mesh& mesh, double k, std::uint64_t seed)
-      : mesh_(mesh), noise_{k, k}, random_(random_stream(seed, Stream::wheels)) {}
+      : mesh_(mesh), noise_(k), random_(random_stream(seed, Stream::wheels)) {}
 
   [[nodiscard]] double heading() const { return heading_; }
 
@@ -38,15 +38,15 @@ class Robot {
     const double turn = wrap_angle(direction(way) - heading_);
     heading_ += turn;
     Motion motion;
-    for (const WheelTravel& row : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
-      motion = then(motion, arc_motion(row, kWheelbase, {believed, believed}));
+    for (const RecordedRow& row : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
+      motion = then(motion, arc_motion({row.left, row.right}, kWheelbase, {believed, believed}));
     }
     return motion;
   }
 
  private:
   const Mesh& mesh_;
-  WheelNoise noise_;
+  double noise_;
   std::mt19937_64 random_;
   double heading_ = 0.0;
 };

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// trussmap explore: a robot explores an unknown mesh (apps/explore), and how good its map becomes.
+#include "commands.hpp"
+#include "explorer.hpp"
+#include "option_checks.hpp"
+#include "page_runtime.hpp"
+#include "scope_options.hpp"
+#include "trussmap/pages.hpp"
+#include "trussmap/survey_comparison.hpp"
+#include "trussmap/write_files.hpp"
+#include "world.hpp"
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace trussmap::app {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct ExploreOptions {
+  std::string mesh = "8x8";
+  explore::WorldOptions world;
+  bool no_compass = false;
+  double tours = 3.0;
+  ScopeOptions scope;
+  std::string json_file;
+  std::string html;
+  std::string svg;
+};
+
+/// Errors each time the robot has driven as far as all routes are long.
+struct Tour {
+  int number = 0;
+  double way = 0.0;  ///< m
+  int landmarks = 0;
+  MapErrors errors;
+};
+
+ordered_json tours_json(const std::vector<Tour>& tours) {
+  ordered_json list = ordered_json::array();
+  for (const Tour& tour : tours) {
+    list.push_back({{"tour", tour.number},
+                    {"way_m", tour.way},
+                    {"landmarks", tour.landmarks},
+                    {"stretch_error", tour.errors.stretch},
+                    {"orientation_error_rad", tour.errors.orientation},
+                    {"position_error_m", tour.errors.position.value_or(0.0)}});
+  }
+  return list;
+}
+
+void run_explore(ExploreOptions options) {
+  options.world.compass = !options.no_compass;
+  const auto made = [&options] {
+    try {
+      options.world.size = parse_mesh_size(options.mesh);
+      return explore::World(options.world);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  };
+  explore::World world = made();
+  MapBuilderOptions how;
+  how.scope = options.scope.scope();
+  how.law = options.scope.stiffness_law();
+  explore::Explorer robot(world, how);
+  const LandmarkPositions truth = world.truth();
+  const Laid laid = options.world.compass ? Laid::as_it_is : Laid::aligned;
+  const double all_routes = world.length_of_all_routes();
+  std::vector<Tour> tours;
+  std::vector<ExplorationFrame> frames;
+  int legs = 0;
+  const auto note = [&] {
+    const LandmarkGraph map = robot.map().map();
+    tours.push_back({static_cast<int>(tours.size()) + 1, world.way_driven(), map.landmarks(),
+                     map_errors(map, truth, laid)});
+  };
+  robot.explore(options.tours * all_routes, [&](const Arrival& arrival) {
+    ++legs;
+    if (!options.html.empty() || !options.svg.empty()) {
+      frames.push_back({laid_over(robot.map().map(), truth), arrival.landmark, world.way_driven()});
+    }
+    const double next = static_cast<double>(tours.size()) + 1.0;
+    if (world.way_driven() >= next * all_routes) note();
+  });
+  note();
+
+  const LandmarkGraph map = robot.map().map();
+  Files files;
+  if (!options.json_file.empty()) {
+    const ordered_json result = {{"legs", legs},
+                                 {"way_m", world.way_driven()},
+                                 {"landmarks", world.landmarks()},
+                                 {"found", map.landmarks()},
+                                 {"routes", map.routes()},
+                                 {"aligned", laid == Laid::aligned},
+                                 {"tours", tours_json(tours)}};
+    files.emplace_back(options.json_file, result.dump(2) + "\n");
+  }
+  const std::string subject = fmt::format("{} mesh, seed {}", options.mesh, options.world.seed);
+  if (!options.svg.empty()) {
+    files.emplace_back(options.svg, exploration_picture(frames, truth, subject));
+  }
+  if (!options.html.empty()) {
+    files.emplace_back(options.html, exploration_page(frames, truth, subject));
+  }
+  files.write();
+  fmt::print("explored: {} of {} landmarks and {} routes, {} legs, {:.0f} m\n", map.landmarks(),
+             world.landmarks(), map.routes(), legs, world.way_driven());
+  fmt::print("\n  errors{} each time the way is as long as all routes together\n",
+             laid == Laid::aligned ? " after the best rotation and translation," : "");
+  fmt::print("  tour     way [m]  landmarks  position [m]   stretch  orientation [rad]\n");
+  for (const Tour& tour : tours) {
+    fmt::print("  {:>4}  {:>10.0f}  {:>9}  {:>12.4f}  {:>8.4f}  {:>17.4f}\n", tour.number, tour.way,
+               tour.landmarks, tour.errors.position.value_or(0.0), tour.errors.stretch,
+               tour.errors.orientation);
+  }
+}
+
+}  // namespace
+
+void setup_explore(const Command& app) {
+  auto options = std::make_shared<ExploreOptions>();
+  const Command command = app.add_subcommand(
+      "explore",
+      "Let a simulated robot explore a mesh that it does not know, and map it on the way");
+  command.add_option("--mesh", options->mesh, "Landmarks along x and along y, like 8x8")
+      .type_name("NxN")
+      .capture_default_str();
+  command.add_option("--spacing", options->world.spacing, "Distance between neighbours [m]")
+      .check(above_zero())
+      .capture_default_str();
+  command.add_flag("--uneven", options->world.uneven, "Routes of 1 to 10 m");
+  command
+      .add_option("--walls", options->world.walls,
+                  "Share of the mesh's routes that are walled up; all stays connected")
+      .check(zero_or_more())
+      .capture_default_str();
+  command.add_option("--wheels", options->world.wheels, "Noise of both wheels [m^1/2]")
+      .type_name("K")
+      .check(above_zero())
+      .capture_default_str();
+  command.add_option("--wheelbase", options->world.wheelbase, "Distance of the wheels [m]")
+      .check(above_zero())
+      .capture_default_str();
+  command.add_flag("--no-compass", options->no_compass, "The robot has no compass");
+  command
+      .add_option("--compass-sd", options->world.compass_sd,
+                  "Standard deviation of a compass reading [rad]")
+      .check(above_zero())
+      .capture_default_str();
+  command
+      .add_option("--reach", options->world.reach,
+                  "Reach of a sensor for range and bearing of other landmarks [m]; 0: none")
+      .check(zero_or_more())
+      .capture_default_str();
+  command
+      .add_option("--tours", options->tours,
+                  "How far it drives, in lengths of all routes; until all is known at least")
+      .check(zero_or_more())
+      .capture_default_str();
+  command.add_option("--seed", options->world.seed, "Draws the world and the noise")
+      .check(whole_number(0))
+      .capture_default_str();
+  add_scope_options(command, options->scope);
+  command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
+  command.add_option("--html", options->html, "Write a page that shows the map grow")
+      .type_name("FILE");
+  command.add_option("--svg", options->svg, "Write the map as it grows, as an animated picture")
+      .type_name("FILE");
+  command.callback([options] { run_explore(*options); });
+}
+
+}  // namespace trussmap::app
