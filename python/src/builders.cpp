@@ -12,6 +12,7 @@
 #include "trussmap/map_store.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 #include <utility>
 
@@ -20,34 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapBuilderOptions options_of(const std::string& method, const py::object& eta, double gain_limit,
-                             double gate) {
+MapBuilderOptions options_of(const std::string& method, const py::object& eta, bool groups,
+                             const std::optional<std::string>& law, double gate) {
   MapBuilderOptions options;
   options.method = method_named(method);
-  options.eta = eta_of(eta, true);
-  options.gain_limit = gain_limit;
+  options.scope = scope_of(eta, groups);
+  options.law = law_named(law);
   options.gate = gate;
   return options;
 }
 
 Traversal leg_of(const py::object& displacement, const py::object& covariance) {
   return {matrix<Vector2>(displacement, "displacement"), matrix<Matrix2>(covariance, "covariance")};
-}
-
-std::string kind_of(const Arrival& arrival) {
-  switch (arrival.kind) {
-    case Arrival::Kind::new_landmark:
-      return "new landmark";
-    case Arrival::Kind::first_sight:
-      return "first sight";
-    case Arrival::Kind::new_route:
-      return "new route";
-    case Arrival::Kind::refinement:
-      return "refinement";
-    case Arrival::Kind::left_out:
-      break;
-  }
-  return "left out";
 }
 
 /// What both have, by what gives the builder.
@@ -122,8 +107,28 @@ void add_calls(Class& type) {
           },
           py::arg("landmark"), py::arg("displacement"), py::arg("covariance"),
           doc("MapBuilder.observe"))
-      .def("settle", &Self::settle, py::arg("gain_limit"), doc("MapBuilder.settle"))
-      .def("rest", &Self::rest, doc("MapBuilder.rest"));
+      .def(
+          "arrive_by_motion",
+          [](Self& self, const std::string& landmark, const py::object& motion,
+             const py::object& covariance, const py::object& seen,
+             const py::object& seen_covariance) {
+            const auto moved = matrix<Eigen::Vector3d>(motion, "motion");
+            Motion given;
+            given.displacement = {moved[0], moved[1], moved[2]};
+            given.covariance = matrix<Matrix3>(covariance, "covariance");
+            LandmarkOffset offset;
+            if (!seen.is_none()) offset.offset_robot = matrix<Vector2>(seen, "seen");
+            if (!seen_covariance.is_none()) {
+              offset.covariance_robot = matrix<Matrix2>(seen_covariance, "seen_covariance");
+            }
+            return self.arrive(landmark, given, offset);
+          },
+          py::arg("landmark"), py::arg("motion"), py::arg("covariance"), py::kw_only(),
+          py::arg("seen") = py::none(), py::arg("seen_covariance") = py::none(),
+          "The same by a motion in the robot's own axes: x [m], y [m] and turn [rad], with their "
+          "covariance; the landmark is seen at an offset [m] from where it ended.")
+      .def("compass", &Self::compass, py::arg("reading"), py::arg("sd"), doc("MapBuilder.compass"))
+      .def("relax", &Self::relax, doc("MapBuilder.relax"));
 }
 
 void add_store(py::module_& module) {
@@ -133,15 +138,15 @@ void add_store(py::module_& module) {
                                 "MapStore")
                                 .c_str());
   type.def(py::init([](const fs::path& file, const py::object& method, const py::object& eta,
-                       double gain_limit, double gate) {
+                       bool groups, const std::optional<std::string>& law, double gate) {
              std::optional<MapBuilderOptions> options;
              if (!method.is_none()) {
-               options = options_of(method.cast<std::string>(), eta, gain_limit, gate);
+               options = options_of(method.cast<std::string>(), eta, groups, law, gate);
              }
              return std::make_unique<MapStore>(file, options);
            }),
-           py::arg("file"), py::kw_only(), py::arg("method") = py::none(), py::arg("eta") = 50,
-           py::arg("gain_limit") = MapBuilderOptions().gain_limit,
+           py::arg("file"), py::kw_only(), py::arg("method") = py::none(), py::arg("eta") = "auto",
+           py::arg("groups") = true, py::arg("law") = py::none(),
            py::arg("gate") = MapBuilderOptions().gate)
       .def_property_readonly("legs", &MapStore::legs, doc("MapStore.legs"))
       .def("note", &MapStore::note, py::arg("name"), doc("MapStore.note"))
@@ -160,8 +165,8 @@ void add_store(py::module_& module) {
 void add_map_builder(py::module_& module) {
   RowClass<Arrival>(module, "Arrival", "Arrival")
       .value(
-          "kind", [](const Arrival& self) { return kind_of(self); },
-          "new landmark, first sight, new route, refinement or left out.")
+          "kind", [](const Arrival& self) { return name_of(self.kind); },
+          "new landmark, loop closed, new route, known route or left out.")
       .field("landmark", &Arrival::landmark)
       .field("route", &Arrival::route)
       .field("landmarks_moved", &Arrival::landmarks_moved)
@@ -172,14 +177,14 @@ void add_map_builder(py::module_& module) {
   py::class_<MapBuilder> type(module, "MapBuilder",
                               "Corrects the map at every landmark that the robot reaches. A leg is "
                               "a displacement [m, map axes] with its covariance [m^2, 2 x 2].");
-  type.def(py::init([](const std::string& method, const py::object& eta, double gain_limit,
-                       double gate, bool refine) {
-             MapBuilderOptions options = options_of(method, eta, gain_limit, gate);
+  type.def(py::init([](const std::string& method, const py::object& eta, bool groups,
+                       const std::optional<std::string>& law, double gate, bool refine) {
+             MapBuilderOptions options = options_of(method, eta, groups, law, gate);
              options.refine = refine;
              return std::make_unique<MapBuilder>(options);
            }),
-           py::arg("method") = "elastic", py::kw_only(), py::arg("eta") = 50,
-           py::arg("gain_limit") = MapBuilderOptions().gain_limit,
+           py::arg("method") = "elastic", py::kw_only(), py::arg("eta") = "auto",
+           py::arg("groups") = true, py::arg("law") = py::none(),
            py::arg("gate") = MapBuilderOptions().gate, py::arg("refine") = true)
       .def("__repr__", [](const MapBuilder& self) {
         return "<trussmap.MapBuilder of " + std::to_string(self.landmarks()) + " landmarks>";

@@ -34,7 +34,7 @@ MapResult run_build_map(const py::object& recordings, const py::object& model,
   const Given given = python::given(recordings, model);
   BuildMapOptions options;
   options.method = method_named(method);
-  options.eta = eta_of(eta, false);
+  options.scope = scope_of(eta, true);
   options.min_drive = min_drive;
   options.gate = gate;
   if (!(min_drive >= 0.0)) throw py::value_error("min_drive: expected 0 or more metres");
@@ -217,7 +217,7 @@ void add_map(py::module_& module) {
                " landmarks: " + verdict_in_words(self.built) + ">";
       });
   module.def("build_map", run_build_map, py::arg("recordings"), py::arg("model"), py::kw_only(),
-             py::arg("method") = "adjustment", py::arg("eta") = 50,
+             py::arg("method") = "adjustment", py::arg("eta") = "auto",
              py::arg("min_drive") = kDefaultMinDrive, py::arg("gate") = py::none(),
              py::arg("progress") = py::none(),
              doc("A landmark map from recordings, one per session.", "build_map").c_str());

@@ -27,19 +27,30 @@ std::string command_name(Method method) {
   return name;
 }
 
-Eta eta_of(py::handle value, bool hold_first) {
-  Eta eta;
-  eta.hold_first = hold_first;
-  if (py::isinstance<py::str>(value)) {
-    const std::string text = value.cast<std::string>();
-    if (text != "all" && text != "auto") {
-      throw py::value_error("eta: \"" + text + "\": expected a number, all or auto");
-    }
-    eta.kind = text == "all" ? Eta::Kind::all : Eta::Kind::estimated;
-  } else {
-    eta.count = value.cast<int>();
+RefinementScope scope_of(py::handle eta, bool groups) {
+  RefinementScope scope;
+  scope.groups = groups;
+  if (!py::isinstance<py::str>(eta)) {
+    scope.kind = RefinementScope::Kind::nearest;
+    scope.eta = eta.cast<int>();
+    return scope;
   }
-  return eta;
+  const std::string text = eta.cast<std::string>();
+  if (text == "all") {
+    scope.kind = RefinementScope::Kind::all;
+  } else if (text == "estimated") {
+    scope.kind = RefinementScope::Kind::estimated;
+  } else if (text != "auto") {
+    throw py::value_error("eta: \"" + text + "\": expected a number, all, estimated or auto");
+  }
+  return scope;
+}
+
+std::optional<StiffnessLaw> law_named(const std::optional<std::string>& law) {
+  if (!law) return std::nullopt;
+  if (*law == "mean-error") return StiffnessLaw::mean_error;
+  if (*law == "variance") return StiffnessLaw::variance;
+  throw py::value_error("law: \"" + *law + "\": expected mean-error or variance");
 }
 
 py::list landmark_names(const LandmarkGraph& map) {

@@ -7,6 +7,7 @@
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/map_builder.hpp"
 
+#include <optional>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <string>
@@ -17,8 +18,10 @@ namespace trussmap::python {
 [[nodiscard]] Method method_named(const std::string& name);
 /// As the command names it.
 [[nodiscard]] std::string command_name(Method method);
-/// A number, "all" or "auto".
-[[nodiscard]] Eta eta_of(pybind11::handle value, bool hold_first);
+/// A number, "all", "estimated" or "auto". ValueError on another.
+[[nodiscard]] RefinementScope scope_of(pybind11::handle eta, bool groups);
+/// "mean-error" or "variance", as the command has them. ValueError on another.
+[[nodiscard]] std::optional<StiffnessLaw> law_named(const std::optional<std::string>& law);
 
 [[nodiscard]] pybind11::list landmark_names(const LandmarkGraph& map);
 /// n x 2, m.

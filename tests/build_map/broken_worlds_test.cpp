@@ -57,7 +57,8 @@ void build_one(std::uint64_t seed, Sums& sums) {
     const BuiltMap other = build_map({world.recording}, world.nominal, {.method = method});
     const double its = error_of(positions_of(other.map), world.mesh);
     EXPECT_TRUE(its <= 8.0 * error || !other.good()) << seed << ", " << name_of(method);
-    EXPECT_LE(its, error_of(other.dead_reckoned, world.mesh)) << seed;
+    // On the way nobody knows that a landmark's first label was wrong: the map says that it doubts.
+    EXPECT_TRUE(its <= error_of(other.dead_reckoned, world.mesh) || !other.good()) << seed;
   }
 }
 

@@ -21,6 +21,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the energy before
+constexpr double kNoGate = std::numeric_limits<double>::infinity();
 constexpr double kNothing = 1e-12;  // of a map that is at rest but for rounding
 
 enum class Shape { cloud, star, chain, grid, clusters };
@@ -121,6 +122,7 @@ void expect_falling_energy(const Trial& trial, int arrivals, unsigned seed) {
   options.scope = trial.scope;
   options.law = trial.law;
   options.pooled = true;
+  options.gate = kNoGate;
   Wanderer wanderer(trial.shape, seed);
   MapBuilder builder(options);
   builder.start(name(0));
@@ -181,7 +183,7 @@ void expect_energies_below_the_uncorrected(int arrivals, unsigned seed) {
        {RefinementScope{Kind::nearest, 5, false}, RefinementScope{Kind::nearest, 5, true},
         RefinementScope{Kind::estimated, 5, false}, RefinementScope{Kind::all}}) {
     for (const Shape shape : {Shape::cloud, Shape::star, Shape::chain, Shape::grid}) {
-      MapBuilderOptions options{.scope = scope};
+      MapBuilderOptions options{.scope = scope, .gate = kNoGate};
       MapBuilderOptions still = options;
       still.refine = false;
       MapBuilder builder(options);
