@@ -370,6 +370,10 @@ Arrival MapBuilder::State::travel(const std::string& landmark, const MeasuredLeg
 
 /// What the map knows between two landmarks by one way alone: more uncertain than all it knows.
 Matrix2 MapBuilder::State::along_the_surest_way(int i, int j) const {
+  if (const std::optional<int> direct = m_.graph.route_between(i, j)) {
+    const Route& route = m_.graph.route(*direct);
+    return route.covariance / route.traversals;
+  }
   Matrix2 sum = Matrix2::Zero();
   const std::vector<int> way = trussmap::path(m_.graph, i, j, PathBy::uncertainty);
   for (std::size_t k = 1; k < way.size(); ++k) {
@@ -422,9 +426,15 @@ Arrival MapBuilder::State::travel_gated(const std::string& landmark, const Measu
   return arrival;
 }
 
-/// Order does not matter to least squares: what fits by now is taken in late.
+/// Order does not matter to least squares: what fits by now is taken in late. Beside an elastic
+/// map, whose corrections are to cost little, one is tried at a time.
 void MapBuilder::State::take_back_in(Arrival& arrival) {
-  for (std::size_t k = 0; k < m_.left_out.size();) {
+  const bool one_alone = options_.method != Method::gauss_markov;
+  const std::size_t count = m_.left_out.size();
+  const std::size_t first = one_alone && count > 0 ? idx(arrival.landmark) % count : 0;
+  std::size_t tried = 0;
+  for (std::size_t k = first; k < m_.left_out.size();) {
+    if (one_alone && tried++ > 0) return;
     const LeftOutArrival one = m_.left_out[k];
     MeasuredLeg late;
     late.from = *m_.graph.find(one.from);
@@ -457,7 +467,7 @@ Arrival MapBuilder::State::arrive(const std::string& landmark, const Motion& mot
   }
   const Arrival arrival = travel(landmark, leg);
   settle_frame();
-  m_.heading = heading_after(known.has_value(), arrival.landmark, chord, before);
+  m_.heading = heading_after(known.has_value(), arrival.landmark, chord, before, seen);
   m_.earlier = EarlierChord{m_.here, chord.beta};
   m_.here = m_.said = arrival.landmark;
   m_.seen = seen;
@@ -502,7 +512,8 @@ MeasuredLeg MapBuilder::State::reckoned(const HeadingEstimate& heading, const Ch
 
 /// From the route as the map has it where that is more than this leg alone.
 HeadingEstimate MapBuilder::State::heading_after(bool was_known, int to, const Chord& chord,
-                                                 const HeadingEstimate& before) const {
+                                                 const HeadingEstimate& before,
+                                                 const LandmarkOffset& seen) const {
   HeadingEstimate after{before.heading + chord.turn, before.variance + chord.turn_variance};
   if (!was_known) return after;
   const double lies = direction(at(to) - at(m_.here));
@@ -515,7 +526,7 @@ HeadingEstimate MapBuilder::State::heading_after(bool was_known, int to, const C
         of_route / route.traversals + variance_of(chord.alpha, m_.seen.covariance_robot));
     return {reset.heading + chord.turn, reset.variance + chord.turn_variance};
   }
-  return {after.heading + off, variance_of(chord.beta, Matrix2::Zero())};
+  return {after.heading + off, variance_of(chord.beta, seen.covariance_robot)};
 }
 
 Arrival MapBuilder::State::observe(const std::string& landmark, const LandmarkOffset& seen) {

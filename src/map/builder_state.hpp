@@ -99,7 +99,8 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to, const Chord& chord) const;
   [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord) const;
   [[nodiscard]] HeadingEstimate heading_after(bool was_known, int to, const Chord& chord,
-                                              const HeadingEstimate& before) const;
+                                              const HeadingEstimate& before,
+                                              const LandmarkOffset& seen) const;
   void settle_frame() noexcept;
   void turn_map(double angle);
 

@@ -573,7 +573,7 @@ TEST(SlowMapStore, AFullDiskIsSurvived) {
   const testing::ScratchFolder scratch;
   MapStore store(scratch.path() / "map.db");
   store.start(name(0));
-  const std::vector<Step> steps = walk(300, 30000, 15);
+  const std::vector<Step> steps = walk(300, 9000, 15);
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
