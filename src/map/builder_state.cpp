@@ -58,9 +58,10 @@ Arrival left_out_at(int landmark) {
 struct MapBuilder::State::Step {
   int from = -1;
   int to = -1;
+  int route = -1;  ///< its number, now or then
   bool new_landmark = false;
   bool new_route = false;
-  int route = -1;  ///< its number, now or then
+  bool ends_first_heading = false;  ///< a compass gives the map its direction from now on
   Route average;
   std::optional<ReckonedRoute> reckoned;
   int reckoned_place = -1;
@@ -69,7 +70,6 @@ struct MapBuilder::State::Step {
   std::optional<CornerAverage> corner;
   int corner_place = -1;
   int corner_element = -1;
-  bool ends_first_heading = false;  ///< a compass gives the map its direction from now on
 };
 
 MapBuilder::State::State(const MapBuilderOptions& options, BuilderMemory memory)
@@ -465,7 +465,7 @@ Arrival MapBuilder::State::arrive(const std::string& landmark, const Motion& mot
                       m_.reading->variance + variance_of(chord.alpha, m_.seen.covariance_robot)};
     leg.by_compass = true;
   }
-  const Arrival arrival = travel(landmark, leg);
+  Arrival arrival = travel(landmark, leg);
   settle_frame();
   m_.heading = heading_after(known.has_value(), arrival.landmark, chord, before, seen);
   m_.earlier = EarlierChord{m_.here, chord.beta};
@@ -541,7 +541,7 @@ Arrival MapBuilder::State::observe(const std::string& landmark, const LandmarkOf
                       m_.reading->variance + variance_of(chord.alpha, m_.seen.covariance_robot)};
     leg.by_compass = true;
   }
-  const Arrival arrival = travel(landmark, leg);
+  Arrival arrival = travel(landmark, leg);
   settle_frame();
   if (takes_reading) m_.reading.reset();
   if (!m_.heading) m_.heading = heading;

@@ -94,7 +94,7 @@ auto journaled(std::vector<BuilderCall>* journal, BuilderCall entry, const Call&
 template <typename Call>
 Arrival measured(std::vector<BuilderCall>* journal, const BuilderCall& entry, const Call& call) {
   return journaled(journal, entry, [&](BuilderCall& made) {
-    const Arrival arrival = call();
+    Arrival arrival = call();
     made.to = arrival.landmark;
     made.outcome = arrival.kind;
     return arrival;

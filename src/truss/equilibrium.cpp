@@ -19,7 +19,7 @@ constexpr int kLeastSpare = 32;
 constexpr int kJointsPerSpare = 64;
 constexpr double kTurned = 1e-3;     // change of a gradient, as a share of it
 constexpr int kFewTurned = 100;      // more: a new factor is cheaper
-constexpr double kShortest = 1e-3;   // of a step, when it is halved
+constexpr int kMostHalvings = 10;    // of a step until the energy has fallen
 constexpr double kRounding = 1e-14;  // of the energy: no rise
 
 /// Columns W with W W' = |B|, those of negative eigenvalues first, and how many these are.
@@ -92,7 +92,8 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
     if (!(gain > 0.0)) break;
     for (int joint = 1; joint < truss.joints(); ++joint) before[idx(joint)] = truss.position(joint);
     bool fallen = false;
-    for (double share = 1.0; share > kShortest && !fallen; share *= 0.5) {
+    double share = 1.0;
+    for (int halvings = 0; halvings < kMostHalvings && !fallen; ++halvings, share *= 0.5) {
       for (int joint = 1; joint < truss.joints(); ++joint) {
         truss.move(joint, before[idx(joint)] + share * u.segment<2>(unknown_[idx(joint)]));
       }

@@ -12,7 +12,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kUnheld = 1e-13;    // share of its stiffness that an unknown keeps when held
-constexpr double kShortest = 1e-3;   // of a step, when it is halved
+constexpr int kMostHalvings = 10;    // of a step until the energy has fallen
 constexpr double kRounding = 1e-14;  // of the energy: no rise
 
 }  // namespace
@@ -132,7 +132,7 @@ int Relaxation::shares_of(const Element& element, const std::vector<FreeJoint>& 
       continue;
     }
     for (int m = 0; m < modes; ++m) {
-      share.gradient.segment<2>(2 * m) += one.c[m] * (*gradient)[idx(n)];
+      share.gradient.segment<2>(Eigen::Index{2} * m) += one.c[m] * (*gradient)[idx(n)];
     }
   }
   return count;
@@ -212,7 +212,8 @@ bool Relaxation::step(ElasticTruss& truss, const std::vector<FreeJoint>& free, i
   before_.clear();
   for (const FreeJoint& one : free) before_.push_back(truss.position(one.joint));
   const int size = 2 * modes;
-  for (double share = 1.0; share > kShortest; share *= 0.5) {
+  double share = 1.0;
+  for (int halvings = 0; halvings < kMostHalvings; ++halvings, share *= 0.5) {
     for (std::size_t n = 0; n < free.size(); ++n) {
       Vector2 u = Vector2::Zero();
       const int row = size * rank_[idx(free[n].block)];

@@ -301,7 +301,8 @@ TEST(Command, AWordThatIsNoCommandIsNamed) {
   EXPECT_EQ(ran.output,
             "trussmap: \"polish\" is no command, expected one of add, adjust, apply, build, "
             "calibrate, check, "
-            "compare, completion, convert, diagnose, discover, effects, fit, fleet, manual, merge, "
+            "compare, completion, convert, diagnose, discover, effects, explore, fit, fleet, "
+            "manual, merge, "
             "noise, "
             "reveal, serve, simulate, tour, umbmark\n");
 }
