@@ -85,11 +85,7 @@ HeadingEstimate Session::with_yaw(const Sighting& at, const HeadingEstimate& hea
   const double yaw = drive_.yaw_of(at);
   if (std::isnan(yaw) || !landmark.heading) return heading;
   const double own = std::hypot(drive_.yaw_sd(), landmark.sd_heading.value_or(0.0));
-  const double total = heading.variance + own * own;
-  if (!(total > 0.0)) return heading;
-  const double gain = heading.variance / total;
-  const double off = wrap_angle(*landmark.heading - yaw - heading.heading);
-  return {heading.heading + gain * off, heading.variance * own * own / total};
+  return reset_heading(heading, *landmark.heading - yaw - heading.heading, own * own);
 }
 
 /// A landmark's orientation is what its first yaw made it, and the better known the more are read.

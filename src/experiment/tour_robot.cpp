@@ -3,12 +3,14 @@
 #include "experiment/tour_robot.hpp"
 
 #include "geometry/index.hpp"
+#include "map/heading_reset.hpp"
+#include "map/reckoned_leg.hpp"
 #include "simulation/route_robot.hpp"
 #include "simulation/wheeled_route.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <cmath>
-#include <numbers>
+#include <optional>
 #include <utility>
 
 namespace trussmap {
@@ -33,7 +35,7 @@ TourLeg TourRobot::drive(const Vector2& displacement) {
 }
 
 HeadingEstimate TourRobot::read(double heading) {
-  const double sd = std::sqrt(std::numbers::pi / 2.0) * options_.compass_error;
+  const double sd = sd_of_mean_error(options_.compass_error);
   std::normal_distribution<double> error(0.0, sd);
   return {wrap_angle(heading + error(compass_random_)), sd * sd};
 }
@@ -60,22 +62,16 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
   tour_begins_ = false;
   if (reads) {
     leg.reading = read(before);
-    const double gain =
-        knows_heading_ ? believed_.variance / (believed_.variance + leg.reading->variance) : 1.0;
-    believed_.heading += gain * wrap_angle(leg.reading->heading - believed_.heading);
-    believed_.variance = knows_heading_ ? (1.0 - gain) * believed_.variance : leg.reading->variance;
+    believed_ =
+        with_reading(knows_heading_ ? std::optional(believed_) : std::nullopt, *leg.reading);
     knows_heading_ = true;
   }
   leg.motion.emplace();
   for (const WheelTravel& row : rows) {
     leg.motion = then(*leg.motion, arc_motion(row, wheels.wheelbase, noise));
   }
-  const Matrix2 R = rotation(believed_.heading);
-  const Vector2 d = R * leg.motion->displacement.position();
-  const Vector2 lever = quarter_turn(d);
-  leg.in_map.displacement = d;
-  leg.in_map.covariance = R * leg.motion->covariance.topLeftCorner<2, 2>() * R.transpose() +
-                          believed_.variance * lever * lever.transpose();
+  leg.in_map = in_map_axes(believed_, leg.motion->displacement.position(),
+                           leg.motion->covariance.topLeftCorner<2, 2>());
   believed_.heading += leg.motion->displacement.heading;
   believed_.variance += leg.motion->covariance(2, 2);
   return leg;
@@ -88,7 +84,7 @@ Traversal TourRobot::with_readings(const std::vector<WheelTravel>& rows, double 
   robot.wheelbase = wheels.wheelbase;
   Noise noise;
   noise.left = noise.right = wheels.noise;
-  noise.compass = std::sqrt(std::numbers::pi / 2.0) * options_.compass_error;
+  noise.compass = sd_of_mean_error(options_.compass_error);
   Drive drive;
   const double whole = heading_ - heading;
   double turned = 0.0;

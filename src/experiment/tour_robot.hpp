@@ -66,7 +66,6 @@ class TourGraph {
   PoseGraph graph_;  // vertex 0: a fixed pose with heading 0
   std::map<std::string, int> points_;
   int here_ = -1;
-  bool readings_ = false;
 };
 
 }  // namespace trussmap

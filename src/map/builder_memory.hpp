@@ -72,8 +72,13 @@ struct BuilderMemory {
   LandmarkOffset seen;  ///< of `here`
   std::optional<HeadingEstimate> heading;  ///< of the robot, where it is known
   std::optional<EarlierChord> earlier;
-  std::optional<MeasuredAngle> reading;  ///< of the compass, here
+  std::optional<HeadingEstimate> reading;  ///< of the compass, here
 };
+
+/// Of a map builder's truss: the one that is asked for, or the method's own.
+[[nodiscard]] StiffnessLaw law_of(const MapBuilderOptions& options);
+/// Each traversal of a route has its own weight: the memory has WeighedRoutes.
+[[nodiscard]] bool weighs_each(const MapBuilderOptions& options);
 
 /// A call of a builder that changed it.
 struct BuilderCall {

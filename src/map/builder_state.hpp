@@ -63,17 +63,31 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
     int length = -1;
     int direction = -1;
   };
-  /// Averages as a step would leave them.
-  struct Step;
+  /// Averages as a step leaves them, not yet remembered.
+  struct Step {
+    int from = -1;
+    int to = -1;
+    int route = -1;  ///< its number, now or then
+    bool new_landmark = false;
+    bool new_route = false;
+    bool ends_first_heading = false;  ///< a compass gives the map its direction from now on
+    Route average;
+    std::optional<ReckonedRoute> reckoned;
+    int reckoned_place = -1;
+    std::optional<WeighedRoute> weighed;
+    RouteElements elements;
+    std::optional<CornerAverage> corner;
+    int corner_place = -1;
+    int corner_element = -1;
+  };
 
-  [[nodiscard]] StiffnessLaw law() const;
+  [[nodiscard]] StiffnessLaw law() const { return law_of(options_); }
   [[nodiscard]] bool printed() const { return options_.method == Method::elastic_printed; }
-  [[nodiscard]] bool weighs_each() const;
   [[nodiscard]] const Vector2& at(int landmark) const {
     return m_.graph.landmark(landmark).position;
   }
   void make_truss();
-  [[nodiscard]] ElasticTruss by_variance() const;
+  [[nodiscard]] State by_variance() const;
 
   [[nodiscard]] int standing() const;
   [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;
@@ -97,7 +111,10 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   void note_moves(Arrival& arrival) noexcept;
 
   [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to, const Chord& chord) const;
-  [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord) const;
+  [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord,
+                                     bool takes_reading) const;
+  [[nodiscard]] MeasuredAngle direction_by(const HeadingEstimate& heading,
+                                           const Chord& chord) const;
   [[nodiscard]] HeadingEstimate heading_after(bool was_known, int to, const Chord& chord,
                                               const HeadingEstimate& before,
                                               const LandmarkOffset& seen) const;

@@ -16,19 +16,9 @@ namespace trussmap {
 std::vector<Vector2> chain_displacements(const std::vector<Matrix2>& stiffnesses,
                                          const Vector2& imposed) {
   if (stiffnesses.empty()) throw std::invalid_argument("a chain has at least one bar");
-  std::vector<Matrix2> compliances;  // S_1 ... S_n
-  compliances.reserve(stiffnesses.size());
-  Matrix2 sum = Matrix2::Zero();
-  for (const Matrix2& B : stiffnesses) {
-    sum += B.inverse();
-    compliances.push_back(sum);
-  }
-  const Vector2 force = sum.inverse() * imposed;
-  std::vector<Vector2> result;
-  result.reserve(compliances.size());
-  for (const Matrix2& S : compliances) result.push_back(S * force);
-  result.back() = imposed;
-  return result;
+  std::vector<TurningLeg> legs(stiffnesses.size());  // that do not turn: places do not matter
+  for (std::size_t e = 0; e < legs.size(); ++e) legs[e].compliance = stiffnesses[e].inverse();
+  return turning_displacements(legs, Vector2::Zero(), imposed);
 }
 
 std::vector<Vector2> turning_displacements(const std::vector<TurningLeg>& legs, const Vector2& end,

@@ -17,4 +17,10 @@ HeadingEstimate reset_heading(const HeadingEstimate& heading, double innovation,
   return {heading.heading + gain * wrap_angle(innovation), heading.variance * (1.0 - gain)};
 }
 
+HeadingEstimate with_reading(const std::optional<HeadingEstimate>& known,
+                             const HeadingEstimate& reading) {
+  if (!known) return reading;
+  return reset_heading(*known, reading.heading - known->heading, reading.variance);
+}
+
 }  // namespace trussmap

@@ -15,6 +15,8 @@
 
 #include "trussmap/planar.hpp"
 
+#include <optional>
+
 namespace trussmap {
 
 /// Variance of a vector's direction: its covariance across it over its squared length, rad^2.
@@ -23,5 +25,9 @@ namespace trussmap {
 /// The reset. `route_variance` = W, `innovation` is wrapped here.
 [[nodiscard]] HeadingEstimate reset_heading(const HeadingEstimate& heading, double innovation,
                                             double route_variance);
+
+/// What is known of the heading together with a reading of it; nothing known: the reading.
+[[nodiscard]] HeadingEstimate with_reading(const std::optional<HeadingEstimate>& known,
+                                           const HeadingEstimate& reading);
 
 }  // namespace trussmap

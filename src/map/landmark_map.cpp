@@ -3,7 +3,7 @@
 #include "trussmap/landmark_map.hpp"
 
 #include "geometry/index.hpp"
-#include "map/make_room.hpp"
+#include "geometry/make_room.hpp"
 
 #include <stdexcept>
 #include <utility>

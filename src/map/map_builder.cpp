@@ -3,9 +3,9 @@
 #include "trussmap/map_builder.hpp"
 
 #include "geometry/index.hpp"
+#include "geometry/make_room.hpp"
 #include "linalg/connected_parts.hpp"
 #include "map/builder_state.hpp"
-#include "map/make_room.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "map/map_mechanics.hpp"
 
-#include "map/make_room.hpp"
-#include "trussmap/error.hpp"
+#include "geometry/make_room.hpp"
+#include "map/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +19,14 @@ constexpr double kNegligible = 0.1;  // of what a route yields to its own uncert
 constexpr int kFreeGroups = 25;      // at each scale: they cover several of the next
 constexpr int kMostMembers = 6000;   // landmarks in the groups that are free at a scale
 
-[[noreturn]] void refuse() {
-  throw SolveError("the covariances of the map's traversals span too many magnitudes");
+/// What the call returns, or an error in the user's terms.
+template <typename Call>
+auto solved(const Call& call) {
+  try {
+    return call();
+  } catch (const NotPositiveDefinite&) {
+    throw too_many_magnitudes();
+  }
 }
 
 }  // namespace
@@ -81,19 +87,29 @@ int MapMechanics::relax(int i, int j) {
 }
 
 void MapMechanics::relax_all() {
-  try {
-    equilibrium_.relax(truss_, kWhole);
-    at_rest_ = true;
-  } catch (const NotPositiveDefinite&) {
-    refuse();
-  }
+  solved([this] { equilibrium_.relax(truss_, kWhole); });
+  at_rest_ = true;
 }
 
-std::vector<Vector2> MapMechanics::pull(int i, int j, const Vector2& force) {
-  try {
-    return equilibrium_.pull(truss_, i, j, force);
-  } catch (const NotPositiveDefinite&) {
-    refuse();
+std::array<std::vector<Vector2>, 2> MapMechanics::pulls(int i, int j) {
+  const auto along = [&](const Vector2& force) { return equilibrium_.pull(truss_, i, j, force); };
+  return solved([&] { return std::array{along(Vector2::UnitX()), along(Vector2::UnitY())}; });
+}
+
+Matrix2 MapMechanics::flexibility_between(int i, int j) {
+  const auto [by_x, by_y] = pulls(i, j);
+  Matrix2 F;
+  F << by_x[idx(j)] - by_x[idx(i)], by_y[idx(j)] - by_y[idx(i)];
+  return 0.5 * (F + F.transpose());
+}
+
+std::vector<Matrix2> MapMechanics::flexibilities() const {
+  return solved([this] { return trussmap::flexibilities(truss_); });
+}
+
+void MapMechanics::require_finite() const {
+  for (const auto& [landmark, before] : truss_.moved()) {
+    if (!truss_.position(landmark).allFinite()) throw too_many_magnitudes();
   }
 }
 
@@ -168,9 +184,6 @@ int MapMechanics::relax_nearest(int i, int j) {
     for (int level = 0; level < groups_.levels(); ++level) {
       if (relax_groups(level, i, j, middle) == 0) break;
     }
-  }
-  for (const FreeJoint& one : free) {
-    if (!truss_.position(one.joint).allFinite()) refuse();
   }
   return static_cast<int>(near.size());
 }

@@ -26,6 +26,7 @@
 #include "truss/relaxation.hpp"
 #include "trussmap/map_builder.hpp"
 
+#include <array>
 #include <vector>
 
 namespace trussmap {
@@ -41,12 +42,17 @@ class MapMechanics {
 
   [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
 
-  // Changes from begin() on are taken back by roll_back(), which does not fail.
-  void begin() noexcept {
-    truss_.begin();
-    at_rest_ = false;
+  /// Makes the changes of `call`, all or, where it throws, none; then commit().
+  template <typename Call>
+  void change(const Call& call) {
+    begin();
+    try {
+      call();
+    } catch (...) {
+      roll_back();
+      throw;
+    }
   }
-  void roll_back() noexcept;
   /// Lets the spatial index and the groups follow what has moved.
   void commit() noexcept;
 
@@ -71,10 +77,23 @@ class MapMechanics {
   /// route's ends among them: all, the nearest, or as many as are estimated to move. Ascending.
   [[nodiscard]] std::vector<int> members(int i, int j) const;
 
-  /// Displacements under a pull of two landmarks apart.
-  [[nodiscard]] std::vector<Vector2> pull(int i, int j, const Vector2& force);
+  /// Displacements of all landmarks under a pull of 1 of two of them apart, along x and along y.
+  /// Throws SolveError, as the next two do, where stiffnesses span too many magnitudes.
+  [[nodiscard]] std::array<std::vector<Vector2>, 2> pulls(int i, int j);
+  /// What a pull of two landmarks apart does to the vector between them.
+  [[nodiscard]] Matrix2 flexibility_between(int i, int j);
+  /// Per landmark, the first one held.
+  [[nodiscard]] std::vector<Matrix2> flexibilities() const;
+
+  /// Throws SolveError where a landmark came to lie nowhere since begin().
+  void require_finite() const;
 
  private:
+  void begin() noexcept {
+    truss_.begin();
+    at_rest_ = false;
+  }
+  void roll_back() noexcept;
   [[nodiscard]] bool exact() const;
   int relax_nearest(int i, int j);
   [[nodiscard]] int estimated_eta(int i, int j) const;

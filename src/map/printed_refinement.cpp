@@ -99,9 +99,7 @@ Moves deflect(const LandmarkGraph& map, const Piece& piece, std::vector<Load> lo
 void require_finite(const Moves& moves) {
   double sum = moves.shift.squaredNorm();
   for (const Vector2& u : moves.displacements) sum += u.squaredNorm();
-  if (!std::isfinite(sum)) {
-    throw SolveError("the covariances of the map's traversals span too many magnitudes");
-  }
+  if (!std::isfinite(sum)) throw too_many_magnitudes();
 }
 
 }  // namespace

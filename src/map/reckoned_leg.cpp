@@ -46,6 +46,15 @@ Chord chord_of(const LandmarkOffset& from, const Motion& motion, const LandmarkO
   return chord;
 }
 
+Traversal in_map_axes(const HeadingEstimate& heading, const Vector2& vector,
+                      const Matrix2& covariance) {
+  const Matrix2 R = rotation(heading.heading);
+  const Vector2 d = R * vector;
+  const Vector2 lever = quarter_turn(d);
+  const Matrix2 C = R * covariance * R.transpose() + heading.variance * lever * lever.transpose();
+  return {d, 0.5 * (C + C.transpose())};
+}
+
 void Average::take(double value, double its_variance) {
   ++count;
   mean += (value - mean) / count;

@@ -15,6 +15,7 @@
 #pragma once
 
 #include "trussmap/arc.hpp"
+#include "trussmap/landmark_map.hpp"
 #include "trussmap/planar.hpp"
 
 namespace trussmap {
@@ -39,6 +40,10 @@ struct Chord {
 /// directions are uncertain.
 [[nodiscard]] Chord chord_of(const LandmarkOffset& from, const Motion& motion,
                              const LandmarkOffset& to);
+
+/// A vector measured in the axes of a robot with this heading, in map axes.
+[[nodiscard]] Traversal in_map_axes(const HeadingEstimate& heading, const Vector2& vector,
+                                    const Matrix2& covariance);
 
 /// A mean of numbers, and of their variances.
 struct Average {

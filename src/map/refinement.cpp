@@ -17,4 +17,8 @@ RefinementLoads refinement_loads(const Vector2& present, const Vector2& target,
   return loads;
 }
 
+SolveError too_many_magnitudes() {
+  return SolveError("the covariances of the map's traversals span too many magnitudes");
+}
+
 }  // namespace trussmap

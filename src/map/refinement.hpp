@@ -21,6 +21,7 @@
 // borders earlier). Relaxation (truss/relaxation.hpp) does not.
 #pragma once
 
+#include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
 
 #include <optional>
@@ -40,5 +41,8 @@ struct RefinementLoads {
                                                const Matrix2& stiffness,
                                                const std::optional<Matrix2>& adjacent_i,
                                                const std::optional<Matrix2>& adjacent_j);
+
+/// A correction that came out as no number.
+[[nodiscard]] SolveError too_many_magnitudes();
 
 }  // namespace trussmap

@@ -8,6 +8,10 @@
 
 namespace trussmap {
 
+double sd_of_mean_error(double mean_absolute_error) {
+  return std::sqrt(std::numbers::pi / 2.0) * mean_absolute_error;
+}
+
 MeasuredRoute measure_route(const Vector2& displacement, const RouteErrors& errors,
                             std::mt19937_64& random) {
   for (const double error : {errors.stretch, errors.orientation}) {
@@ -15,9 +19,8 @@ MeasuredRoute measure_route(const Vector2& displacement, const RouteErrors& erro
       throw std::invalid_argument("a mean absolute error must be a number of 0 or more");
     }
   }
-  const double mean_to_sd = std::sqrt(std::numbers::pi / 2.0);
-  const double sd_stretch = mean_to_sd * errors.stretch;
-  const double sd_orientation = mean_to_sd * errors.orientation;
+  const double sd_stretch = sd_of_mean_error(errors.stretch);
+  const double sd_orientation = sd_of_mean_error(errors.orientation);
   std::normal_distribution<double> normal;
   const double e1 = normal(random);
   const double e2 = normal(random);

@@ -18,6 +18,9 @@
 
 namespace trussmap {
 
+/// Standard deviation of a normal error by its mean absolute value.
+[[nodiscard]] double sd_of_mean_error(double mean_absolute_error);
+
 /// Mean absolute errors of one traversal.
 struct RouteErrors {
   double stretch = 0.05;      ///< fraction of the stretch

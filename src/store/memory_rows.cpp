@@ -75,13 +75,6 @@ bool same(const ReckonedRoute& a, const ReckonedRoute& b) {
          a.bar.traversals == b.bar.traversals;
 }
 
-/// Each traversal of a route has its own weight.
-bool weighs_each(const MapBuilderOptions& options) {
-  const StiffnessLaw own =
-      options.method == Method::gauss_markov ? StiffnessLaw::variance : StiffnessLaw::mean_error;
-  return options.law.value_or(own) == StiffnessLaw::variance && !options.pooled;
-}
-
 bool same_arrival(const LeftOutArrival& a, const LeftOutArrival& b) {
   return a.from == b.from && a.to == b.to && a.sds == b.sds &&
          a.leg.displacement == b.leg.displacement && a.leg.covariance == b.leg.covariance;
@@ -324,7 +317,8 @@ void MemoryRows::load_state(BuilderMemory& memory) {
     memory.earlier = earlier;
   }
   if (!state.is_null(21)) {
-    memory.reading = MeasuredAngle{finite(state, 21, "a reading"), finite(state, 22, "a reading")};
+    memory.reading =
+        HeadingEstimate{finite(state, 21, "a reading"), finite(state, 22, "a reading")};
   }
 }
 
@@ -456,7 +450,7 @@ void MemoryRows::save_state(const BuilderMemory& memory) {
     put_state_.bind(19, beta.by_offset);
   }
   if (memory.reading) {
-    put_state_.bind(21, memory.reading->value).bind(22, memory.reading->variance);
+    put_state_.bind(21, memory.reading->heading).bind(22, memory.reading->variance);
   }
   put_state_.run();
 }

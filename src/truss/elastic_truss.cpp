@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "truss/elastic_truss.hpp"
 
+#include "geometry/make_room.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 namespace trussmap {
 namespace {
-
-template <typename Value>
-void make_room(std::vector<Value>& values) {
-  if (values.size() == values.capacity()) values.reserve(2 * values.size() + 2);
-}
 
 /// Gradient of angle(d) by the far end; zero where d has no direction.
 Vector2 turning(const Vector2& d) {

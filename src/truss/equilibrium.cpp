@@ -49,10 +49,6 @@ void Equilibrium::drop() noexcept {
   sparse_ = kMostSparse;
 }
 
-double Equilibrium::factor_nonzeros() const {
-  return factored_ ? cholesky_.factor_nonzeros() : 0.0;
-}
-
 Equilibrium::Term Equilibrium::term_of(const ElasticTruss& truss, int element) {
   const Element& one = truss.element(element);
   Term term;
@@ -68,7 +64,6 @@ Equilibrium::Term Equilibrium::term_of(const ElasticTruss& truss, int element) {
 void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
   if (truss.joints() < 2) return;
   follow(truss);
-  // Moves since its begin() are known; what came before was an equilibrium, if it was one of ours.
   std::vector<Vector2> before(idx(truss.joints()));
   for (int round = 0; round < enough.rounds; ++round) {
     double then = 0.0;
@@ -83,7 +78,7 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
       static_cast<void>(evaluate(truss));  // in a new factor's order
     }
     Eigen::VectorXd u = f_;
-    solve(u);
+    cholesky_.solve_updated(u);
     const double gain = 0.5 * f_.dot(u);
     if (!std::isfinite(gain)) {
       drop();
@@ -150,16 +145,12 @@ std::vector<Vector2> Equilibrium::pull(const ElasticTruss& truss, int i, int j,
   Eigen::VectorXd u = Eigen::VectorXd::Zero(f_.size());
   if (!held(j)) u.segment<2>(unknown_[idx(j)]) += force;
   if (!held(i)) u.segment<2>(unknown_[idx(i)]) -= force;
-  solve(u);
+  cholesky_.solve_updated(u);
   std::vector<Vector2> displacements(idx(truss.joints()), Vector2::Zero());
   for (int joint = 1; joint < truss.joints(); ++joint) {
     displacements[idx(joint)] = u.segment<2>(unknown_[idx(joint)]);
   }
   return displacements;
-}
-
-void Equilibrium::solve(Eigen::VectorXd& x) {
-  cholesky_.solve_updated(x);
 }
 
 /// Forces at all joints; returns the energy.

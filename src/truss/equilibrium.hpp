@@ -33,7 +33,7 @@ class Equilibrium {
   /// The truss is another one, or was rolled back.
   void drop() noexcept;
 
-  /// Brings the truss to equilibrium . Its energy does not rise. Throws NotPositiveDefinite where
+  /// Brings the truss to equilibrium. Its energy does not rise. Throws NotPositiveDefinite where
   /// stiffnesses span too many magnitudes for an answer, and leaves moves to the truss to roll
   /// back.
   void relax(ElasticTruss& truss, const Enough& enough = {});
@@ -41,9 +41,6 @@ class Equilibrium {
   /// Displacements of all joints under `force` on j and its opposite on i. Throws likewise.
   [[nodiscard]] std::vector<Vector2> pull(const ElasticTruss& truss, int i, int j,
                                           const Vector2& force);
-
-  /// Numbers in the factor; 0: there is none.
-  [[nodiscard]] double factor_nonzeros() const;
 
  private:
   /// An element as the factor has it.
@@ -65,7 +62,6 @@ class Equilibrium {
   void factorise(const ElasticTruss& truss);
   double evaluate(const ElasticTruss& truss);
   void evaluate_changes(const ElasticTruss& truss);
-  void solve(Eigen::VectorXd& x);
 
   std::vector<Term> terms_;               ///< of the elements in the factor
   std::vector<int> changed_;              ///< since then
