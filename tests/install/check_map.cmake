@@ -22,12 +22,13 @@ foreach(package fmt muparser LibLZMA EXPAT tomlplusplus nlohmann_json CLI11 Boos
   list(APPEND absent -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 
-# The second one, which keeps its map: run twice, the file is gone on with.
+# The one which keeps its map: run twice, the file is gone on with.
 set(keeper ${BUILD_DIR}/install-test/keeper)
 file(REMOVE_RECURSE ${keeper})
-string(REGEX MATCH "```cpp\n(#include <trussmap/map_store.hpp>[^`]*)```" found "${readme}")
+file(READ ${CONSUMER_DIR}/../../docs/methods.md methods)
+string(REGEX MATCH "```cpp\n(#include <trussmap/map_store.hpp>[^`]*)```" found "${methods}")
 if(NOT found)
-  message(FATAL_ERROR "README.md has no example of a map store")
+  message(FATAL_ERROR "docs/methods.md has no example of a map store")
 endif()
 file(WRITE ${keeper}/readme.cpp "${CMAKE_MATCH_1}")
 run(${CMAKE_COMMAND} -S ${CONSUMER_DIR}/store -B ${keeper} -D CMAKE_PREFIX_PATH=${prefix}
