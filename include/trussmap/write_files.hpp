@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Whole files in and out: read at once, written whole or not at all.
+// Whole files in and out: read at once, written whole or not at all. Who only writes needs
+// trussmap::map, who reads trussmap::trussmap.
 //
 // What is written goes to temporaries first, on the disk (fsync) before the first of them is
 // renamed: .NAME.XXXXXXXXXXXX.trussmap-part beside its place, with letters that nobody can foresee.

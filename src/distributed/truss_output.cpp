@@ -3,7 +3,7 @@
 #include "distributed/truss_output.hpp"
 
 #include "geometry/index.hpp"
-#include "io/temporary.hpp"
+#include "files/temporary.hpp"
 
 #include <array>
 #include <cerrno>

@@ -5,7 +5,7 @@
 #include "io/logs/byte_reader.hpp"
 #include "io/logs/message_log.hpp"
 #include "io/read_limits.hpp"
-#include "io/temporary.hpp"
+#include "files/temporary.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>

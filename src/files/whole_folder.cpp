@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "io/whole_folder.hpp"
+#include "files/whole_folder.hpp"
 
 #include "trussmap/error.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "io/temporary.hpp"
-#include "io/whole_folder.hpp"
+#include "files/temporary.hpp"
+#include "files/whole_folder.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/write_files.hpp"
 

@@ -10,7 +10,7 @@
 // Killed at any moment, the folder is as it was or as it is to be; a temporary may be left.
 #pragma once
 
-#include "io/temporary.hpp"
+#include "files/temporary.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <filesystem>

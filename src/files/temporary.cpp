@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "io/temporary.hpp"
+#include "files/temporary.hpp"
 
 #include <cerrno>
 #include <cstdio>
