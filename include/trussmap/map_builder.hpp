@@ -10,6 +10,7 @@
 //                                                    // covariance, in the robot's own axes
 //   builder.observe("lamp", seen_at(range, bearing, sd_range, sd_bearing));
 //   builder.position(*builder.find("lamp")), builder.pose()
+//   builder.save("map.txt");                  // all that it remembers; MapBuilder::load goes on
 //
 //                         motion: (x, y) and turn, axes of the robot at its start
 //        robot at A ---------------------------------------> robot at B
@@ -47,6 +48,7 @@
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/truss.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -210,16 +212,18 @@ class MapBuilder {
   /// flexibility of the truss with stiffness 1/variance. Exact to first order, as far as what was
   /// measured is independent; the refinement's scope may lie some percent above it. Cost: one
   /// factorisation of the whole truss. Throws std::invalid_argument on numbers that no landmark
-  /// has, SolveError where the stiffnesses span too many magnitudes.
+  /// has, SolveError where the traversals' covariances span so many magnitudes that rounding would
+  /// leave fewer than four digits of the answer.
   [[nodiscard]] Matrix2 covariance_between(int a, int b) const;
 
   /// The same of every landmark from the first one, all at once; that of the first is zero. Cost:
-  /// about two factorisations.
+  /// about two factorisations. Throws SolveError likewise.
   [[nodiscard]] std::vector<Matrix2> covariances() const;
 
   /// Per route of map(): by how much the summed variance of all landmarks (m^2) is expected to fall
   /// when the route is driven once more, with the covariance that its traversals had on average.
   /// Where to drive next, for a better map. Cost: one factorisation, two solutions per route.
+  /// Throws SolveError likewise.
   [[nodiscard]] std::vector<double> expected_falls() const;
 
   /// The landmarks along the shortest or the surest way over routes that were driven
@@ -228,6 +232,16 @@ class MapBuilder {
 
   /// The map: present positions, and the routes with their averages.
   [[nodiscard]] LandmarkGraph map() const;
+
+  /// Writes all that the builder remembers into a file, whole or not at all (docs/formats.md; its
+  /// name's ending does not matter). What is derived from that, as the factor of its matrix, is
+  /// made anew as load() makes it: from here on the builder and one that is loaded do the same to
+  /// the last bit. Throws InputError where the file cannot be written. Cost: what the map costs.
+  void save(const std::filesystem::path& file);
+
+  /// The builder that was saved, with its options. Throws InputError, which says file, line, what
+  /// is wrong and what was expected, unless the file is there as save() wrote it.
+  [[nodiscard]] static MapBuilder load(const std::filesystem::path& file);
 
  private:
   friend class BuilderAccess;  // for map_store.hpp

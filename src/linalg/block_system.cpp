@@ -192,6 +192,11 @@ double BlockSystem::reciprocal_condition() const {
                                     : cholmod_.reciprocal_condition();
 }
 
+double BlockSystem::least_pivot_share() const {
+  return kernel_ == Kernel::frontal ? frontal_.least_pivot_share(diagonal())
+                                    : cholmod_.least_pivot_share(diagonal());
+}
+
 void BlockSystem::clear() {
   std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
 }

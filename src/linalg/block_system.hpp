@@ -78,6 +78,9 @@ class BlockSystem {
 
   [[nodiscard]] double log_determinant() const;
   [[nodiscard]] double reciprocal_condition() const;
+  /// The least share that elimination has left of a diagonal entry: SparseCholesky's. Call before
+  /// the matrix changes again.
+  [[nodiscard]] double least_pivot_share() const;
 
   /// The lower triangle of A.
   [[nodiscard]] const SparseMatrix& matrix() const { return matrix_; }

@@ -349,4 +349,16 @@ double FrontalCholesky::reciprocal_condition() const {
   return most > 0.0 ? (least / most) * (least / most) : 1.0;
 }
 
+double FrontalCholesky::least_pivot_share(const Eigen::VectorXd& diagonal) const {
+  double least = 1.0;
+  for (const Part& front : parts_) {
+    for (int c = 0; c < front.width; ++c) {
+      const double l = panels_[front.panel + idx(at(c, c, front.rows))];
+      const double share = l * l / diagonal[front.unknown + c];
+      if (!(share >= least)) least = std::isnan(share) ? 0.0 : share;
+    }
+  }
+  return least;
+}
+
 }  // namespace trussmap

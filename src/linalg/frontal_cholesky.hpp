@@ -68,6 +68,9 @@ class FrontalCholesky {
   [[nodiscard]] double log_determinant() const;
   /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
   [[nodiscard]] double reciprocal_condition() const;
+  /// The least share that elimination has left of an entry of A's diagonal, as
+  /// SparseCholesky::least_pivot_share.
+  [[nodiscard]] double least_pivot_share(const Eigen::VectorXd& diagonal) const;
   /// Numbers stored for L.
   [[nodiscard]] double stored() const { return static_cast<double>(stored_); }
 

@@ -236,31 +236,48 @@ void SparseCholesky::solve_updated(Eigen::VectorXd& x) {
   cholmod_->solve_changed(x);
 }
 
-double SparseCholesky::log_determinant() const {
-  if (cholmod_->changed) {
-    double sum = 0.0;
-    for (const double pivot : cholmod_->changed->pivots()) sum += std::log(pivot);
-    return sum;
-  }
+std::vector<double> SparseCholesky::pivots() const {
+  if (cholmod_->changed) return cholmod_->changed->pivots();
   const cholmod_factor& factor = *cholmod_->factor;
   const auto* x = static_cast<const double*>(factor.x);
-  double sum = 0.0;
+  std::vector<double> pivots;
+  pivots.reserve(factor.n);
   if (factor.is_super != 0) {
     const auto* super = static_cast<const int*>(factor.super);
     const auto* pi = static_cast<const int*>(factor.pi);
     const auto* px = static_cast<const int*>(factor.px);
     for (std::size_t s = 0; s < factor.nsuper; ++s) {
       const int rows = pi[s + 1] - pi[s];
-      for (int j = 0; j < super[s + 1] - super[s]; ++j)
-        sum += 2.0 * std::log(x[px[s] + j * rows + j]);
+      for (int j = 0; j < super[s + 1] - super[s]; ++j) {
+        const double l = x[px[s] + j * rows + j];
+        pivots.push_back(l * l);
+      }
     }
-    return sum;
+    return pivots;
   }
   const auto* p = static_cast<const int*>(factor.p);
   for (std::size_t j = 0; j < factor.n; ++j) {
-    sum += (factor.is_ll != 0 ? 2.0 : 1.0) * std::log(x[p[j]]);
+    const double l = x[p[j]];
+    pivots.push_back(factor.is_ll != 0 ? l * l : l);
   }
+  return pivots;
+}
+
+double SparseCholesky::log_determinant() const {
+  double sum = 0.0;
+  for (const double pivot : pivots()) sum += std::log(pivot);
   return sum;
+}
+
+double SparseCholesky::least_pivot_share(const Eigen::VectorXd& diagonal) const {
+  const std::vector<double> left = pivots();
+  const auto* permutation = static_cast<const int*>(cholmod_->factor->Perm);
+  double least = 1.0;
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    const double share = left[k] / diagonal[permutation[k]];
+    if (!(share >= least)) least = std::isnan(share) ? 0.0 : share;
+  }
+  return least;
 }
 
 double SparseCholesky::reciprocal_condition() const {

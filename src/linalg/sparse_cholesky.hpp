@@ -86,11 +86,18 @@ class SparseCholesky {
   /// Reciprocal of a rough condition number, (min L_ii / max L_ii)^2.
   [[nodiscard]] double reciprocal_condition() const;
 
+  /// The least share that elimination has left of a diagonal entry of A: of its 16 digits so many
+  /// are lost as the share has zeros behind the point. Unlike a condition it does not depend on
+  /// the unknowns' units. `diagonal`: of A.
+  [[nodiscard]] double least_pivot_share(const Eigen::VectorXd& diagonal) const;
+
   /// Nonzeros of L as stored.
   [[nodiscard]] double factor_nonzeros() const;
 
  private:
   void change(bool add, const SparseMatrix& w);
+  /// D of A = L D L' with unit diagonal, in the factor's order.
+  [[nodiscard]] std::vector<double> pivots() const;
 
   struct Cholmod;
   std::unique_ptr<Cholmod> cholmod_;

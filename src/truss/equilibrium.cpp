@@ -21,6 +21,8 @@ constexpr double kTurned = 1e-3;     // change of a gradient, as a share of it
 constexpr int kFewTurned = 100;      // more: a new factor is cheaper
 constexpr int kMostHalvings = 10;    // of a step until the energy has fallen
 constexpr double kRounding = 1e-14;  // of the energy: no rise
+// What elimination may leave of a diagonal entry: 4 digits of the answer are right even then.
+constexpr double kLeastShare = 1e-12;
 
 /// Columns W with W W' = |B|, those of negative eigenvalues first, and how many these are.
 std::pair<Matrix2, int> signed_root(const Matrix2& B) {
@@ -215,6 +217,7 @@ void Equilibrium::follow(const ElasticTruss& truss) {
       change_term(truss, number, term_of(truss, number));
     }
     changed_.clear();
+    if (!is_sound()) factorise(truss);
   } catch (const NotPositiveDefinite&) {
     factorise(truss);
   } catch (...) {
@@ -273,6 +276,7 @@ void Equilibrium::take_in_joint(const ElasticTruss& truss, int joint,
     for (const auto& [at, value] : entries) column.insert(at, 0) = value;
     column.makeCompressed();
     cholesky_.add_row(unknown_[idx(joint)] + c, column);
+    diagonal_[unknown_[idx(joint)] + c] = row[joint](c, c);
   }
 }
 
@@ -316,7 +320,10 @@ void Equilibrium::update(const std::vector<Column>& columns, bool add) {
   for (const Column& column : columns) {
     for (const auto& [joint, value] : column.parts) {
       if (held(joint)) continue;
-      for (int r = 0; r < 2; ++r) W.insert(unknown_[idx(joint)] + r, c) = value[r];
+      const int at = unknown_[idx(joint)];
+      for (int r = 0; r < 2; ++r) W.insert(at + r, c) = value[r];
+      const Vector2 squares = value.cwiseAbs2();
+      diagonal_.segment<2>(at) += add ? squares : Vector2(-squares);
     }
     ++c;
   }
@@ -398,6 +405,8 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
   const BlockSystem system = system_of(truss, places, Kernel::cholmod);
   cholesky_.analyse(system.matrix());
   cholesky_.factorise(system.matrix());
+  diagonal_ = system.diagonal();
+  if (!is_sound()) throw NotPositiveDefinite(0);
   unknown_.assign(idx(places), -1);
   for (int joint = 1; joint < places; ++joint) unknown_[idx(joint)] = system.offset(joint);
   f_ = Eigen::VectorXd::Zero(system.unknowns());
@@ -405,11 +414,16 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
   factored_ = true;
 }
 
+bool Equilibrium::is_sound() const {
+  return cholesky_.least_pivot_share(diagonal_) >= kLeastShare;
+}
+
 std::vector<Matrix2> flexibilities(const ElasticTruss& truss) {
   std::vector<Matrix2> result(idx(truss.joints()), Matrix2::Zero());
   if (truss.joints() < 2) return result;
   BlockSystem system = system_of(truss, truss.joints(), Kernel::frontal);
   system.factorise();
+  if (!(system.least_pivot_share() >= kLeastShare)) throw NotPositiveDefinite(0);
   const Eigen::MatrixXd blocks = system.inverse_blocks();
   for (int joint = 1; joint < truss.joints(); ++joint) {
     result[idx(joint)] = blocks.block<2, 2>(0, system.offset(joint));

@@ -60,6 +60,8 @@ class Equilibrium {
   void change_term(const ElasticTruss& truss, int element, const Term& now);
   void update(const std::vector<Column>& columns, bool add);
   void factorise(const ElasticTruss& truss);
+  /// Solutions have digits that are right: rounding has not eaten a pivot.
+  [[nodiscard]] bool is_sound() const;
   double evaluate(const ElasticTruss& truss);
   void evaluate_changes(const ElasticTruss& truss);
 
@@ -75,6 +77,7 @@ class Equilibrium {
   bool factored_ = false;
   bool linear_ = true;  ///< bars alone
   Eigen::VectorXd f_;
+  Eigen::VectorXd diagonal_;  ///< of K as the factor has it
   SparseCholesky cholesky_{Ordering::fixed};
 };
 

@@ -305,6 +305,61 @@ TEST(MapBuilder, CovariancesAreThoseOfLeastSquares) {
   }
 }
 
+/// Round a square, legs of covariances a and b by turns; without refinement, which would be
+/// refused.
+MapBuilder square_of(double a, double b, const MapBuilderOptions& options) {
+  MapBuilder builder(options);
+  builder.start("A");
+  const Vector2 sides[] = {{4.0, 0.0}, {0.0, 4.0}, {-4.0, 0.1}, {0.1, -4.0}};
+  const char* const corners[] = {"B", "C", "D", "A"};
+  for (int k = 0; k < 4; ++k) {
+    const Matrix2 C = (k % 2 == 0 ? a : b) * Matrix2::Identity();
+    builder.arrive(corners[k], Traversal{sides[k], C});
+  }
+  return builder;
+}
+
+/// By hand: with a far below b, A and B are as one, C and D as one, and two legs b tie these.
+TEST(MapBuilder, CovariancesThatRoundingHasEatenAreRefused) {
+  constexpr double kGateless = std::numeric_limits<double>::infinity();
+  for (const Method method : {Method::elastic, Method::gauss_markov}) {
+    const MapBuilderOptions options{.method = method, .refine = false, .gate = kGateless};
+    for (const double b : {1e-8, 1e-4, 1.0, 1e2, 1e6, 1e20, 1e100}) {
+      for (const double a : {1e-150, 1e-100, 1e-18, 1e-14, 1e-9}) {
+        const MapBuilder builder = square_of(a, b, options);
+        const double half = 0.5 * b * (1.0 + a / b);  // of C: a + b and the other way round, b + a
+        try {
+          const Matrix2 C = builder.covariances()[2];
+          EXPECT_LE((C - half * Matrix2::Identity()).norm(), 1e-3 * half) << a << " " << b;
+          EXPECT_LE((builder.covariance_between(0, 2) - C).norm(), 1e-3 * half) << a << " " << b;
+          EXPECT_EQ(builder.expected_falls().size(), 4U);
+          EXPECT_GE(a, 1e-13 * b);
+        } catch (const SolveError& error) {
+          EXPECT_LT(a, 1e-11 * b) << error.what();
+          EXPECT_NE(std::string(error.what()).find("too many magnitudes"), std::string::npos);
+          EXPECT_THROW((void)builder.covariance_between(0, 2), SolveError);
+          EXPECT_THROW((void)builder.expected_falls(), SolveError);
+        }
+      }
+    }
+  }
+}
+
+/// Many magnitudes by themselves do no harm: outwards ever softer, nothing cancels.
+TEST(MapBuilder, CovariancesThatGrowAlongAChainAddUpWhateverTheirMagnitudes) {
+  MapBuilder builder;
+  builder.start("A");
+  const double variances[] = {1e-100, 1e-3, 1e20, 1e60};
+  double sum = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const Matrix2 C = variances[k] * Matrix2::Identity();
+    const int landmark = builder.arrive("n" + std::to_string(k), Traversal{{1.0, 2.0}, C}).landmark;
+    sum += variances[k];
+    EXPECT_NEAR(builder.covariances()[idx(landmark)](0, 0), sum, 1e-12 * sum) << k;
+    EXPECT_NEAR(builder.covariance_between(0, landmark)(1, 1), sum, 1e-12 * sum) << k;
+  }
+}
+
 TEST(MapBuilder, KnowsTheNearestLandmarksOfAPoint) {
   const Walk walk = random_walk(30, 300, 1.0, 10);
   const MapBuilder builder = built(walk, {});
