@@ -186,6 +186,8 @@ void add_map_builder(py::module_& module) {
            py::arg("method") = "elastic", py::kw_only(), py::arg("eta") = "auto",
            py::arg("groups") = true, py::arg("law") = py::none(),
            py::arg("gate") = MapBuilderOptions().gate, py::arg("refine") = true)
+      .def("save", &MapBuilder::save, py::arg("file"), doc("MapBuilder.save"))
+      .def_static("load", &MapBuilder::load, py::arg("file"), doc("MapBuilder.load"))
       .def("__repr__", [](const MapBuilder& self) {
         return "<trussmap.MapBuilder of " + std::to_string(self.landmarks()) + " landmarks>";
       });

@@ -6,12 +6,17 @@
 #include "geometry/make_room.hpp"
 #include "linalg/connected_parts.hpp"
 #include "map/builder_state.hpp"
+#include "map/memory_file.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
+#include "trussmap/write_files.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <Eigen/LU>
@@ -108,6 +113,23 @@ BuilderCall reckoned(BuilderCall::Kind kind, int from, const Motion& motion,
   entry.motion = motion;
   entry.seen = seen;
   return entry;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) {
+    throw InputError(file.string(), 0,
+                     std::filesystem::exists(file, failed)
+                         ? "is no file, expected one that a map builder was saved in"
+                         : "is not there, expected a file that a map builder was saved in");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  const bool empty = std::filesystem::file_size(file, failed) == 0;
+  if (!stream || (!empty && !(content << stream.rdbuf()))) {
+    throw InputError(file.string(), 0, "cannot be read");
+  }
+  return content.str();
 }
 
 }  // namespace
@@ -265,6 +287,21 @@ std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {
 
 LandmarkGraph MapBuilder::map() const {
   return state_->graph();
+}
+
+void MapBuilder::save(const std::filesystem::path& file) {
+  const std::string text = format_memory(state_->memory(), state_->options());
+  // As it is read: what cannot be read is not written.
+  KeptMemory kept = parse_memory(text, file.string());
+  auto next = std::make_unique<State>(kept.options, std::move(kept.memory));
+  next->journal = state_->journal;
+  write_file(file, text);
+  state_ = std::move(next);
+}
+
+MapBuilder MapBuilder::load(const std::filesystem::path& file) {
+  KeptMemory kept = parse_memory(content_of(file), file.string());
+  return BuilderAccess::restored(std::move(kept.memory), kept.options);
 }
 
 std::string name_of(Method method) {

@@ -70,14 +70,6 @@ Statement& Statement::bind(int place, const std::string& text) {
   return *this;
 }
 
-Statement& Statement::bind(int place, const Vector2& vector) {
-  return bind(place, vector.x()).bind(place + 1, vector.y());
-}
-
-Statement& Statement::bind(int place, const Matrix2& C) {
-  return bind(place, C(0, 0)).bind(place + 1, 0.5 * (C(0, 1) + C(1, 0))).bind(place + 2, C(1, 1));
-}
-
 Statement& Statement::bind_bytes(int place, const std::string& bytes) {
   check(sqlite3_bind_blob64(statement_.get(), place + 1, bytes.data(), bytes.size(),
                             SQLITE_TRANSIENT));

@@ -4,7 +4,7 @@
 // SQLite, as far as a store needs it: a connection, and statements that are prepared once.
 #pragma once
 
-#include "trussmap/planar.hpp"
+#include "text/table_row.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -30,16 +30,15 @@ class DatabaseError : public std::runtime_error {
 class Database;
 
 /// Parameters and columns count from 0. Calls throw DatabaseError.
-class Statement {
+class Statement final : public RowReader, public RowWriter {
  public:
   Statement(const Database& database, const std::string& sql);
 
-  Statement& bind(int place, double value);
-  Statement& bind(int place, std::int64_t value);
+  using RowWriter::bind;
+  Statement& bind(int place, double value) override;
+  Statement& bind(int place, std::int64_t value) override;
   Statement& bind(int place, int value) { return bind(place, std::int64_t{value}); }
-  Statement& bind(int place, const std::string& text);
-  Statement& bind(int place, const Vector2& vector);  ///< two places: x, y
-  Statement& bind(int place, const Matrix2& C);       ///< three, of a symmetric one: xx, xy, yy
+  Statement& bind(int place, const std::string& text) override;
 
   Statement& bind_bytes(int place, const std::string& bytes);
 
@@ -50,11 +49,11 @@ class Statement {
   void run();
   void reset() noexcept;
 
-  [[nodiscard]] double real(int column) const;
-  [[nodiscard]] std::int64_t integer(int column) const;
-  [[nodiscard]] std::string text(int column) const;
+  [[nodiscard]] double real(int column) const override;
+  [[nodiscard]] std::int64_t integer(int column) const override;
+  [[nodiscard]] std::string text(int column) const override;
   [[nodiscard]] std::string bytes(int column) const;
-  [[nodiscard]] bool is_null(int column) const;
+  [[nodiscard]] bool is_null(int column) const override;
 
  private:
   struct Finalize {

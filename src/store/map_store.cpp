@@ -11,7 +11,7 @@
 #include "trussmap/error.hpp"
 
 #include <algorithm>
-#include <array>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -24,10 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kApplication = 0x7472736d;  // "trsm"
 constexpr std::int64_t kVersion = 2;
 constexpr std::int64_t kFirstVersion = 1;
-constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::gauss_markov};
-constexpr std::array kScopes{RefinementScope::Kind::automatic, RefinementScope::Kind::all,
-                             RefinementScope::Kind::nearest, RefinementScope::Kind::estimated};
-constexpr std::array kLaws{StiffnessLaw::mean_error, StiffnessLaw::variance};
 constexpr int kCallKinds = 5;
 
 constexpr const char* kTaken = "is being written by another program, expected one at a time";
@@ -73,17 +69,6 @@ fs::path lock_of(const fs::path& place) {
   return followed;
 }
 
-std::string scope_name(RefinementScope::Kind kind) {
-  if (kind == RefinementScope::Kind::automatic) return "automatic";
-  if (kind == RefinementScope::Kind::all) return "all";
-  return kind == RefinementScope::Kind::nearest ? "nearest" : "estimated";
-}
-
-std::string law_name(const std::optional<StiffnessLaw>& law) {
-  if (!law) return "own";
-  return *law == StiffnessLaw::variance ? "variance" : "mean error";
-}
-
 class Facts {
  public:
   explicit Facts(const Database& database)
@@ -114,42 +99,45 @@ class Facts {
   Statement put_;
 };
 
-void put_options(Facts& facts, const MapBuilderOptions& options) {
-  facts.put("method", name_of(options.method));
-  facts.put("scope", scope_name(options.scope.kind));
-  facts.put("eta", options.scope.eta);
-  facts.put("groups", options.scope.groups ? 1 : 0);
-  facts.put("law", law_name(options.law));
-  facts.put("refine", options.refine ? 1 : 0);
-  facts.put("pooled", options.pooled ? 1 : 0);
-  facts.put("gate", options.gate);
+/// The facts that are options, as the columns of a row.
+class OptionFacts final : public RowReader, public RowWriter {
+ public:
+  explicit OptionFacts(Facts& facts) : facts_(facts) {
+    std::istringstream columns(kOptionsTable.columns);
+    for (std::string name; std::getline(columns >> std::ws, name, ',');) names_.push_back(name);
+  }
+
+  [[nodiscard]] double real(int column) const override { return facts_.real(name(column)); }
+  [[nodiscard]] std::int64_t integer(int column) const override {
+    return static_cast<std::int64_t>(std::clamp(real(column), -1e9, 1e9));
+  }
+  [[nodiscard]] std::string text(int column) const override { return facts_.text(name(column)); }
+  [[nodiscard]] bool is_null(int /*column*/) const override { return false; }
+
+  using RowWriter::bind;
+  OptionFacts& bind(int column, double value) override { return put(column, value); }
+  OptionFacts& bind(int column, std::int64_t value) override { return put(column, value); }
+  OptionFacts& bind(int column, const std::string& text) override { return put(column, text); }
+
+ private:
+  [[nodiscard]] const std::string& name(int column) const { return names_[idx(column)]; }
+  template <typename Value>
+  OptionFacts& put(int column, const Value& value) {
+    facts_.put(name(column), value);
+    return *this;
+  }
+
+  Facts& facts_;
+  std::vector<std::string> names_;
+};
+
+MapBuilderOptions options_among(Facts& facts) {
+  return options_in(OptionFacts(facts));
 }
 
-MapBuilderOptions options_in(Facts& facts) {
-  MapBuilderOptions options;
-  const std::string method = facts.text("method");
-  const std::string scope = facts.text("scope");
-  const std::string law = facts.text("law");
-  const auto named = std::find_if(kMethods.begin(), kMethods.end(),
-                                  [&](Method one) { return name_of(one) == method; });
-  const auto kind = std::find_if(kScopes.begin(), kScopes.end(), [&](RefinementScope::Kind one) {
-    return scope_name(one) == scope;
-  });
-  const auto lawful = std::find_if(kLaws.begin(), kLaws.end(),
-                                   [&](StiffnessLaw one) { return law_name(one) == law; });
-  if (named == kMethods.end() || kind == kScopes.end() ||
-      (lawful == kLaws.end() && law != law_name({}))) {
-    throw std::invalid_argument("a method that is unknown");
-  }
-  options.method = *named;
-  options.scope.kind = *kind;
-  options.scope.eta = static_cast<int>(std::clamp(facts.real("eta"), 0.0, 1e9));
-  options.scope.groups = facts.real("groups") != 0.0;
-  if (lawful != kLaws.end()) options.law = *lawful;
-  options.refine = facts.real("refine") != 0.0;
-  options.pooled = facts.real("pooled") != 0.0;
-  options.gate = facts.real("gate");
-  return options;
+void put_options_among(Facts& facts, const MapBuilderOptions& options) {
+  OptionFacts row(facts);
+  put_options(row, options);
 }
 
 void make(const Database& database, const MapBuilderOptions& options) {
@@ -166,7 +154,7 @@ void make(const Database& database, const MapBuilderOptions& options) {
   )sql");
   create_memory_tables(database);
   Facts facts(database);
-  put_options(facts, options);
+  put_options_among(facts, options);
 }
 
 /// Blanks and ends of lines as one blank each.
@@ -448,7 +436,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
 
   void load() {
     undamaged(file_, [&] {
-      const MapBuilderOptions options = options_in(*facts_);
+      const MapBuilderOptions options = options_among(*facts_);
       builder_.emplace(BuilderAccess::restored(rows_->load(options), options));
       legs_ = legs_in(database_);
       static_cast<void>(sessions_in(database_));
@@ -460,7 +448,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
   void take(const MapBuilderOptions& options) {
     const bool empty = builder().landmarks() == 0;
     if (!empty) builder().set_options(options);
-    keep([&] { put_options(*facts_, options); });
+    keep([&] { put_options_among(*facts_, options); });
     if (empty) load();
   }
 
@@ -514,7 +502,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
                   "INSERT INTO sessions(key, name, first_leg, legs) VALUES (?, ?, ?, ?)");
     put.bind(0, session.key).bind(1, session.name).bind(2, legs_);
     put.bind(3, static_cast<std::int64_t>(journal_.size())).run();
-    put_options(*facts_, builder_->options());  // which may have been set on the way
+    put_options_among(*facts_, builder_->options());  // which may have been set on the way
     session_ = database_.number("SELECT max(number) FROM sessions");
   }
 
@@ -694,7 +682,7 @@ auto reading(const fs::path& file, const Read& read) {
     const auto read_tables = [&](const Database& present) {
       return undamaged(file, [&] {
         Facts facts(present);
-        return read(present, options_in(facts));
+        return read(present, options_among(facts));
       });
     };
     if (!is_of_first_version(database)) return read_tables(database);

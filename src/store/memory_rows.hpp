@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// A builder's memory as rows of a database: read whole, and written where it differs from what is
-// there already, so that an arrival costs as many rows as it changed.
+// A builder's memory (map/memory_tables.hpp) as rows of a database: read whole, and written where
+// it differs from what is there already, so that an arrival costs as many rows as it changed.
 #pragma once
 
-#include "map/builder_memory.hpp"
+#include "map/memory_tables.hpp"
 #include "store/database.hpp"
 
 #include <vector>
@@ -43,11 +43,6 @@ class MemoryRows {
     std::vector<LeftOutArrival> left_out;
   };
 
-  void load_landmarks(BuilderMemory& memory);
-  void load_routes(BuilderMemory& memory, bool weighed);
-  void load_reckoned(BuilderMemory& memory);
-  void load_rest(BuilderMemory& memory);
-  void load_state(BuilderMemory& memory);
   void save_landmarks(const BuilderMemory& memory);
   void save_routes(const BuilderMemory& memory, bool weighed);
   void save_reckoned(const BuilderMemory& memory);
