@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,15 +22,11 @@ inline nlohmann::json reference(const std::string& name) {
   return nlohmann::json::parse(stream);
 }
 
-/// A case of a reference file as a test parameter: printed as its number, not as its contents.
+/// A case of a reference file.
 struct Case {
   std::size_t number = 0;
   nlohmann::json content;
 };
-
-inline void PrintTo(const Case& one, std::ostream* stream) {
-  *stream << "case " << one.number;
-}
 
 inline std::vector<Case> cases(const std::string& file, const std::string& key) {
   std::vector<Case> result;
@@ -40,6 +35,17 @@ inline std::vector<Case> cases(const std::string& file, const std::string& key) 
     result.push_back({result.size(), content});
   }
   return result;
+}
+
+/// Checks every case; a failure says which. Not test parameters: every test is a process, and each
+/// would read all files to know its parameters.
+template <typename Check>
+void for_each(const std::vector<Case>& all, const Check& check) {
+  ASSERT_FALSE(all.empty());
+  for (const Case& one : all) {
+    SCOPED_TRACE("case " + std::to_string(one.number));
+    check(one.content);
+  }
 }
 
 inline std::filesystem::path shared(const std::string& below) {

@@ -26,102 +26,107 @@ void expect_analysis(double value, double expected) {
   EXPECT_NEAR(value, expected, 1e-12 * std::max(1.0, std::abs(expected)));
 }
 
-class UmbmarkSimulated : public ::testing::TestWithParam<Case> {
- protected:
-  [[nodiscard]] double number(const char* key) const { return GetParam().content[key]; }
+/// One of the reference's simulated robots.
+struct Simulated {
+  const nlohmann::json& c;
+  [[nodiscard]] double number(const char* key) const { return c[key]; }
   [[nodiscard]] double metres(const char* key) const { return kMillimetre * number(key); }
   [[nodiscard]] SquareSetup setup() const { return {metres("side_mm"), metres("b_nominal_mm")}; }
   [[nodiscard]] SquareClusters measured() const {
     const auto end = [&](const char* key) {
-      const auto& e = GetParam().content[key];
+      const auto& e = c[key];
       return Eigen::Vector2d(kMillimetre * e[0].get<double>(), kMillimetre * e[1].get<double>());
     };
     return centres(end("err_cw"), end("err_ccw"));
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Reference, UmbmarkSimulated,
-                         ::testing::ValuesIn(testing::cases("umbmark.json", "simulated")));
-
-TEST_P(UmbmarkSimulated, RobotEndsWhereTheReferenceHasIt) {
-  const TapeRobot robot =
-      misbuilt_robot(metres("b_nominal_mm"), number("Ed_true"), number("Eb_true"));
-  std::mt19937_64 unused;
-  for (const auto& [key, direction] :
-       {std::pair("err_cw", Direction::cw), std::pair("err_ccw", Direction::ccw)}) {
-    const Pose end = drive_once(robot, square_path(metres("side_mm"), direction), unused);
-    const auto& expected = GetParam().content[key];
-    const Eigen::Vector3d found(end.x, end.y, end.heading);
-    const Eigen::Vector3d units(kMillimetre, kMillimetre, 1.0);
-    for (int k = 0; k < 3; ++k) {
-      const double e = units[k] * expected[static_cast<std::size_t>(k)].get<double>();
-      EXPECT_NEAR(found[k], e, std::max(1e-9 * std::abs(e), 1e-12)) << key << " " << k;
+TEST(UmbmarkSimulated, RobotEndsWhereTheReferenceHasIt) {
+  testing::for_each(testing::cases("umbmark.json", "simulated"), [](const nlohmann::json& c) {
+    const Simulated one{c};
+    const TapeRobot robot =
+        misbuilt_robot(one.metres("b_nominal_mm"), one.number("Ed_true"), one.number("Eb_true"));
+    std::mt19937_64 unused;
+    for (const auto& [key, direction] :
+         {std::pair("err_cw", Direction::cw), std::pair("err_ccw", Direction::ccw)}) {
+      const Pose end = drive_once(robot, square_path(one.metres("side_mm"), direction), unused);
+      const auto& expected = c[key];
+      const Eigen::Vector3d found(end.x, end.y, end.heading);
+      const Eigen::Vector3d units(kMillimetre, kMillimetre, 1.0);
+      for (int k = 0; k < 3; ++k) {
+        const double e = units[k] * expected[static_cast<std::size_t>(k)].get<double>();
+        EXPECT_NEAR(found[k], e, std::max(1e-9 * std::abs(e), 1e-12)) << key << " " << k;
+      }
+      // The calibration's own kinematics, coded apart, agree.
+      const PathError own =
+          path_error(square_path(one.metres("side_mm"), direction), one.metres("b_nominal_mm"),
+                     {one.number("Ed_true"), one.number("Eb_true")});
+      EXPECT_LT((own.error - found).norm(), 1e-12);
     }
-    // The calibration's own kinematics, coded apart, agree.
-    const PathError own =
-        path_error(square_path(metres("side_mm"), direction), metres("b_nominal_mm"),
-                   {number("Ed_true"), number("Eb_true")});
-    EXPECT_LT((own.error - found).norm(), 1e-12);
-  }
+  });
 }
 
-TEST_P(UmbmarkSimulated, FormulasGiveTheReferencesFigures) {
-  const SquareClusters clusters = measured();
-  const SquareAngles angles = square_angles(clusters, setup().side);
-  const SquareSolution found = umbmark(clusters, setup());
-  expect_analysis(angles.alpha_x.value, number("alpha_x"));
-  expect_analysis(angles.alpha_y.value, number("alpha_y"));
-  expect_analysis(angles.beta_x.value, number("beta_x"));
-  expect_analysis(angles.beta_y.value, number("beta_y"));
-  expect_analysis(found.alpha.value, number("alpha"));
-  expect_analysis(found.beta.value, number("beta"));
-  expect_analysis(found.diameter_ratio.value, number("Ed_recovered"));
-  expect_analysis(found.wheelbase_ratio.value, number("Eb_recovered"));
-  expect_analysis(found.left_factor.value, number("cL"));
-  expect_analysis(found.right_factor.value, number("cR"));
-  expect_analysis(clusters.largest_offset.value, metres("Emax_mm"));
+TEST(UmbmarkSimulated, FormulasGiveTheReferencesFigures) {
+  testing::for_each(testing::cases("umbmark.json", "simulated"), [](const nlohmann::json& c) {
+    const Simulated one{c};
+    const SquareClusters clusters = one.measured();
+    const SquareAngles angles = square_angles(clusters, one.setup().side);
+    const SquareSolution found = umbmark(clusters, one.setup());
+    expect_analysis(angles.alpha_x.value, one.number("alpha_x"));
+    expect_analysis(angles.alpha_y.value, one.number("alpha_y"));
+    expect_analysis(angles.beta_x.value, one.number("beta_x"));
+    expect_analysis(angles.beta_y.value, one.number("beta_y"));
+    expect_analysis(found.alpha.value, one.number("alpha"));
+    expect_analysis(found.beta.value, one.number("beta"));
+    expect_analysis(found.diameter_ratio.value, one.number("Ed_recovered"));
+    expect_analysis(found.wheelbase_ratio.value, one.number("Eb_recovered"));
+    expect_analysis(found.left_factor.value, one.number("cL"));
+    expect_analysis(found.right_factor.value, one.number("cR"));
+    expect_analysis(clusters.largest_offset.value, one.metres("Emax_mm"));
+  });
 }
 
-TEST_P(UmbmarkSimulated, RoundsLeaveWhatTheReferenceSays) {
-  const SquareSetup square = setup();
-  const TapeRobot robot = misbuilt_robot(square.wheelbase, number("Ed_true"), number("Eb_true"));
-  GeometryErrors in_force;
-  SquareClusters clusters = simulated_clusters(robot, square.side);
-  for (const char* key : {"Emax_after_1_mm", "Emax_after_2_mm"}) {
-    const double wheelbase = square.wheelbase * in_force.wheelbase_ratio;
-    in_force = combined(in_force, umbmark(clusters, {square.side, wheelbase}).errors());
-    const TapeRobot corrected = reprogrammed(robot, in_force.left_factor(), in_force.right_factor(),
-                                             square.wheelbase * in_force.wheelbase_ratio);
-    clusters = simulated_clusters(corrected, square.side);
-    const double expected = metres(key);
-    EXPECT_NEAR(clusters.largest_offset.value, expected, std::max(1e-9 * expected, 1e-12)) << key;
-    if (key == std::string("Emax_after_1_mm")) {
-      EXPECT_NEAR(corrected.wheelbase_believed, metres("b_after_1_mm"), 1e-12);
-      EXPECT_NEAR(in_force.left_factor(), number("cL_after_1"), 1e-12);
-      EXPECT_NEAR(in_force.right_factor(), number("cR_after_1"), 1e-12);
+TEST(UmbmarkSimulated, RoundsLeaveWhatTheReferenceSays) {
+  testing::for_each(testing::cases("umbmark.json", "simulated"), [](const nlohmann::json& c) {
+    const Simulated one{c};
+    const SquareSetup square = one.setup();
+    const TapeRobot robot =
+        misbuilt_robot(square.wheelbase, one.number("Ed_true"), one.number("Eb_true"));
+    GeometryErrors in_force;
+    SquareClusters clusters = simulated_clusters(robot, square.side);
+    for (const char* key : {"Emax_after_1_mm", "Emax_after_2_mm"}) {
+      const double wheelbase = square.wheelbase * in_force.wheelbase_ratio;
+      in_force = combined(in_force, umbmark(clusters, {square.side, wheelbase}).errors());
+      const TapeRobot corrected =
+          reprogrammed(robot, in_force.left_factor(), in_force.right_factor(),
+                       square.wheelbase * in_force.wheelbase_ratio);
+      clusters = simulated_clusters(corrected, square.side);
+      const double expected = one.metres(key);
+      EXPECT_NEAR(clusters.largest_offset.value, expected, std::max(1e-9 * expected, 1e-12)) << key;
+      if (key == std::string("Emax_after_1_mm")) {
+        EXPECT_NEAR(corrected.wheelbase_believed, one.metres("b_after_1_mm"), 1e-12);
+        EXPECT_NEAR(in_force.left_factor(), one.number("cL_after_1"), 1e-12);
+        EXPECT_NEAR(in_force.right_factor(), one.number("cR_after_1"), 1e-12);
+      }
     }
-  }
+  });
 }
 
-class UmbmarkMeasured : public ::testing::TestWithParam<Case> {};
-
-INSTANTIATE_TEST_SUITE_P(Reference, UmbmarkMeasured,
-                         ::testing::ValuesIn(testing::cases("umbmark.json", "measured")));
-
-TEST_P(UmbmarkMeasured, PublishedCentresGiveTheReferencesFigures) {
-  const nlohmann::json& c = GetParam().content;
-  const SquareSetup setup{kMillimetre * c["side_mm"].get<double>(),
-                          kMillimetre * c["B_assumed_mm"].get<double>()};
-  const SquareClusters clusters = centres(kMillimetre * testing::vector2(c["cg_cw"]),
-                                          kMillimetre * testing::vector2(c["cg_ccw"]));
-  const SquareSolution found = umbmark(clusters, setup);
-  expect_analysis(found.alpha.value, c["alpha"]);
-  expect_analysis(found.beta.value, c["beta"]);
-  expect_analysis(found.diameter_ratio.value, c["Ed"]);
-  expect_analysis(found.wheelbase_ratio.value, c["Eb"]);
-  expect_analysis(found.left_factor.value, c["cL"]);
-  expect_analysis(found.right_factor.value, c["cR"]);
-  expect_analysis(clusters.largest_offset.value, kMillimetre * c["Emax_mm"].get<double>());
+TEST(UmbmarkMeasured, PublishedCentresGiveTheReferencesFigures) {
+  testing::for_each(testing::cases("umbmark.json", "measured"), [](const nlohmann::json& c) {
+    const SquareSetup setup{kMillimetre * c["side_mm"].get<double>(),
+                            kMillimetre * c["B_assumed_mm"].get<double>()};
+    const SquareClusters clusters = centres(kMillimetre * testing::vector2(c["cg_cw"]),
+                                            kMillimetre * testing::vector2(c["cg_ccw"]));
+    const SquareSolution found = umbmark(clusters, setup);
+    expect_analysis(found.alpha.value, c["alpha"]);
+    expect_analysis(found.beta.value, c["beta"]);
+    expect_analysis(found.diameter_ratio.value, c["Ed"]);
+    expect_analysis(found.wheelbase_ratio.value, c["Eb"]);
+    expect_analysis(found.left_factor.value, c["cL"]);
+    expect_analysis(found.right_factor.value, c["cR"]);
+    expect_analysis(clusters.largest_offset.value, kMillimetre * c["Emax_mm"].get<double>());
+  });
 }
 
 TEST(Umbmark, TwoRoundsLeaveLessThanAHundredth) {

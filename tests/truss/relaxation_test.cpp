@@ -92,22 +92,6 @@ void expect_reference(const ElasticTruss& found, const json& c, double tolerance
   EXPECT_NEAR(found.energy(), energy, 1e-9 * c["energy_before"].get<double>() + 1e-12 * energy);
 }
 
-class RelaxationReference : public ::testing::TestWithParam<testing::Case> {};
-
-TEST_P(RelaxationReference, JointsComeToTheSameEquilibrium) {
-  const json& c = GetParam().content;
-  const bool ill = c["name"].get<std::string>().find("by 10000") != std::string::npos;
-  ElasticTruss truss = truss_of(c);
-  EXPECT_NEAR(truss.energy(), c["energy_before"], 1e-9 * c["energy_before"].get<double>());
-  const std::vector<int> joints = c["free"];
-  Relaxation().relax(truss, each_alone(joints), 1);
-  expect_reference(truss, c, ill ? 1e-6 : 1e-9);
-  if (std::ssize(joints) + 1 != truss.joints()) return;  // joint 0 alone is held
-  ElasticTruss whole = truss_of(c);
-  Equilibrium().relax(whole);
-  expect_reference(whole, c, ill ? 1e-6 : 1e-9);
-}
-
 std::vector<testing::Case> references() {
   std::vector<testing::Case> all = testing::cases("relaxation.json", "bar_cases");
   for (const testing::Case& one : testing::cases("relaxation.json", "corner_cases")) {
@@ -116,7 +100,20 @@ std::vector<testing::Case> references() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryCase, RelaxationReference, ::testing::ValuesIn(references()));
+TEST(RelaxationReference, JointsComeToTheSameEquilibrium) {
+  testing::for_each(references(), [](const nlohmann::json& c) {
+    const bool ill = c["name"].get<std::string>().find("by 10000") != std::string::npos;
+    ElasticTruss truss = truss_of(c);
+    EXPECT_NEAR(truss.energy(), c["energy_before"], 1e-9 * c["energy_before"].get<double>());
+    const std::vector<int> joints = c["free"];
+    Relaxation().relax(truss, each_alone(joints), 1);
+    expect_reference(truss, c, ill ? 1e-6 : 1e-9);
+    if (std::ssize(joints) + 1 != truss.joints()) return;  // joint 0 alone is held
+    ElasticTruss whole = truss_of(c);
+    Equilibrium().relax(whole);
+    expect_reference(whole, c, ill ? 1e-6 : 1e-9);
+  });
+}
 
 Matrix2 random_stiffness(std::mt19937_64& random, double ratio) {
   std::normal_distribution<double> normal;
