@@ -84,8 +84,9 @@ struct MapBuilderOptions {
   /// An arrival at a known landmark whose misfit is beyond so many standard deviations, of leg and
   /// map together, is left out: a landmark was taken for another. Where misfits have been large
   /// lately the gate is as much wider, and what was left out comes back: a systematic error is no
-  /// wrong landmark. Infinity: none is left out. For legs in map axes; `elastic_printed` has no
-  /// gate, and legs in the robot's own axes have none yet.
+  /// wrong landmark. A leg in the robot's own axes that was left out comes in late, too, where the
+  /// next landmark lies to its end as the map has the two: then the way was misjudged, not the
+  /// landmark. Infinity: none is left out. `elastic_printed` has no gate.
   double gate = kMapGate;
 };
 
@@ -116,8 +117,9 @@ struct Arrival {
 struct LeftOutArrival {
   std::string from;
   std::string to;
-  Traversal leg;     ///< from there, map axes
-  double sds = 0.0;  ///< how far off it was, in standard deviations of leg and map together
+  Traversal leg;          ///< from there, map axes
+  double sds = 0.0;       ///< how far off it was, in standard deviations of leg and map together
+  bool own_axes = false;  ///< by a motion or sighting in the robot's own axes
 };
 
 /// Threads may ask at once (const calls) while none drives it on.

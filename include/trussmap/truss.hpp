@@ -97,7 +97,7 @@ class UnsupportedJoint : public SolveError {
 //                  squares; strain energy is then half of chi squared.                  1/m^2
 //
 // What was measured as a single number, with variance v, is a spring: a length, or an angle (then
-// with the length of the bar that it turns as its arm L).
+// with an arm L: of a direction the length of the bar that it turns).
 //
 // mean_error       k = t L / sqrt(2/pi v)                                   1/m; of angles m/rad
 // variance         k = t / v                                                1/m^2; 1/rad^2

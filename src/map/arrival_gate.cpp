@@ -22,8 +22,8 @@ bool ArrivalGate::lets_in(double squared_misfit) const {
 void ArrivalGate::remember(double squared_misfit) {
   last_.push_back(squared_misfit);
   if (last_.size() > kRemembered) last_.pop_front();
-  // One or two alone say nothing of the others.
-  constexpr std::size_t kFewest = 3;
+  // Of few, most may be wrong landmarks.
+  constexpr std::size_t kFewest = 8;
   scale_ = 1.0;
   if (last_.size() < kFewest) return;
   const double middle = median({last_.begin(), last_.end()});

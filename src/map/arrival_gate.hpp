@@ -5,7 +5,7 @@
 //
 //   d^2    squared misfit of an arrival at a known landmark, in the standard deviations of leg and
 //          map together: chi^2 with 2 degrees of freedom where all is as believed
-//   s^2    the median of the last d^2 over that of chi^2, at least 1
+//   s^2    the median of the last d^2 (of eight at least) over that of chi^2, at least 1
 //   out    where d > gate s
 //
 // A wrong landmark stands out among its neighbours in time. A systematic error does not: with it

@@ -7,24 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/LU>
 
 namespace trussmap {
-namespace {
-
-Arrival left_out_at(int landmark) {
-  Arrival arrival;
-  arrival.kind = Arrival::Kind::left_out;
-  arrival.landmark = landmark;
-  return arrival;
-}
-
-}  // namespace
-
 // ---------------------------------------- legs in map axes
 
 Arrival MapBuilder::State::arrive(const std::string& landmark, const Traversal& leg) {
@@ -68,103 +57,91 @@ Arrival MapBuilder::State::travel(const std::string& landmark, const MeasuredLeg
   const std::optional<int> known = other_landmark(landmark);
   MeasuredLeg measured = leg;
   measured.from = m_.here;
-  const bool gated =
-      !printed() && !std::isinf(options_.gate) && known.has_value() && leg.chord == nullptr;
+  const bool gated = !printed() && !std::isinf(options_.gate) && known.has_value();
   Arrival arrival = gated ? travel_gated(landmark, measured) : take_in(landmark, measured);
   if (leg.chord == nullptr && m_.frame == Frame::open) m_.frame = Frame::axes;
   return arrival;
-}
-
-/// What the map knows between two landmarks by one way alone: more uncertain than all it knows.
-Matrix2 MapBuilder::State::along_the_surest_way(int i, int j) const {
-  if (const std::optional<int> direct = m_.graph.route_between(i, j)) {
-    const Route& route = m_.graph.route(*direct);
-    return route.covariance / route.traversals;
-  }
-  Matrix2 sum = Matrix2::Zero();
-  const std::vector<int> way = trussmap::path(m_.graph, i, j, PathBy::uncertainty);
-  for (std::size_t k = 1; k < way.size(); ++k) {
-    const Route& route = m_.graph.route(*m_.graph.route_between(way[k - 1], way[k]));
-    sum += route.covariance / route.traversals;
-  }
-  return sum;
-}
-
-/// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map.
-double MapBuilder::State::squared_misfit(int i, int j, const Traversal& leg) {
-  const Vector2 misfit = leg.displacement - (at(j) - at(i));
-  const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
-  if (m_.gate.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
-  const Matrix2 of_map = options_.method == Method::gauss_markov
-                             ? mechanics_.flexibility_between(i, j)
-                             : along_the_surest_way(i, j);
-  return misfit.dot((leg.covariance + of_map).inverse() * misfit);
-}
-
-Arrival MapBuilder::State::travel_gated(const std::string& landmark, const MeasuredLeg& leg) {
-  m_.left_out.reserve(m_.left_out.size() + 1);
-  const int to = *m_.graph.find(landmark);
-  const double misfit =
-      std::min(squared_misfit(leg.from, to, leg.in_map), std::numeric_limits<double>::max());
-  ArrivalGate gate = m_.gate;
-  gate.remember(misfit);
-  Arrival arrival;
-  if (gate.lets_in(misfit)) {
-    arrival = take_in(landmark, leg);
-  } else {
-    arrival = left_out_at(to);
-    arrival.misfit = leg.in_map.displacement - (at(to) - at(leg.from));
-    m_.left_out.push_back(
-        {m_.graph.landmark(leg.from).name, landmark, leg.in_map, std::sqrt(misfit)});
-  }
-  m_.gate = std::move(gate);
-  try {
-    take_back_in(arrival);
-  } catch (const std::exception&) {
-    // The arrival is in; what could not come back stays out for now.
-  }
-  return arrival;
-}
-
-/// Order does not matter to least squares: what fits by now is taken in late. Beside an elastic
-/// map, whose corrections are to cost little, one is tried at a time.
-void MapBuilder::State::take_back_in(Arrival& arrival) {
-  const bool one_alone = options_.method != Method::gauss_markov;
-  const std::size_t count = m_.left_out.size();
-  const std::size_t first = one_alone && count > 0 ? idx(arrival.landmark) % count : 0;
-  std::size_t tried = 0;
-  for (std::size_t k = first; k < m_.left_out.size();) {
-    if (one_alone && tried++ > 0) return;
-    const LeftOutArrival one = m_.left_out[k];
-    MeasuredLeg late;
-    late.from = *m_.graph.find(one.from);
-    late.in_map = one.leg;
-    const bool this_one = arrival.kind == Arrival::Kind::left_out && k + 1 == m_.left_out.size();
-    if (this_one || !m_.gate.lets_in(squared_misfit(late.from, *m_.graph.find(one.to), one.leg))) {
-      ++k;
-      continue;
-    }
-    const Arrival done = take_in(one.to, late);
-    arrival.largest_move = std::max(arrival.largest_move, done.largest_move);
-    ++arrival.back;
-    m_.left_out.erase(m_.left_out.begin() + static_cast<std::ptrdiff_t>(k));
-  }
 }
 
 // ---------------------------------------- legs in the robot's own axes
 
 Arrival MapBuilder::State::arrive(const std::string& landmark, const Motion& motion,
                                   const LandmarkOffset& seen) {
+  static_cast<void>(standing());
+  if (!m_.carried_motion) return drive(landmark, motion, seen);
+  const std::optional<int> known = m_.graph.find(landmark);
+  const Motion whole = then(m_.carried_motion->motion, motion);
+  if (known == m_.here) return drive_back(whole, seen);
+  if (known && *known != m_.said && fits_from_said(*known, motion, seen)) {
+    return drive_from_said(landmark, motion, seen);
+  }
+  return drive(landmark, whole, seen);
+}
+
+Arrival MapBuilder::State::drive(const std::string& landmark, const Motion& motion,
+                                 const LandmarkOffset& seen) {
   const std::optional<int> known = other_landmark(landmark);
   const Chord chord = chord_of(m_.seen, motion, seen);
   const HeadingEstimate before = heading_for(known, chord);
   Arrival arrival = travel(landmark, reckoned(before, chord, m_.reading.has_value()));
+  m_.said = arrival.landmark;
+  if (arrival.kind == Arrival::Kind::left_out) {
+    m_.carried_motion = CarriedMotion{motion, seen, std::nullopt};
+    Matrix3& C = m_.carried_motion->motion.covariance;
+    C = 0.5 * (C + C.transpose()).eval();
+    return arrival;
+  }
   settle_frame();
   m_.heading = heading_after(known.has_value(), arrival.landmark, chord, before, seen);
   m_.earlier = EarlierChord{m_.here, chord.beta};
-  m_.here = m_.said = arrival.landmark;
+  m_.here = arrival.landmark;
   m_.seen = seen;
   m_.reading.reset();
+  m_.carried_motion.reset();
+  return arrival;
+}
+
+/// From where the map does not have it to where it still has it.
+Arrival MapBuilder::State::drive_back(const Motion& whole, const LandmarkOffset& seen) {
+  if (m_.heading) {
+    m_.heading->heading += whole.displacement.heading;
+    m_.heading->variance += whole.covariance(2, 2);
+  }
+  m_.said = m_.here;
+  m_.seen = seen;
+  m_.earlier.reset();
+  m_.reading.reset();
+  m_.carried_motion.reset();
+  return left_out_at(m_.here);
+}
+
+/// Two landmarks in a row that lie to each other as the map has them are the landmarks that they
+/// were said to be: then the way to the first of them was longer than it was taken for, and is
+/// taken in late.
+Arrival MapBuilder::State::drive_from_said(const std::string& landmark, const Motion& motion,
+                                           const LandmarkOffset& seen) {
+  const CarriedMotion there = *m_.carried_motion;
+  const std::string said = m_.graph.landmark(m_.said).name;
+  const Chord chord = chord_of(m_.seen, there.motion, there.seen);
+  MeasuredLeg late = reckoned(heading_for(m_.said, chord), chord, m_.reading.has_value());
+  late.from = m_.here;
+  const auto before = std::tuple(m_.here, m_.seen, m_.heading, m_.earlier, m_.reading);
+  m_.earlier = EarlierChord{m_.here, chord.beta};
+  m_.here = m_.said;
+  m_.seen = there.seen;
+  m_.heading.reset();  // as the map has the two landmarks, it fits
+  m_.reading = there.reading;
+  m_.carried_motion.reset();
+  Arrival arrival;
+  try {
+    arrival = drive(landmark, motion, seen);
+  } catch (...) {
+    m_.said = m_.here;
+    std::tie(m_.here, m_.seen, m_.heading, m_.earlier, m_.reading) = before;
+    m_.carried_motion = there;
+    throw;
+  }
+  take_late(said, late, arrival);
   return arrival;
 }
 
@@ -228,15 +205,18 @@ HeadingEstimate MapBuilder::State::heading_after(bool was_known, int to, const C
 }
 
 Arrival MapBuilder::State::observe(const std::string& landmark, const LandmarkOffset& seen) {
+  if (m_.carried_motion && m_.graph.find(landmark) == m_.here) return left_out_at(m_.here);
   const std::optional<int> known = other_landmark(landmark);
-  const Chord chord = chord_of(m_.seen, Motion{}, seen);
+  const Motion since = m_.carried_motion ? m_.carried_motion->motion : Motion{};
+  const Chord chord = chord_of(m_.seen, since, seen);
   const HeadingEstimate heading = heading_for(known, chord);
   const bool takes_reading = !m_.earlier && m_.reading.has_value();
   Arrival arrival = travel(landmark, reckoned(heading, chord, takes_reading));
+  if (arrival.kind == Arrival::Kind::left_out) return arrival;
   settle_frame();
   if (takes_reading) m_.reading.reset();
   if (!m_.heading) m_.heading = heading;
-  if (!m_.earlier) {  // the way from there to here
+  if (!m_.earlier && !m_.carried_motion) {  // the way from there to here
     m_.earlier = EarlierChord{
         arrival.landmark,
         {-(chord.alpha.value + std::numbers::pi), chord.alpha.variance, -chord.alpha.by_offset}};

@@ -31,8 +31,7 @@ struct CornerAverage {
   int i = -1;
   int j = -1;
   int k = -1;
-  Average angle;     ///< rad
-  double arm = 0.0;  ///< m, mean length of its two routes when it was last driven
+  Average angle;  ///< rad
 };
 
 /// Of law `variance`, not pooled: all traversals of a route, each with its own weight.
@@ -45,6 +44,13 @@ struct WeighedRoute {
 struct EarlierChord {
   int landmark = -1;  ///< where it began
   SharedAngle beta;
+};
+
+/// What the robot drove in its own axes since it stood on `here`, by legs whose ends were left out.
+struct CarriedMotion {
+  Motion motion;
+  LandmarkOffset seen;                     ///< of the landmark that it was said to be at
+  std::optional<HeadingEstimate> reading;  ///< of the compass, there
 };
 
 /// What gives the map its axes.
@@ -67,6 +73,7 @@ struct BuilderMemory {
   ArrivalGate gate;
   std::vector<LeftOutArrival> left_out;
   std::optional<Traversal> carried;  ///< driven since `here`, by legs whose ends were left out
+  std::optional<CarriedMotion> carried_motion;
   int here = -1;
   int said = -1;        ///< where the robot said it was: `here`, or an arrival that was left out
   LandmarkOffset seen;  ///< of `here`

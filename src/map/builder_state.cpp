@@ -168,6 +168,7 @@ void MapBuilder::State::start(const std::string& landmark, const LandmarkOffset&
   m_.here = m_.said = known.value_or(0);
   m_.chain.restart(m_.here);
   m_.carried.reset();
+  m_.carried_motion.reset();
   m_.seen = seen;
   m_.heading.reset();
   m_.earlier.reset();
@@ -193,7 +194,15 @@ void MapBuilder::State::compass(double reading, double sd) {
   if (!std::isfinite(reading) || !(sd > 0.0) || !std::isfinite(sd * sd)) {
     throw std::invalid_argument("a compass reading is finite, its standard deviation above 0");
   }
-  const HeadingEstimate read{reading, sd * sd};
+  HeadingEstimate read{reading, sd * sd};
+  if (m_.carried_motion) {
+    m_.carried_motion->reading = with_reading(m_.carried_motion->reading, read);
+    if (m_.frame != Frame::axes) return;
+    read.heading -= m_.carried_motion->motion.displacement.heading;
+    read.variance += m_.carried_motion->motion.covariance(2, 2);
+    m_.heading = with_reading(m_.heading, read);
+    return;
+  }
   if (m_.frame == Frame::first_heading && m_.heading) {
     turn_map(wrap_angle(reading - m_.heading->heading));
     m_.heading.reset();  // was relative to the first one
@@ -242,7 +251,9 @@ std::optional<PoseEstimate> MapBuilder::State::pose() const {
   estimate.covariance.topRightCorner<2, 1>() = variance * by_heading;
   estimate.covariance.bottomLeftCorner<1, 2>() = variance * by_heading.transpose();
   estimate.covariance(2, 2) = variance;
-  return estimate;
+  if (!m_.carried_motion) return estimate;
+  const Motion whole = then({estimate.pose, estimate.covariance}, m_.carried_motion->motion);
+  return PoseEstimate{whole.displacement, whole.covariance};
 }
 
 /// The graph's positions follow the truss's.

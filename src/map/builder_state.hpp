@@ -32,6 +32,9 @@ struct MeasuredLeg {
   bool by_compass = false;                 ///< the direction is
 };
 
+/// Nothing moves.
+[[nodiscard]] Arrival left_out_at(int landmark);
+
 class __attribute__((visibility("hidden"))) MapBuilder::State {
  public:
   State(const MapBuilderOptions& options, BuilderMemory memory);
@@ -94,8 +97,17 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   Arrival travel(const std::string& landmark, const MeasuredLeg& leg);
   Arrival travel_gated(const std::string& landmark, const MeasuredLeg& leg);
   [[nodiscard]] Matrix2 along_the_surest_way(int i, int j) const;
+  [[nodiscard]] Matrix2 known_of_route(int number) const;
+  [[nodiscard]] double angle_variance(int i, int j, int k) const;
+  [[nodiscard]] Matrix2 known_between(int i, int j);
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
   void take_back_in(Arrival& arrival);
+  void take_late(const std::string& landmark, const MeasuredLeg& leg, Arrival& arrival);
+  [[nodiscard]] bool fits_from_said(int to, const Motion& motion, const LandmarkOffset& seen) const;
+  Arrival drive(const std::string& landmark, const Motion& motion, const LandmarkOffset& seen);
+  Arrival drive_back(const Motion& whole, const LandmarkOffset& seen);
+  Arrival drive_from_said(const std::string& landmark, const Motion& motion,
+                          const LandmarkOffset& seen);
   Arrival take_in(const std::string& landmark, const MeasuredLeg& leg);
 
   [[nodiscard]] Step averaged(int to, bool is_new, const MeasuredLeg& leg) const;

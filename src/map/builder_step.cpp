@@ -11,6 +11,15 @@
 #include <Eigen/LU>
 
 namespace trussmap {
+namespace {
+
+/// L of corners, m, under the law 1/mean error. As long as the routes it would make a corner
+/// between long routes stiffer than it is sure: without a compass, on meshes of 1 to 10 m, 11 of
+/// 100 maps had then more than 1.5 times the error of least squares, with 1 m 4, with 1/variance 2;
+/// 0.1 m does as well.
+constexpr double kCornerArm = 1.0;
+
+}  // namespace
 
 Arrival MapBuilder::State::take_in(const std::string& landmark, const MeasuredLeg& leg) {
   const std::optional<int> known = m_.graph.find(landmark);
@@ -104,7 +113,7 @@ void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const
   if (!leg.corner || leg.corner_from == step.to) return;
   const bool forward = leg.corner_from < step.to;
   CornerAverage corner{
-      std::min(leg.corner_from, step.to), leg.from, std::max(leg.corner_from, step.to), {}, 0.0};
+      std::min(leg.corner_from, step.to), leg.from, std::max(leg.corner_from, step.to), {}};
   const auto known = corner_at_.find({corner.i, corner.j, corner.k});
   step.corner_place =
       known == corner_at_.end() ? static_cast<int>(m_.corners.size()) : known->second;
@@ -112,8 +121,6 @@ void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const
     corner = m_.corners[idx(known->second)];
     step.corner_element = corner_elements_[idx(known->second)];
   }
-  const Route& came_by = m_.graph.route(*m_.graph.route_between(leg.corner_from, leg.from));
-  corner.arm = 0.5 * (came_by.stretch + step.average.stretch);
   corner.angle.take_angle(forward ? leg.corner->value : -leg.corner->value, leg.corner->variance);
   step.corner = corner;
   if (step.reckoned->corner < 0) step.reckoned->corner = step.corner_place;
@@ -141,7 +148,7 @@ void MapBuilder::State::put_elements(Step& step) {
   const int j = step.average.target;
   if (step.corner) {
     const CornerAverage& one = *step.corner;
-    const double k = spring_stiffness(law(), one.angle.variance, one.angle.count, one.arm);
+    const double k = spring_stiffness(law(), one.angle.variance, one.angle.count, kCornerArm);
     put(step.corner_element, corner_element(one.i, one.j, one.k, k, one.angle.mean));
   }
   if (step.route < 0) return;

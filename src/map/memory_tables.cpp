@@ -14,6 +14,9 @@
 namespace trussmap {
 namespace {
 
+/// Of a covariance of (x, y, turn), in the order in which it is kept.
+constexpr std::array<std::pair<int, int>, 6> kUpper{
+    {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 constexpr std::array kMethods{Method::elastic, Method::elastic_printed, Method::gauss_markov};
 constexpr std::array kScopes{RefinementScope::Kind::automatic, RefinementScope::Kind::all,
                              RefinementScope::Kind::nearest, RefinementScope::Kind::estimated};
@@ -220,8 +223,6 @@ void Loading::load_corners() {
     one.j = landmark_at(row, 2, "a corner");
     one.k = landmark_at(row, 3, "a corner");
     one.angle = average_at(row, 4, 1, "a corner");
-    one.arm = finite(row, 7, "a corner");
-    if (!(one.arm > 0.0)) refuse("a corner without arms, expected a length above 0");
     if (one.i >= one.k || !memory_.graph.route_between(one.i, one.j) ||
         !memory_.graph.route_between(one.j, one.k)) {
       refuse("a corner between routes that are not there");
@@ -275,6 +276,7 @@ void Loading::load_gate() {
     one.to = memory_.graph.landmark(landmark_at(row, 2, "a leg")).name;
     one.leg = {vector_at(row, 3, "a leg"), matrix_at(row, 5, "a leg")};
     one.sds = finite(row, 8, "a leg");
+    one.own_axes = flag_at(row, 9, "a leg");
     memory_.left_out.push_back(one);
   });
 }
@@ -316,6 +318,20 @@ void Loading::take_state(const RowReader& row) {
     memory_.earlier = earlier;
   }
   if (!row.is_null(21)) memory_.reading = estimate(21, "a reading");
+  if (row.is_null(23)) return;
+  CarriedMotion carried;
+  carried.motion.displacement = {finite(row, 23, "a motion"), finite(row, 24, "a motion"),
+                                 finite(row, 25, "a motion")};
+  for (int k = 0; k < 6; ++k) {
+    const auto [r, c] = kUpper[idx(k)];
+    carried.motion.covariance(r, c) = carried.motion.covariance(c, r) =
+        finite(row, 26 + k, "a motion");
+  }
+  carried.seen.offset_robot = vector_at(row, 32, "an offset");
+  carried.seen.covariance_robot = symmetric_at(row, 34, "an offset");
+  if (!row.is_null(37)) carried.reading = estimate(37, "a reading");
+  if (memory_.here < 0 || memory_.said < 0) refuse("a motion from nowhere");
+  memory_.carried_motion = carried;
 }
 
 }  // namespace
@@ -370,7 +386,6 @@ void put_corner(RowWriter& row, const BuilderMemory& memory, int number) {
   const CornerAverage& one = memory.corners[idx(number)];
   row.bind(0, number).bind(1, one.i).bind(2, one.j).bind(3, one.k);
   put_average(row, 4, one.angle);
-  row.bind(7, one.arm);
 }
 
 void put_reckoned(RowWriter& row, const BuilderMemory& memory, int number) {
@@ -394,6 +409,7 @@ void put_left_out(RowWriter& row, const BuilderMemory& memory, int place) {
   const LeftOutArrival& one = memory.left_out[idx(place)];
   row.bind(0, place).bind(1, *memory.graph.find(one.from)).bind(2, *memory.graph.find(one.to));
   row.bind(3, one.leg.displacement).bind(5, one.leg.covariance).bind(8, one.sds);
+  row.bind(9, one.own_axes ? 1 : 0);
 }
 
 void put_state(RowWriter& row, const BuilderMemory& memory) {
@@ -410,6 +426,16 @@ void put_state(RowWriter& row, const BuilderMemory& memory) {
     row.bind(19, beta.by_offset);
   }
   if (memory.reading) row.bind(21, memory.reading->heading).bind(22, memory.reading->variance);
+  if (!memory.carried_motion) return;
+  const auto& [motion, seen, reading] = *memory.carried_motion;
+  const Pose& moved = motion.displacement;
+  row.bind(23, moved.x).bind(24, moved.y).bind(25, moved.heading);
+  for (int k = 0; k < 6; ++k) {
+    const auto [r, c] = kUpper[idx(k)];
+    row.bind(26 + k, motion.covariance(r, c));
+  }
+  row.bind(32, seen.offset_robot).bind(34, seen.covariance_robot);
+  if (reading) row.bind(37, reading->heading).bind(38, reading->variance);
 }
 
 }  // namespace trussmap

@@ -29,21 +29,22 @@ inline constexpr MemoryTable kRoutesTable{
     "routes",
     "number, source, target, traversals, stretch, orientation, dx, dy, c_xx, c_xy, c_yy, k_xx, "
     "k_xy, k_yy, wx, wy"};
-inline constexpr MemoryTable kCornersTable{"corners",
-                                           "number, i, j, k, angles, angle, variance, arm"};
+inline constexpr MemoryTable kCornersTable{"corners", "number, i, j, k, angles, angle, variance"};
 inline constexpr MemoryTable kReckonedTable{
     "reckoned",
     "number, route, lengths, length, length_variance, directions, direction, direction_variance, "
     "corner, traversals, stretch, orientation, dx, dy, c_xx, c_xy, c_yy"};
 inline constexpr MemoryTable kChainTable{"chain", "place, landmark"};
 inline constexpr MemoryTable kMisfitsTable{"misfits", "place, squared"};
-inline constexpr MemoryTable kLeftOutTable{"left_out",
-                                           "place, source, target, dx, dy, c_xx, c_xy, c_yy, sds"};
+inline constexpr MemoryTable kLeftOutTable{
+    "left_out", "place, source, target, dx, dy, c_xx, c_xy, c_yy, sds, own_axes"};
 inline constexpr MemoryTable kStateTable{
     "state",
     "here, said, carried_dx, carried_dy, carried_c_xx, carried_c_xy, carried_c_yy, frame, "
     "first_direction, ox, oy, o_xx, o_xy, o_yy, heading, heading_variance, earlier, beta, "
-    "beta_variance, beta_x, beta_y, reading, reading_variance"};
+    "beta_variance, beta_x, beta_y, reading, reading_variance, driven_x, driven_y, driven_turn, "
+    "driven_xx, driven_xy, driven_xt, driven_yy, driven_yt, driven_tt, said_x, said_y, said_xx, "
+    "said_xy, said_yy, said_reading, said_reading_variance"};
 
 /// Where the tables are read from, in the order in which they stand above.
 class MemoryTables {

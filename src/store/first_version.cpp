@@ -58,7 +58,7 @@ void upgrade_first_version(const Database& database, const std::function<void()>
                        WHERE a.number = r.source AND b.number = r.target;
     INSERT INTO chain SELECT * FROM first_chain;
     INSERT INTO misfits SELECT * FROM first_misfits;
-    INSERT INTO left_out SELECT * FROM first_left_out;
+    INSERT INTO left_out SELECT *, 0 FROM first_left_out;
     UPDATE state SET (here, said, carried_dx, carried_dy, carried_c_xx, carried_c_xy, carried_c_yy)
       = (SELECT here, said, carried_dx, carried_dy, carried_c_xx, carried_c_xy, carried_c_yy
          FROM first_state), frame = CASE WHEN (SELECT count(*) FROM routes) > 0 THEN 2 ELSE 0 END;

@@ -42,7 +42,7 @@ bool same(const ReckonedRoute& a, const ReckonedRoute& b) {
 }
 
 bool same_arrival(const LeftOutArrival& a, const LeftOutArrival& b) {
-  return a.from == b.from && a.to == b.to && a.sds == b.sds &&
+  return a.from == b.from && a.to == b.to && a.sds == b.sds && a.own_axes == b.own_axes &&
          a.leg.displacement == b.leg.displacement && a.leg.covariance == b.leg.covariance;
 }
 
@@ -68,20 +68,24 @@ void create_memory_tables(const Database& database) {
                           c_yy REAL NOT NULL);
     CREATE TABLE corners(number INTEGER PRIMARY KEY, i INTEGER NOT NULL, j INTEGER NOT NULL,
                          k INTEGER NOT NULL, angles INTEGER NOT NULL, angle REAL NOT NULL,
-                         variance REAL NOT NULL, arm REAL NOT NULL);
+                         variance REAL NOT NULL);
     CREATE TABLE chain(place INTEGER PRIMARY KEY, landmark INTEGER NOT NULL);
     CREATE TABLE misfits(place INTEGER PRIMARY KEY, squared REAL NOT NULL);
     CREATE TABLE left_out(place INTEGER PRIMARY KEY, source INTEGER NOT NULL,
                           target INTEGER NOT NULL, dx REAL NOT NULL, dy REAL NOT NULL,
                           c_xx REAL NOT NULL, c_xy REAL NOT NULL, c_yy REAL NOT NULL,
-                          sds REAL NOT NULL);
+                          sds REAL NOT NULL, own_axes INTEGER NOT NULL);
     CREATE TABLE state(one INTEGER PRIMARY KEY CHECK (one = 1), here INTEGER NOT NULL,
                        said INTEGER NOT NULL, carried_dx REAL, carried_dy REAL, carried_c_xx REAL,
                        carried_c_xy REAL, carried_c_yy REAL, frame INTEGER NOT NULL,
                        first_direction INTEGER NOT NULL, ox REAL NOT NULL, oy REAL NOT NULL,
                        o_xx REAL NOT NULL, o_xy REAL NOT NULL, o_yy REAL NOT NULL, heading REAL,
                        heading_variance REAL, earlier INTEGER, beta REAL, beta_variance REAL,
-                       beta_x REAL, beta_y REAL, reading REAL, reading_variance REAL);
+                       beta_x REAL, beta_y REAL, reading REAL, reading_variance REAL,
+                       driven_x REAL, driven_y REAL, driven_turn REAL, driven_xx REAL,
+                       driven_xy REAL, driven_xt REAL, driven_yy REAL, driven_yt REAL,
+                       driven_tt REAL, said_x REAL, said_y REAL, said_xx REAL, said_xy REAL,
+                       said_yy REAL, said_reading REAL, said_reading_variance REAL);
     INSERT INTO state(one, here, said, frame, first_direction, ox, oy, o_xx, o_xy, o_yy)
       VALUES (1, -1, -1, 0, -1, 0, 0, 0, 0, 0);
     CREATE VIEW map AS SELECT name AS landmark, x, y FROM landmarks ORDER BY number;
@@ -97,17 +101,20 @@ MemoryRows::MemoryRows(const Database& database)
       put_reckoned_(database,
                     "REPLACE INTO reckoned VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
                     "?)"),
-      put_corner_(database, "REPLACE INTO corners VALUES (?, ?, ?, ?, ?, ?, ?, ?)"),
+      put_corner_(database, "REPLACE INTO corners VALUES (?, ?, ?, ?, ?, ?, ?)"),
       put_link_(database, "REPLACE INTO chain VALUES (?, ?)"),
       cut_chain_(database, "DELETE FROM chain WHERE place >= ?"),
       put_misfit_(database, "REPLACE INTO misfits VALUES (?, ?)"),
-      put_left_out_(database, "INSERT INTO left_out VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+      put_left_out_(database, "INSERT INTO left_out VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
       put_state_(database,
                  "UPDATE state SET here = ?, said = ?, carried_dx = ?, carried_dy = ?, "
                  "carried_c_xx = ?, carried_c_xy = ?, carried_c_yy = ?, frame = ?, "
                  "first_direction = ?, ox = ?, oy = ?, o_xx = ?, o_xy = ?, o_yy = ?, heading = ?, "
                  "heading_variance = ?, earlier = ?, beta = ?, beta_variance = ?, beta_x = ?, "
-                 "beta_y = ?, reading = ?, reading_variance = ?") {}
+                 "beta_y = ?, reading = ?, reading_variance = ?, driven_x = ?, driven_y = ?, "
+                 "driven_turn = ?, driven_xx = ?, driven_xy = ?, driven_xt = ?, driven_yy = ?, "
+                 "driven_yt = ?, driven_tt = ?, said_x = ?, said_y = ?, said_xx = ?, said_xy = ?, "
+                 "said_yy = ?, said_reading = ?, said_reading_variance = ?") {}
 
 BuilderMemory MemoryRows::load(const MapBuilderOptions& options) {
   DatabaseTables tables(database_);

@@ -69,7 +69,8 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
   std::vector<Vector2> before(idx(truss.joints()));
   for (int round = 0; round < enough.rounds; ++round) {
     double then = 0.0;
-    if (linear_ && sparse_ < kMostSparse) {
+    const bool exact = linear_ && sound_;  // one step is enough
+    if (exact && sparse_ < kMostSparse) {
       evaluate_changes(truss);
     } else {
       then = evaluate(truss);
@@ -94,13 +95,13 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
       for (int joint = 1; joint < truss.joints(); ++joint) {
         truss.move(joint, before[idx(joint)] + share * u.segment<2>(unknown_[idx(joint)]));
       }
-      fallen = linear_ || truss.energy() <= then + kRounding * then;
+      fallen = exact || truss.energy() <= then + kRounding * then;
     }
     if (!fallen) {
       for (int joint = 1; joint < truss.joints(); ++joint) truss.move(joint, before[idx(joint)]);
       return;
     }
-    if (linear_ || gain <= enough.gain * then) break;
+    if (exact || gain <= enough.gain * then) break;
   }
   unrest_.clear();
 }
@@ -144,6 +145,7 @@ void Equilibrium::evaluate_changes(const ElasticTruss& truss) {
 std::vector<Vector2> Equilibrium::pull(const ElasticTruss& truss, int i, int j,
                                        const Vector2& force) {
   follow(truss);
+  if (!sound_) throw NotPositiveDefinite(0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(f_.size());
   if (!held(j)) u.segment<2>(unknown_[idx(j)]) += force;
   if (!held(i)) u.segment<2>(unknown_[idx(i)]) -= force;
@@ -217,7 +219,8 @@ void Equilibrium::follow(const ElasticTruss& truss) {
       change_term(truss, number, term_of(truss, number));
     }
     changed_.clear();
-    if (!is_sound()) factorise(truss);
+    sound_ = is_sound();
+    if (!sound_) factorise(truss);
   } catch (const NotPositiveDefinite&) {
     factorise(truss);
   } catch (...) {
@@ -406,7 +409,7 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
   cholesky_.analyse(system.matrix());
   cholesky_.factorise(system.matrix());
   diagonal_ = system.diagonal();
-  if (!is_sound()) throw NotPositiveDefinite(0);
+  sound_ = is_sound();
   unknown_.assign(idx(places), -1);
   for (int joint = 1; joint < places; ++joint) unknown_[idx(joint)] = system.offset(joint);
   f_ = Eigen::VectorXd::Zero(system.unknowns());

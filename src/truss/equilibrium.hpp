@@ -38,7 +38,8 @@ class Equilibrium {
   /// back.
   void relax(ElasticTruss& truss, const Enough& enough = {});
 
-  /// Displacements of all joints under `force` on j and its opposite on i. Throws likewise.
+  /// Displacements of all joints under `force` on j and its opposite on i. Throws likewise, and
+  /// where rounding has eaten the digits of the answer.
   [[nodiscard]] std::vector<Vector2> pull(const ElasticTruss& truss, int i, int j,
                                           const Vector2& force);
 
@@ -76,6 +77,7 @@ class Equilibrium {
   int joints_ = 0;                        ///< in the factor
   bool factored_ = false;
   bool linear_ = true;  ///< bars alone
+  bool sound_ = true;   ///< as the factor was last looked at
   Eigen::VectorXd f_;
   Eigen::VectorXd diagonal_;  ///< of K as the factor has it
   SparseCholesky cholesky_{Ordering::fixed};

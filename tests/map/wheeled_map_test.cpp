@@ -12,8 +12,10 @@
 #include "trussmap/survey_comparison.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -162,6 +164,107 @@ TEST(WheeledMap, EveryScaleIsNearlyAsGoodAsAll) {
   }
   EXPECT_LT(scales, 1.3 * all);
   EXPECT_LT(scales, 0.7 * nearest);
+}
+
+/// Tours on which now and then a landmark is taken for another that the map has.
+struct Mistaken {
+  double error = 0.0;  ///< m, after the last tour
+  int wrong = 0;
+  int left_out = 0;  ///< at last
+};
+
+Mistaken drive_mistaken(std::uint64_t seed, double share, double gate, bool compass) {
+  const Mesh mesh = even_mesh({5, 5}, 5.0);
+  std::mt19937_64 walk = random_stream(seed, Stream::walk);
+  std::mt19937_64 mistakes(seed);
+  const Tours tours = make_tours(mesh, WalkKind::euler, 3, walk);
+  Robot robot(mesh, 0.003, seed);
+  MapBuilder builder({.gate = gate});
+  builder.start(landmark_name(mesh, 0));
+  Mistaken result;
+  for (std::size_t k = 0; k + 1 < tours.walk.size(); ++k) {
+    if (compass) builder.compass(robot.heading(), 0.03);
+    const Motion motion = robot.drive(tours.walk[k], tours.walk[k + 1], 0.003);
+    std::string name = landmark_name(mesh, tours.walk[k + 1]);
+    if (std::uniform_real_distribution<>()(mistakes) < share) {
+      const int other = std::uniform_int_distribution<>(0, builder.landmarks() - 1)(mistakes);
+      const std::string& taken_for = builder.map().landmark(other).name;
+      if (other != builder.here() && taken_for != name) {
+        name = taken_for;
+        ++result.wrong;
+      }
+    }
+    try {
+      builder.arrive(name, motion);
+    } catch (const std::invalid_argument&) {  // a mistake that fitted has brought it there
+      builder.start(name);
+    }
+  }
+  result.error = *map_errors(builder.map(), truth_of(mesh), Laid::aligned).position;
+  result.left_out = static_cast<int>(builder.left_out().size());
+  return result;
+}
+
+TEST(WheeledMap, LandmarksTakenForOthersStayOut) {
+  for (const bool compass : {false, true}) {
+    double right = 0.0;
+    double gated = 0.0;
+    double open = 0.0;
+    int wrong = 0;
+    int left_out = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const Mistaken none = drive_mistaken(seed, 0.0, kMapGate, compass);
+      EXPECT_EQ(none.left_out, 0) << seed;
+      right += none.error;
+      const Mistaken some = drive_mistaken(seed, 0.03, kMapGate, compass);
+      gated += some.error;
+      wrong += some.wrong;
+      left_out += some.left_out;
+      open += drive_mistaken(seed, 0.03, std::numeric_limits<double>::infinity(), compass).error;
+    }
+    ASSERT_GT(wrong, 15);
+    EXPECT_LT(gated, 2.0 * right) << compass;
+    EXPECT_LT(gated, 0.2 * open) << compass;
+    EXPECT_NEAR(left_out, wrong, 3) << compass;
+  }
+}
+
+/// Somebody has pushed the robot: the way is wrong, the landmarks are right.
+TEST(WheeledMap, AWayThatWasMisjudgedComesInWithTheNextLandmark) {
+  const Matrix3 C = Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal();
+  const Motion ahead{{5.0, 0.0, 0.5 * std::numbers::pi}, C};  // a square, counter-clockwise
+  const Motion misjudged{{3.0, 1.5, 1.3}, C};
+  const Motion spoilt{{5.0, 0.0, 0.0}, Matrix3::Constant(std::nan(""))};
+  MapBuilder map;
+  map.start("0");
+  for (int leg = 1; leg <= 8; ++leg) map.arrive(std::to_string(leg % 4), ahead);
+  const Vector2 before = map.position(2);
+  EXPECT_EQ(map.arrive("1", misjudged).kind, Arrival::Kind::left_out);
+  EXPECT_EQ(map.here(), 0);
+  ASSERT_TRUE(map.pose());
+  EXPECT_NEAR((map.pose()->pose.position() - Vector2(3.0, 1.5)).norm(), 0.0, 0.05);
+  EXPECT_EQ(map.position(2), before);
+  EXPECT_THROW(map.arrive("2", spoilt), std::invalid_argument);
+  EXPECT_EQ(map.here(), 0);
+  const Arrival arrival = map.arrive("2", ahead);
+  EXPECT_EQ(arrival.kind, Arrival::Kind::refinement);
+  EXPECT_EQ(arrival.back, 1);
+  EXPECT_TRUE(map.left_out().empty());
+  EXPECT_EQ(map.here(), 2);
+  EXPECT_EQ(map.map().route(*map.map().route_between(0, 1)).traversals, 3);
+}
+
+TEST(WheeledMap, BackWhereTheMapHasItARobotGoesOn) {
+  const Matrix3 C = Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal();
+  const Motion ahead{{5.0, 0.0, 0.5 * std::numbers::pi}, C};
+  MapBuilder map;
+  map.start("0");
+  for (int leg = 1; leg <= 8; ++leg) map.arrive(std::to_string(leg % 4), ahead);
+  EXPECT_EQ(map.arrive("2", ahead).kind, Arrival::Kind::left_out);  // it was 1
+  EXPECT_EQ(map.arrive("0", then(then(ahead, ahead), ahead)).kind, Arrival::Kind::left_out);
+  EXPECT_EQ(map.here(), 0);
+  EXPECT_NEAR(wrap_angle(map.pose()->pose.heading), 0.0, 0.05);
+  EXPECT_EQ(map.arrive("1", ahead).kind, Arrival::Kind::refinement);
 }
 
 /// However often a compass reads, the map is right in its axes, and the better for more readings.
