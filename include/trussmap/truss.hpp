@@ -15,7 +15,8 @@
 // carries the force B (u_j - u_i) at joint j and the opposite at i.
 //
 // Strain energy of the deformation: 1/2 sum (u_j - u_i)' B (u_j - u_i) = 1/2 u' K u.
-// Cost: one sparse Cholesky factorisation (two unknowns per free joint).
+// Cost: one sparse Cholesky factorisation (two unknowns per free joint), by CHOLMOD; where it takes
+// 200 multiplications per joint or more by our frontal kernel, which is 1.3 times as fast there.
 //
 // How stiff a bar is, where it stands for something measured, is at the end.
 #pragma once

@@ -10,7 +10,7 @@
 
 namespace trussmap {
 
-std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs) {
+Elimination plan_elimination(int nodes, const std::vector<NodePair>& pairs) {
   if (nodes == 0) return {};
   std::vector<int> place(idx(nodes));
   for (int k = 0; k < nodes; ++k) place[idx(k)] = k;
@@ -29,7 +29,11 @@ std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs
   std::fill_n(lower.valuePtr(), at, 0.0);
   SparseCholesky cholesky(Ordering::amd);
   cholesky.analyse(lower);
-  return cholesky.order();
+  return {cholesky.order(), cholesky.multiplications()};
+}
+
+std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs) {
+  return plan_elimination(nodes, pairs).order;
 }
 
 BlockSystem::BlockSystem(const std::vector<int>& sizes, const std::vector<NodePair>& pairs,

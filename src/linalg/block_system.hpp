@@ -23,10 +23,16 @@
 
 namespace trussmap {
 
-/// Nodes in an order of elimination with little fill (approximate minimum degree); held ones too.
+/// All nodes, held ones too, in an order with little fill, and what it costs.
+struct Elimination {
+  std::vector<int> order;
+  double multiplications = 0.0;  ///< of a factorisation with one unknown per node
+};
+/// Approximate minimum degree (CHOLMOD's analysis).
+[[nodiscard]] Elimination plan_elimination(int nodes, const std::vector<NodePair>& pairs);
 [[nodiscard]] std::vector<int> elimination_order(int nodes, const std::vector<NodePair>& pairs);
 
-/// Who factorises: the library's own kernel, or CHOLMOD, against which it is checked.
+/// Who factorises: the library's own kernel, or CHOLMOD.
 enum class Kernel { frontal, cholmod };
 
 class BlockSystem {

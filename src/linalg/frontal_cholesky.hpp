@@ -9,8 +9,8 @@
 //           [F21  F22]   U is added to the parent's front, row by row
 //
 // Everything is dense algebra on fronts; sparse indices are met only where U is added to the
-// parent. Fast where fronts are many and small, as they are in maps; SparseCholesky (CHOLMOD) is
-// what it is checked against.
+// parent. Faster than CHOLMOD (SparseCholesky, what it is checked against) in maps of some size
+// (bench/README.md).
 //
 // The inverse where L has entries comes down the tree, from parents to children:
 //   Z_21 = -Z_22 L21 L11^-1,   Z_11 = L11^-T L11^-1 - (L21 L11^-1)' Z_21

@@ -201,6 +201,10 @@ std::vector<int> SparseCholesky::order() const {
   return {permutation, permutation + cholmod_->factor->n};
 }
 
+double SparseCholesky::multiplications() const {
+  return cholmod_->common.fl;
+}
+
 void SparseCholesky::update(const SparseMatrix& w) {
   change(true, w);
 }

@@ -66,6 +66,9 @@ class SparseCholesky {
   /// The fill-reducing order of the structure analysed: place k of the factor is column [k] of A.
   [[nodiscard]] std::vector<int> order() const;
 
+  /// Multiplications that a factorisation of that structure takes.
+  [[nodiscard]] double multiplications() const;
+
   /// Makes the factor that of A + W W' (n x k, few columns). The factor becomes simplicial LDL'.
   void update(const SparseMatrix& w);
 

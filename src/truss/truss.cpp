@@ -13,6 +13,12 @@
 namespace trussmap {
 namespace {
 
+// From so many multiplications per joint on our frontal kernel is at least 1.3 times as fast as
+// CHOLMOD, below it is not, and of few joints CHOLMOD is the faster one. A square grid has as many
+// from 900 joints on, a town's streets from 80 000 (bench/truss_bench.cpp, figures in
+// bench/README.md).
+constexpr double kFrontalPays = 200.0;
+
 void check_joint(int joint, int joints) {
   if (joint < 0 || joint >= joints) {
     throw std::invalid_argument("joint " + std::to_string(joint) + " is not among the truss's " +
@@ -100,7 +106,9 @@ Deflection solve_truss(int joints, const std::vector<Bar>& bars,
   const std::vector<NodePair> ends = ends_of(bars);
   require_supports(joints, ends, supports);
 
-  TrussSystem K(held, ends, elimination_order(joints, ends));
+  const Elimination plan = plan_elimination(joints, ends);
+  const bool large = plan.multiplications >= kFrontalPays * joints;
+  TrussSystem K(held, ends, plan.order, large ? Kernel::frontal : Kernel::cholmod);
   std::vector<Vector2> on_free = forces;
   for (std::size_t k = 0; k < bars.size(); ++k) {
     const Bar& bar = bars[k];
