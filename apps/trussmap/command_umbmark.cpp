@@ -247,10 +247,12 @@ void setup_umbmark(const Command& app) {
       .check(one_of({"exact", "formulas"}))
       .capture_default_str();
   command
-      .add_option("--straight", options->straight,
-                  "Straight runs beside a tape, in force what was in the first round: length "
-                  "measured and length by the odometry [m], several separated by commas")
-      .type_name("MEASURED:REPORTED");
+      .add_option(
+          "--straight", options->straight,
+          "Straight runs beside a tape with the settings of the first round, MEASURED:REPORTED: "
+          "length by the tape and by the odometry [m], 10.031:10 for instance, several "
+          "separated by commas")
+      .type_name("LENGTHS");
   command
       .add_option("--alone", options->alone,
                   "Say what this path (as of noise --path), driven alone, would have hidden of "
