@@ -168,9 +168,10 @@ void run_calibrate(const CalibrateOptions& options) {
 
 void setup_calibrate(const Command& app) {
   auto options = std::make_shared<CalibrateOptions>();
-  const Command command = app.add_subcommand(
-      "calibrate",
-      "Calibrate wheels, wheelbase and wheel noise from recordings with truth or survey");
+  const Command command = app.add_subcommand("calibrate",
+                                             "Calibrate wheels, wheelbase and wheel noise from "
+                                             "recordings with truth, a survey, or a second "
+                                             "odometer's motions (loops)");
   command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
       .required()
       .type_name("DIR");

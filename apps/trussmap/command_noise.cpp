@@ -16,10 +16,13 @@
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,6 +36,7 @@ struct NoiseOptions {
   std::string file;
   std::string path = "10,-10";
   std::vector<double> sensor_sd;  // m, m, rad
+  std::vector<double> k;          // m^1/2
   bool subtract_mean = false;
   TapeOptions tape;
 };
@@ -63,13 +67,43 @@ EndErrors simulated_errors(const NoiseOptions& options, const NoiseExperiment& e
   return errors;
 }
 
+/// The ends as measured; what the measurement's own noise is goes into the experiment.
+EndErrors measured_errors(const NoiseOptions& options, NoiseExperiment& experiment) {
+  const double longest = largest_end_error(experiment.path, experiment.wheelbase);
+  const std::optional<WallSensors> walls = wall_sensors(options.tape);
+  if (!walls) return read_end_errors(options.file, longest);
+  const bool states_sd =
+      std::any_of(walls->begin(), walls->end(), [](const WallSensor& one) { return one.sd > 0.0; });
+  if (states_sd && !options.sensor_sd.empty()) {
+    throw UsageError("--sensor-sd is given, and " + options.tape.wall_sensors +
+                     " has the column sd, expected one of them");
+  }
+  MeasuredEnds ends = read_wall_end_errors(options.file, *walls, longest);
+  experiment.sensor_covariance = ends.covariance;
+  return std::move(ends.errors);
+}
+
 NoiseAnalysis analyse(const NoiseOptions& options, const Model& model) {
-  const NoiseExperiment experiment = make_experiment(options, model);
-  return analyse_wheel_noise(
-      options.tape.simulate
-          ? simulated_errors(options, experiment)
-          : read_end_errors(options.file, largest_end_error(experiment.path, experiment.wheelbase)),
-      experiment);
+  NoiseExperiment experiment = make_experiment(options, model);
+  EndErrors errors = options.tape.simulate ? simulated_errors(options, experiment)
+                                           : measured_errors(options, experiment);
+  std::optional<Vector2> stated;
+  if (!options.k.empty()) stated = Vector2(options.k[0], options.k[1]);
+  return analyse_wheel_noise(std::move(errors), experiment, stated);
+}
+
+ordered_json stated_json(const StatedNoise& stated) {
+  ordered_json within = ordered_json::array();
+  for (const SigmaCount& count : stated.counts) {
+    within.push_back({{"coordinates", count.coordinates},
+                      {"runs", count.runs},
+                      {"inside_1_2_3_sigma", count.inside},
+                      {"expected_1_2_3_sigma", count.expected}});
+  }
+  return {{"k_left", stated.left},
+          {"k_right", stated.right},
+          {"p_value", stated.p_value},
+          {"within", within}};
 }
 
 ordered_json constants_json(const NoiseEstimate& e) {
@@ -111,6 +145,7 @@ ordered_json json(const NoiseAnalysis& result, const NoiseOptions& options) {
                 {"shape_p_value", number_or_null(result.fit.shape_p_value)},
                 {"ellipses", ellipses}}},
               {"warnings", result.doubts}});
+  if (result.stated) out["stated"] = stated_json(*result.stated);
   return out;
 }
 
@@ -128,11 +163,12 @@ void run_noise(const NoiseOptions& options) {
   }
   if (!options.tape.page.plots.empty()) {
     files.add_plot(options.tape.page.plots, "noise.svg",
-                   noise_picture(result.errors, result.estimate));
+                   noise_picture(result.errors, result.estimate, result.stated));
   }
   if (!options.tape.page.html.empty()) {
-    const NoiseCalibration shown{result.errors, result.estimate, result.fit,
-                                 path_length(result.experiment.path), result.doubts};
+    const NoiseCalibration shown{result.errors, result.estimate,
+                                 result.fit,    path_length(result.experiment.path),
+                                 result.doubts, result.stated};
     add_page(files,
              noise_page(shown, (options.tape.simulate ? "a simulated robot" : options.file) +
                                    ", path " + options.path),
@@ -153,7 +189,8 @@ constexpr const char* kFooter =
     "PATH: segments in the order driven, separated by commas. 10 is a straight drive of 10 m, -10 "
     "one\n"
     "backwards, a90 a turn on the spot by 90 degrees counter-clockwise, 3@45 an arc of 3 m that\n"
-    "turns by 45 degrees. Quote it: --path \"10,-10\".\n\n"
+    "turns by 45 degrees, eight@1 a figure-eight of two circles of 1 m radius. Quote it:\n"
+    "--path \"10,-10\".\n\n"
     "The variance of a wheel's travel is k^2 times the travel. Correct systematic errors first\n"
     "(umbmark), or leave them out with --subtract-mean.";
 
@@ -178,10 +215,18 @@ void setup_noise(const Command& app) {
       .expected(3)
       .check(zero_or_more())
       .type_name("X,Y,HEADING");
+  command
+      .add_option("--k", options->k,
+                  "Judge this k of the wheels [m^1/2] as well: how many runs end within 1, 2 and 3 "
+                  "standard deviations of what it predicts, its ellipses in the charts")
+      .delimiter(',')
+      .expected(2)
+      .check(above_zero())
+      .type_name("LEFT,RIGHT");
   command.add_flag("--subtract-mean", options->subtract_mean,
                    "Take the mean of the runs as a systematic error, not as noise");
   add_tape_options(command, options->tape);
-  command.footer(kFooter);
+  command.footer(std::string(kFooter) + kWallHelp);
   command.callback([options, command] {
     check_source(command, !options->file.empty());
     run_noise(*options);

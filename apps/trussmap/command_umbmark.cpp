@@ -14,8 +14,12 @@
 #include "trussmap/umbmark.hpp"
 #include "umbmark_output.hpp"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -29,7 +33,10 @@ struct UmbmarkOptions {
   std::vector<std::string> files;
   double side = 4.0;  // m
   std::string solution = "exact";
+  std::string straight;
+  std::vector<std::string> alone;
   int rounds = 1;
+  std::optional<double> true_e_s;
   TapeOptions tape;
 };
 
@@ -39,15 +46,77 @@ SquareMethod method_of(const UmbmarkOptions& options) {
 
 SquareRuns simulated_runs(const UmbmarkOptions& options, const TapeRobot& robot,
                           std::mt19937_64& random) {
+  // Without scatter they would have no standard errors.
+  const TapeOptions& tape = options.tape;
+  const bool measures_headings =
+      tape.scatter_heading > 0.0 || tape.true_k_left > 0.0 || tape.true_k_right > 0.0;
   SquareRuns runs;
   for (const auto& [sense, sample] :
        {std::pair(Direction::cw, &runs.cw), std::pair(Direction::ccw, &runs.ccw)}) {
+    auto& headings = sense == Direction::cw ? runs.cw_headings : runs.ccw_headings;
     for (const Pose& end :
          drive_often(robot, square_path(options.side, sense), options.tape.runs, random)) {
       sample->push_back(end.position());
+      if (measures_headings) headings.push_back(end.heading);
     }
   }
   return runs;
+}
+
+TapeRobot robot_of(const UmbmarkOptions& options, double wheelbase) {
+  TapeRobot robot = simulated_robot(options.tape, wheelbase);
+  robot.left_share *= options.true_e_s.value_or(1.0);
+  robot.right_share *= options.true_e_s.value_or(1.0);
+  return robot;
+}
+
+/// Three straight runs of 10 m, taped.
+std::vector<StraightRun> simulated_straight(const TapeRobot& robot, std::uint64_t seed) {
+  constexpr double kLength = 10.0;  // m
+  constexpr int kRuns = 3;
+  std::mt19937_64 random = random_stream(seed, Stream::path);
+  std::vector<StraightRun> runs;
+  for (const Pose& end : drive_often(robot, {{kLength, 0.0}}, kRuns, random)) {
+    runs.push_back({std::hypot(kLength + end.x, end.y), kLength});
+  }
+  return runs;
+}
+
+double length_of(const std::string& text, const std::string& option) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  if (read.ec != std::errc{} || read.ptr != end || !std::isfinite(value) || !(value > 0.0)) {
+    throw UsageError("--straight " + option + ": \"" + text +
+                     "\" is no length, expected MEASURED:REPORTED in metres, 10.032:10 for "
+                     "instance, several separated by commas");
+  }
+  return value;
+}
+
+std::vector<StraightRun> straight_runs(const std::string& text) {
+  constexpr double kFarOff = 1.5;  // no wheel is that much larger than believed
+  std::vector<StraightRun> runs;
+  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::string one = text.substr(begin, comma - begin);
+    const std::size_t colon = std::min(one.find(':'), one.size());
+    const StraightRun run{length_of(one.substr(0, colon), text),
+                          length_of(one.substr(std::min(colon + 1, one.size())), text)};
+    if (run.measured > kFarOff * run.reported || run.reported > kFarOff * run.measured) {
+      throw UsageError("--straight " + one +
+                       ": the lengths differ by half and more, expected metres for both");
+    }
+    runs.push_back(run);
+    begin = comma + 1;
+  }
+  return runs;
+}
+
+SquareRuns runs_of(const UmbmarkOptions& options, const std::optional<WallSensors>& walls,
+                   const std::string& file) {
+  const double longest = path_length(square_path(options.side, {}));
+  return walls ? read_square_wall_runs(file, *walls, longest) : read_square_runs(file, longest);
 }
 
 std::vector<SquareRound> all_rounds(const UmbmarkOptions& options, const Model& model) {
@@ -60,22 +129,43 @@ std::vector<SquareRound> all_rounds(const UmbmarkOptions& options, const Model& 
   const double wheelbase = model.robot.wheelbase;
   const SquareMethod method = method_of(options);
   if (!options.tape.simulate) {
-    const double longest = path_length(square_path(options.side, {}));
+    const std::optional<WallSensors> walls = wall_sensors(options.tape);
     return square_rounds(
         options.files.size(), options.side, wheelbase, in_force, method,
         [&](std::size_t round, const SquareSetup& /*setup*/, const GeometryErrors& /*in_force*/) {
-          return read_square_runs(options.files[round], longest);
-        });
+          return runs_of(options, walls, options.files[round]);
+        },
+        straight_runs(options.straight));
+  }
+  const auto programmed = [&](const GeometryErrors& corrected, double believed) {
+    return reprogrammed(robot_of(options, wheelbase), corrected.left_factor(),
+                        corrected.right_factor(), believed);
+  };
+  std::vector<StraightRun> straight;
+  if (options.true_e_s) {
+    straight = simulated_straight(programmed(in_force, wheelbase * in_force.wheelbase_ratio),
+                                  options.tape.seed);
   }
   std::mt19937_64 random = random_stream(options.tape.seed, Stream::wheels);
   return square_rounds(
       static_cast<std::size_t>(options.rounds), options.side, wheelbase, in_force, method,
       [&](std::size_t /*round*/, const SquareSetup& setup, const GeometryErrors& corrected) {
-        const TapeRobot robot =
-            reprogrammed(simulated_robot(options.tape, wheelbase), corrected.left_factor(),
-                         corrected.right_factor(), setup.wheelbase);
-        return simulated_runs(options, robot, random);
-      });
+        return simulated_runs(options, programmed(corrected, setup.wheelbase), random);
+      },
+      straight);
+}
+
+/// By the robot as the last round found it.
+std::vector<PathAlone> paths_alone(const UmbmarkOptions& options, const SquareRound& last) {
+  std::vector<PathAlone> paths;
+  for (const std::string& text : options.alone) {
+    try {
+      paths.push_back({text, tune_by_path(last.exact.errors(), last.setup, parse_path(text))});
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  }
+  return paths;
 }
 
 Page page_of(const std::vector<SquareRound>& rounds, const UmbmarkOptions& options) {
@@ -96,13 +186,15 @@ fs::path round_file(const fs::path& first, std::size_t round) {
 void run_umbmark(const UmbmarkOptions& options) {
   Model model = starting_model(options.tape);
   const std::vector<SquareRound> rounds = all_rounds(options, model);
+  const std::vector<PathAlone> alone = paths_alone(options, rounds.back());
   Files files;
   if (!options.tape.out.empty()) {
     set_geometry_errors(model, corrections_after(rounds.back(), method_of(options)).errors);
     files.emplace_back(options.tape.out, format_model(model));
   }
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json, umbmark_json(rounds, method_of(options)).dump(2) + "\n");
+    files.emplace_back(options.tape.json,
+                       umbmark_json(rounds, method_of(options), alone).dump(2) + "\n");
   }
   if (!options.tape.page.plots.empty()) {
     std::vector<SquareRuns> runs;
@@ -117,7 +209,8 @@ void run_umbmark(const UmbmarkOptions& options) {
     files.emplace_back(round_file(options.tape.write, k), format_square_runs(rounds[k].runs));
   }
   files.write();
-  fmt::print("{}", square_text(rounds, method_of(options), style_of(stdout)));
+  fmt::print("{}{}", square_text(rounds, method_of(options), style_of(stdout)),
+             paths_alone_text(alone, style_of(stdout)));
 }
 
 constexpr const char* kFooter =
@@ -125,11 +218,14 @@ constexpr const char* kFooter =
     "ccw (turning left); x and y [m] are where the robot was measured to stand after the square\n"
     "minus where its odometry had it, x along the first leg and y to its left. Two runs or more "
     "in\n"
-    "each direction, five are usual.\n\n"
+    "each direction, five are usual. A column heading (counter-clockwise, rad) is optional: it\n"
+    "finds the same errors another way, and a warning says where both contradict each other.\n\n"
     "Several rounds: give their files in the order driven. Each was driven with the corrections\n"
     "that all files before it call for; what to use from now on is their product. --model gives\n"
-    "corrections that were in force from the start (its effects wheelbase and wheel diameter\n"
-    "ratio).";
+    "corrections that were in force from the start (its effects wheelbase, wheel diameter ratio\n"
+    "and wheel scale).\n\n"
+    "A closed path closes at any size of the wheels, so that squares say nothing of their mean:\n"
+    "--straight does. Wheelbase and travel factors then hold it as well.";
 
 }  // namespace
 
@@ -150,15 +246,37 @@ void setup_umbmark(const Command& app) {
                   "papers', for small angles)")
       .check(one_of({"exact", "formulas"}))
       .capture_default_str();
+  command
+      .add_option(
+          "--straight", options->straight,
+          "Straight runs beside a tape with the settings of the first round, MEASURED:REPORTED: "
+          "length by the tape and by the odometry [m], 10.031:10 for instance, several "
+          "separated by commas")
+      .type_name("LENGTHS");
+  command
+      .add_option("--alone", options->alone,
+                  "Say what this path (as of noise --path), driven alone, would have hidden of "
+                  "this robot: \"eight@1\" for instance, a figure-eight. Repeat it for more")
+      .one_value_each()
+      .type_name("PATH");
   add_tape_options(command, options->tape);
+  command
+      .add_option("--true-E-s", options->true_e_s,
+                  "Its true mean wheel size over the believed one; it then drives three straight "
+                  "runs of 10 m besides")
+      .check(above_zero())
+      .group("Rehearsal with a simulated robot");
   command
       .add_option("--rounds", options->rounds, "Rounds, each with the corrections of those before")
       .check(whole_number(1))
       .capture_default_str()
       .group("Rehearsal with a simulated robot");
-  command.footer(kFooter);
+  command.footer(std::string(kFooter) + kWallHelp);
   command.callback([options, command] {
     check_source(command, !options->files.empty());
+    if (options->tape.simulate && !options->straight.empty()) {
+      throw UsageError("--straight is given with --simulate, expected --true-E-s");
+    }
     run_umbmark(*options);
   });
 }

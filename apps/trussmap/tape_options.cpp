@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "option_checks.hpp"
 #include "trussmap/model_file.hpp"
+#include "trussmap/recording_files.hpp"
 
 #include <charconv>
 
@@ -16,6 +17,10 @@ void add_tape_options(const Command& command, TapeOptions& options) {
                   "Distance of the wheels that the robot calculates with [m]; may be left out with "
                   "--model, which has it, and with --simulate (0.34 then)")
       .check(above_zero());
+  command
+      .add_option("--wall-sensors", options.wall_sensors,
+                  "RUNS are distances to two walls, by three sensors: where these are (CSV)")
+      .type_name("FILE");
   command.add_option("--model", options.model, "Model to start from (TOML)").type_name("FILE");
   command.add_option("--out", options.out, "Write the model with what was found (TOML)")
       .type_name("FILE");
@@ -56,6 +61,9 @@ void check_source(const Command& command, bool has_files) {
     throw UsageError("both RUNS.csv and --simulate are given, expected one of them");
   }
   if (!simulate && !has_files) throw UsageError("no runs, expected RUNS.csv or --simulate");
+  if (simulate && command.count("--wall-sensors") > 0) {
+    throw UsageError("--wall-sensors is given with --simulate, expected it with RUNS.csv");
+  }
   if (simulate) return;
   const std::string given = command.given_of_group("Rehearsal");
   if (!given.empty()) {
@@ -77,6 +85,11 @@ Model starting_model(const TapeOptions& options) {
     throw UsageError("the wheelbase is missing, expected --wheelbase METRES or --model FILE");
   }
   return model;
+}
+
+std::optional<WallSensors> wall_sensors(const TapeOptions& options) {
+  if (options.wall_sensors.empty()) return std::nullopt;
+  return read_wall_sensors(options.wall_sensors);
 }
 
 TapeRobot simulated_robot(const TapeOptions& options, double wheelbase) {

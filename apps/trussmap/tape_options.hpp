@@ -9,6 +9,7 @@
 #include "page_runtime.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/simulation.hpp"
+#include "trussmap/wall_distances.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -17,9 +18,22 @@
 
 namespace trussmap::app {
 
+/// How ends are measured in a corner, for the end of a command's help.
+inline constexpr const char* kWallHelp =
+    "\n\nWith --wall-sensors both ends of a run are measured in a corner, by distances to its two "
+    "walls\n"
+    "[m]; RUNS.csv then has start1,start2,start3,end1,end2,end3, before and after the run, and\n"
+    "odometry_x,odometry_y,odometry_heading, where the odometry had the end, counted from the "
+    "start.\n"
+    "FILE has the columns faces,x,y[,sd], a row per sensor in that order: faces is ahead, left,\n"
+    "behind or right, x ahead and y to the left of the axle's centre [m], sd of a distance [m]. "
+    "Two\n"
+    "sensors face one wall, the third a wall at right angles to it.";
+
 struct TapeOptions {
   std::string model;
   std::optional<double> wheelbase;  // m
+  std::string wall_sensors;
   std::string out;
   std::string json;
   PageOptions page;
@@ -42,6 +56,9 @@ void check_source(const Command& command, bool has_files);
 
 /// The model given, or one with the wheelbase alone. Throws UsageError without either.
 [[nodiscard]] Model starting_model(const TapeOptions& options);
+
+/// Where the sensors are that measure the ends by distances to walls; none without --wall-sensors.
+[[nodiscard]] std::optional<WallSensors> wall_sensors(const TapeOptions& options);
 
 /// The robot to rehearse with.
 [[nodiscard]] TapeRobot simulated_robot(const TapeOptions& options, double wheelbase);

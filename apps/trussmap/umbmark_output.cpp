@@ -39,7 +39,40 @@ ordered_json solution_json(const SquareRound& round, SquareMethod method) {
           {"interval95_E_d", interval(found.diameter_ratio)},
           {"interval95_E_b", interval(found.wheelbase_ratio)},
           {"total_E_d", sum.errors.diameter_ratio},
-          {"total_E_b", sum.errors.wheelbase_ratio}};
+          {"total_E_b", sum.errors.wheelbase_ratio},
+          {"total_E_s", sum.errors.scale}};
+}
+
+ordered_json headings_json(const SquareHeadings& headings) {
+  ordered_json out;
+  const auto add = [&out](const std::string& name, const Estimate& value) {
+    out[name] = value.value;
+    out["sd_" + name] = value.standard_error;
+  };
+  add("cw_rad", headings.cw);
+  add("ccw_rad", headings.ccw);
+  out["E_theta_max_rad"] = headings.largest;
+  add("alpha_rad", headings.alpha);
+  add("beta_rad", headings.beta);
+  add("E_d", headings.diameter_ratio);
+  add("E_b", headings.wheelbase_ratio);
+  add("alpha_excess_rad", headings.alpha_excess);
+  add("beta_excess_rad", headings.beta_excess);
+  out["p_value"] = number_or_null(headings.p_value);
+  return out;
+}
+
+ordered_json alone_json(const std::vector<PathAlone>& paths) {
+  ordered_json list = ordered_json::array();
+  for (const PathAlone& one : paths) {
+    list.push_back({{"path", one.path},
+                    {"end_m", one.tuned.error_before},
+                    {"tuned_wheelbase_ratio", one.tuned.wheelbase_ratio},
+                    {"end_tuned_m", one.tuned.error_after},
+                    {"square_cw_tuned_m", one.tuned.square_cw},
+                    {"square_ccw_tuned_m", one.tuned.square_ccw}});
+  }
+  return list;
 }
 
 ordered_json round_json(const SquareRound& round) {
@@ -63,17 +96,23 @@ ordered_json round_json(const SquareRound& round) {
                         {"c_right", round.in_force.right_factor()}};
   out["residual_m"] = round.consistency.residual;
   out["contradiction_p_value"] = number_or_null(round.consistency.p_value);
+  out["E_s"] = round.setup.scale.value;
+  out["sd_E_s"] =
+      round.setup.scale.dof > 0.0 ? ordered_json(round.setup.scale.standard_error) : nullptr;
+  out["headings"] = round.headings ? headings_json(*round.headings) : nullptr;
   out["warnings"] = round.doubts;
   return out;
 }
 
 }  // namespace
 
-nlohmann::ordered_json umbmark_json(const std::vector<SquareRound>& rounds, SquareMethod method) {
+nlohmann::ordered_json umbmark_json(const std::vector<SquareRound>& rounds, SquareMethod method,
+                                    const std::vector<PathAlone>& alone) {
   ordered_json out = round_json(rounds.back());
   out["solution"] = method == SquareMethod::exact ? "exact" : "formulas";
   out["rounds"] = ordered_json::array();
   for (const SquareRound& round : rounds) out["rounds"].push_back(round_json(round));
+  if (!alone.empty()) out["alone"] = alone_json(alone);
   return out;
 }
 

@@ -12,8 +12,9 @@
 
 namespace trussmap::app {
 
-/// The last round's results; every round under `rounds`.
+/// The last round's results; every round under `rounds`, other paths under `alone`.
 [[nodiscard]] nlohmann::ordered_json umbmark_json(const std::vector<SquareRound>& rounds,
-                                                  SquareMethod method);
+                                                  SquareMethod method,
+                                                  const std::vector<PathAlone>& alone);
 
 }  // namespace trussmap::app

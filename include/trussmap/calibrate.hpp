@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Wheels, wheelbase and wheel noise from recordings with truth or a survey: least squares over all
-// that was measured.
+// Wheels, wheelbase and wheel noise from recordings with truth, a survey, or a second odometer's
+// motions (loops between poses that are apart): least squares over all that was measured.
 //
 //   E_d   right over left wheel diameter     effect `difference`, g = 2 (E_d - 1)/(E_d + 1)   -
 //   E_b   actual over nominal wheelbase      effect `turn`,       g = 1/E_b - 1               -

@@ -19,6 +19,7 @@
 #include "trussmap/wheel_noise.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,6 +89,7 @@ struct NoiseCalibration {
   NoiseFit fit;
   double path = 0.0;  ///< m, its length
   std::vector<std::string> doubts;
+  std::optional<StatedNoise> stated = std::nullopt;  ///< drawn as well
 };
 
 struct TruthCalibration {
@@ -135,7 +137,9 @@ struct TruthCalibration {
 /// 95 % ellipses of the runs and of the estimate.
 [[nodiscard]] std::string map_picture(const BuiltMap& built, const std::string& title);
 [[nodiscard]] std::string square_picture(const std::vector<SquareRuns>& rounds, double side);
-[[nodiscard]] std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate);
+/// With a stated k its ellipses of 1, 2 and 3 standard deviations as well.
+[[nodiscard]] std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate,
+                                        const std::optional<StatedNoise>& stated = std::nullopt);
 
 /// A moment of an exploration.
 struct ExplorationFrame {

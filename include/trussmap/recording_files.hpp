@@ -9,6 +9,7 @@
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/umbmark.hpp"
+#include "trussmap/wall_distances.hpp"
 #include "trussmap/wheel_noise.hpp"
 #include "trussmap/write_files.hpp"
 
@@ -315,8 +316,12 @@ struct PhilRecording {
 // Runs of a calibration as tables, one row per run: end errors, absolute - calculated, in the frame
 // of the start (x ahead, y to the left).
 //
-//   square    direction,x,y      cw or ccw; m
-//   noise     x,y,heading        m, m, rad
+//   square    direction,x,y[,heading]   cw or ccw; m, rad
+//   noise     x,y,heading               m, m, rad
+//
+// Measured in a corner, by distances to two walls [m], both have instead of x, y, heading
+//   start1,start2,start3,end1,end2,end3,odometry_x,odometry_y,odometry_heading
+// before and after the run, and where the odometry had the end, from the start.
 //
 // Columns in any order, others are skipped. An error longer than the whole path cannot be one.
 
@@ -327,6 +332,26 @@ struct PhilRecording {
 /// The same for x, y, heading; headings are brought into (-pi, pi]. Two runs or more.
 [[nodiscard]] EndErrors read_end_errors(const std::filesystem::path& file, double longest);
 
+/// Where the three sensors are: faces,x,y[,sd], a row each, in the order of the distances; `faces`
+/// is ahead, left, behind or right, x and y [m] in the robot's axes. Throws InputError, also on
+/// what check_wall_sensors refuses.
+[[nodiscard]] WallSensors read_wall_sensors(const std::filesystem::path& file);
+
+/// The same as read_square_runs, by distances to walls; with headings. Throws InputError on
+/// distances that fit no pose, too.
+[[nodiscard]] SquareRuns read_square_wall_runs(const std::filesystem::path& file,
+                                               const WallSensors& sensors, double longest);
+
+struct MeasuredEnds {
+  EndErrors errors;
+  Matrix3 covariance = Matrix3::Zero();  ///< of the measurement, m, rad; mean over the runs
+};
+
+/// The same as read_end_errors, by distances to walls.
+[[nodiscard]] MeasuredEnds read_wall_end_errors(const std::filesystem::path& file,
+                                                const WallSensors& sensors, double longest);
+
+/// With headings where all runs have them.
 [[nodiscard]] std::string format_square_runs(const SquareRuns& runs);
 [[nodiscard]] std::string format_end_errors(const EndErrors& errors);
 

@@ -9,6 +9,7 @@
 //   10        straight, 10 m ahead           -10       straight, 10 m backwards
 //   a90       turn on the spot by 90 degrees, counter-clockwise (a-90: clockwise)
 //   3@45      an arc of length 3 m that turns by 45 degrees in all (-3@45: driven backwards)
+//   eight@1   a figure-eight: a circle of radius 1 m to the left, then one to the right
 //
 // "10,-10" is Chong & Kleeman's (1997) experiment: out and back.
 #pragma once
@@ -30,6 +31,12 @@ enum class Direction { cw, ccw };
 /// A square of this side (m), driven once round: four straight legs, each with a quarter turn on
 /// the spot after it, to the left (ccw) or to the right (cw).
 [[nodiscard]] TestPath square_path(double side, Direction direction);
+
+/// A figure-eight of two circles of this radius (m), above 0: once round to the left, then once
+/// round to the right. To first order its end is off by -2 R a ahead, a what a circle lacks of its
+/// turn (2 pi (1 - E_s/E_b)), and the heading by twice what a circle turns too far by E_d: the
+/// position shows E_b alone, the heading E_d alone.
+[[nodiscard]] TestPath figure_eight_path(double radius);
 
 /// Driven length of the axle's centre, m.
 [[nodiscard]] double path_length(const TestPath& path);

@@ -113,6 +113,9 @@ struct TestedDrives {
 /// Of the last round, with the systematic error of each.
 [[nodiscard]] std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                                       TextStyle style = TextStyle::plain);
+/// What other paths, driven alone, would have hidden; "" without any.
+[[nodiscard]] std::string paths_alone_text(const std::vector<PathAlone>& paths,
+                                           TextStyle style = TextStyle::plain);
 [[nodiscard]] std::string wheel_noise_text(const NoiseAnalysis& result,
                                            TextStyle style = TextStyle::plain);
 

@@ -61,6 +61,7 @@
 #include "trussmap/tour_experiment.hpp"
 #include "trussmap/truss.hpp"
 #include "trussmap/umbmark.hpp"
+#include "trussmap/wall_distances.hpp"
 #include "trussmap/wheel_noise.hpp"
 #include "trussmap/wording.hpp"
 #include "trussmap/workbench.hpp"

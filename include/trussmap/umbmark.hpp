@@ -15,8 +15,12 @@
 //   c_L   factor for the left wheel's travel,  2 / (E_d + 1)                          -
 //   c_R   factor for the right wheel's travel, 2 / (1/E_d + 1) = E_d c_L              -
 //
-// The factors' mean is 1: the mean wheel size, which a tape along one straight drive gives, is not
-// part of it (their eq. 2.3, 2.4, 4.29-4.33).
+//   E_s   average of the actual wheel diameters over the nominal one                  -
+//
+// The factors' mean is E_s, which a tape along a straight drive gives and squares do not: a closed
+// path closes at any size (their 2.2, 2.3, 2.4, 4.29-4.33). They measure and correct it beforehand,
+// and E_s is 1 then. Turns on the spot cannot tell larger wheels from a smaller wheelbase: where
+// E_s is not corrected, squares give E_b / E_s, and both are needed.
 //
 // For small angles (their 4.10a, 4.20, 4.22, 4.24 repaired), with x and y of the centres of
 // gravity:
@@ -32,6 +36,13 @@
 // the four coordinates of the centres, and needs no second round on that account. Standard errors
 // follow from the scatter of the runs, whatever its distribution; without scatter there are none.
 //
+// Headings. Their "measure the position (and, optionally, orientation)": each turn lacks alpha and
+// each leg turns by beta, so that the return orientation errors are, exactly,
+//   cw  4 (beta + alpha),   ccw  4 (beta - alpha)
+//   alpha = (cw - ccw) / 8,   beta = (cw + ccw) / 8,   E_b = E_s (pi/2) / (pi/2 - alpha)
+//   E_d = (1 + q) / (1 - q),   q = beta b E_b / (2 L E_s)
+// which checks alpha and beta by a measurement of another kind.
+//
 // Four coordinates determine two unknowns, so two combinations of them are left to contradict.
 // Exchanged labels cw/ccw do so in a way of their own: alpha from x and alpha from y get opposite
 // signs, and so do the betas. An axis y that points to the right does the same.
@@ -41,6 +52,7 @@
 #include "trussmap/test_path.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,30 +82,33 @@ struct SampleMean {
   int count = 0;
 };
 
-/// The two systematic errors of a differential drive, and what undoes them.
+/// The systematic errors of a differential drive, and what undoes them.
 struct GeometryErrors {
   double diameter_ratio = 1.0;   ///< E_d
   double wheelbase_ratio = 1.0;  ///< E_b
+  double scale = 1.0;            ///< E_s
 
-  [[nodiscard]] double left_factor() const { return 2.0 / (diameter_ratio + 1.0); }
+  [[nodiscard]] double left_factor() const { return scale * 2.0 / (diameter_ratio + 1.0); }
   [[nodiscard]] double right_factor() const { return diameter_ratio * left_factor(); }
 };
 
 /// What is found by a robot that already corrects for `in_force`, on top of that: ratios multiply.
 [[nodiscard]] GeometryErrors combined(const GeometryErrors& in_force, const GeometryErrors& found);
 
-/// The effects `wheel diameter ratio` (channel difference, 2 (E_d - 1)/(E_d + 1)) and `wheelbase`
-/// (channel turn, 1/E_b - 1) of the model; 1 and 1 where it has neither. Throws
-/// std::invalid_argument where one of them has another channel or shape than these.
+/// The effects `wheel scale` (channel wheels, E_s - 1), `wheel diameter ratio` (channel difference,
+/// 2 E_s (E_d - 1)/(E_d + 1)) and `wheelbase` (channel turn, E_s/E_b - E_s: effects add up) of the
+/// model; 1 where it has none. Throws std::invalid_argument where one of them has another channel
+/// or shape than these.
 [[nodiscard]] GeometryErrors geometry_errors(const Model& model);
 
-/// Puts them into the model, in place of what it said of them.
+/// Puts them into the model, in place of what it said of them; no `wheel scale` where it had none
+/// and E_s is 1.
 void set_geometry_errors(Model& model, const GeometryErrors& errors);
 
 /// How a path's end differs from what the robot calculates (absolute - calculated), exactly.
 struct PathError {
   Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< m, m, rad
-  /// d error / d (E_d, E_b).
+  /// d error / d (E_d, E_b), at this E_s.
   Eigen::Matrix<double, 3, 2> jacobian = Eigen::Matrix<double, 3, 2>::Zero();
 };
 
@@ -106,11 +121,28 @@ struct PathError {
 struct SquareRuns {
   std::vector<Eigen::Vector2d> cw;
   std::vector<Eigen::Vector2d> ccw;
+  /// Return orientation errors, counter-clockwise, rad: one per run, or none in both directions.
+  std::vector<double> cw_headings = {};
+  std::vector<double> ccw_headings = {};
 };
 
+/// A straight drive beside a tape.
+struct StraightRun {
+  double measured = 0.0;  ///< m, from where the axle's centre started to where it stopped
+  double reported = 0.0;  ///< m, by the odometry
+};
+
+/// E_s by least squares on measured = E_s reported, the tape's error alike in all runs; one run has
+/// no standard error. `turn_per_metre` [rad/m]: what the robot turned while it believed that it
+/// drove straight on; the tape is the chord of that arc. Throws std::invalid_argument on no run, on
+/// lengths not above 0, and on a turn of a whole circle or more.
+[[nodiscard]] Estimate wheel_scale(const std::vector<StraightRun>& runs,
+                                   double turn_per_metre = 0.0);
+
 struct SquareSetup {
-  double side = 4.0;        ///< m
-  double wheelbase = 0.34;  ///< m, that the robot calculated with
+  double side = 4.0;                 ///< m
+  double wheelbase = 0.34;           ///< m, that the robot calculated with
+  Estimate scale = {1.0, 0.0, 0.0};  ///< E_s that was not corrected while driving
 };
 
 /// What the runs say before any model of the robot.
@@ -143,8 +175,10 @@ struct SquareSolution {
   Estimate right_factor;     ///< c_R
   Estimate wheelbase;        ///< corrected, m
 
+  double scale = 1.0;  ///< E_s, as given
+
   [[nodiscard]] GeometryErrors errors() const {
-    return {diameter_ratio.value, wheelbase_ratio.value};
+    return {diameter_ratio.value, wheelbase_ratio.value, scale};
   }
 };
 
@@ -155,6 +189,31 @@ struct SquareSolution {
 /// E_d and E_b by Gauss-Newton on the exact kinematics. Throws SolveError where that does not
 /// converge: errors as large as the square.
 [[nodiscard]] SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& setup);
+
+/// What the return orientations say, beside the positions.
+struct SquareHeadings {
+  Estimate cw, ccw;          ///< mean orientation errors, rad
+  double largest = 0.0;      ///< the larger of both, as E_max,syst is of positions, rad
+  Estimate alpha;            ///< rad
+  Estimate beta;             ///< rad
+  Estimate diameter_ratio;   ///< E_d
+  Estimate wheelbase_ratio;  ///< E_b
+  /// Headings less positions (the exact solution). The same runs give both, so that their standard
+  /// errors are of the differences run by run.
+  Estimate alpha_excess, beta_excess;  ///< rad
+  /// Probability of excesses as large by the scatter of the runs alone; NaN without scatter.
+  double p_value = 0.0;
+};
+
+/// None where the runs have no headings. `exact`: solve_square of these runs. Throws
+/// std::invalid_argument where there is not one heading per run; SolveError where a heading error
+/// is so large that no wheelbase explains it.
+[[nodiscard]] std::optional<SquareHeadings> square_headings(const SquareRuns& runs,
+                                                            const SquareSetup& setup,
+                                                            const SquareSolution& exact);
+
+/// Where headings and positions contradict each other, a sentence.
+[[nodiscard]] std::vector<std::string> heading_doubts(const SquareHeadings& headings);
 
 /// Whether the centres can be what they are said to be.
 struct SquareConsistency {
@@ -187,7 +246,8 @@ struct SquareRound {
   SquareSolution exact;
   SquareSolution formulas;
   SquareConsistency consistency;
-  std::vector<std::string> doubts;  ///< square_doubts and square_outliers
+  std::optional<SquareHeadings> headings;  ///< where they were measured
+  std::vector<std::string> doubts;         ///< square_doubts, square_outliers and heading_doubts
 };
 
 /// Throws as the functions above do.
@@ -200,7 +260,7 @@ enum class SquareMethod { exact, formulas };
 struct SquareCorrections {
   GeometryErrors errors;
   Estimate wheelbase;     ///< m
-  Estimate left_factor;   ///< c_L of the product
+  Estimate left_factor;   ///< c_L of the product, E_s in it
   Estimate right_factor;  ///< c_R of the product
 };
 
@@ -211,11 +271,14 @@ using DriveRound = std::function<SquareRuns(std::size_t round, const SquareSetup
                                             const GeometryErrors& in_force)>;
 
 /// Round after round, each with the corrections that the method found in those before.
-/// `wheelbase`: nominal, m; `in_force`: corrected for in the first round.
+/// `wheelbase`: nominal, m; `in_force`: corrected for in the first round. `straight`: runs beside a
+/// tape with the first round's settings; where there are any, the rounds after it are driven with
+/// E_s corrected as well.
 [[nodiscard]] std::vector<SquareRound> square_rounds(std::size_t count, double side,
                                                      double wheelbase,
                                                      const GeometryErrors& in_force,
-                                                     SquareMethod method, const DriveRound& drive);
+                                                     SquareMethod method, const DriveRound& drive,
+                                                     const std::vector<StraightRun>& straight = {});
 
 /// Of all rounds; named by their round where there are several.
 [[nodiscard]] std::vector<std::string> all_doubts(const std::vector<SquareRound>& rounds);
@@ -231,5 +294,23 @@ struct OneWayTuning {
 
 [[nodiscard]] OneWayTuning tune_one_way(const GeometryErrors& errors, const SquareSetup& setup,
                                         Direction driven);
+
+/// What another path alone hides, the figure-eight for instance (their 3.1): the wheelbase tuned
+/// until the path's end error is least.
+struct PathTuning {
+  double wheelbase_ratio = 1.0;  ///< tuned over nominal wheelbase
+  double error_before = 0.0;     ///< m, at the end of the path
+  double error_after = 0.0;      ///< m, there, after tuning
+  double square_cw = 0.0;        ///< m, at the end of a square after tuning
+  double square_ccw = 0.0;       ///< m
+};
+
+[[nodiscard]] PathTuning tune_by_path(const GeometryErrors& errors, const SquareSetup& setup,
+                                      const TestPath& path);
+
+struct PathAlone {
+  std::string path;  ///< as text
+  PathTuning tuned;
+};
 
 }  // namespace trussmap

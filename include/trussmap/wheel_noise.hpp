@@ -36,6 +36,8 @@
 #include "trussmap/planar.hpp"
 #include "trussmap/test_path.hpp"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,8 @@ struct NoiseExperiment {
   TestPath path = {{10.0, 0.0}, {-10.0, 0.0}};
   double wheelbase = 0.34;                              ///< m
   Eigen::Vector3d sensor_sd = Eigen::Vector3d::Zero();  ///< m, m, rad: known, per run
+  /// Besides, known noise whose coordinates go together (trussmap/wall_distances.hpp), per run.
+  Matrix3 sensor_covariance = Matrix3::Zero();
   bool subtract_mean = false;  ///< the runs' mean is a systematic error, not noise
   NoiseOrder order = NoiseOrder::first;
 };
@@ -123,19 +127,48 @@ struct NoiseFit {
                                                     const NoiseEstimate& estimate,
                                                     const NoiseFit& fit);
 
+/// How many runs end within 1, 2 and 3 standard deviations of a stated model.
+struct SigmaCount {
+  std::string coordinates;              ///< as in EllipseCount
+  std::array<int, 3> inside = {};       ///< Mahalanobis distance of 1, 2, 3 at most
+  std::array<double, 3> expected = {};  ///< runs, of a normal distribution
+  int runs = 0;
+};
+
+/// k as somebody states it: the paper fits k by eye, drawing the ellipses that k predicts over the
+/// runs.
+struct StatedNoise {
+  double left = 0.0;                                 ///< k_L, m^(1/2)
+  double right = 0.0;                                ///< k_R, m^(1/2)
+  Matrix3 modelled = Matrix3::Zero();                ///< Sigma at that k
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the ellipses
+  std::vector<SigmaCount> counts;
+  /// Probability of runs that contradict it as much, against the estimate (likelihood ratio,
+  /// chi-square(2)).
+  double p_value = 0.0;
+};
+
+/// With the experiment's order. Throws std::invalid_argument on a k that is not above 0.
+[[nodiscard]] StatedNoise stated_noise(const EndErrors& errors, const NoiseExperiment& experiment,
+                                       const NoiseEstimate& estimate, double k_left,
+                                       double k_right);
+
 /// Both estimates, the better one, and what to make of it.
 struct NoiseAnalysis {
   NoiseExperiment experiment;  ///< with the order in use
   EndErrors errors;
   NoiseEstimate first_order;  ///< the paper's
   NoiseEstimate exact;
-  NoiseEstimate estimate;  ///< in use: first order, or exact where nonlinear
-  NoiseFit fit;            ///< of the estimate in use
+  NoiseEstimate estimate;             ///< in use: first order, or exact where nonlinear
+  NoiseFit fit;                       ///< of the estimate in use
+  std::optional<StatedNoise> stated;  ///< beside the estimate in use
   std::vector<std::string> doubts;
 };
 
-/// Throws as estimate_wheel_noise does; the experiment's order is chosen here.
-[[nodiscard]] NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment);
+/// Throws as estimate_wheel_noise and stated_noise do; the experiment's order is chosen here.
+/// `stated`: k_L and k_R to judge beside the estimate, m^(1/2).
+[[nodiscard]] NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment,
+                                                const std::optional<Vector2>& stated = {});
 
 /// Square root of the 95 % quantile of chi-square: semi-axis of the ellipse per square root of the
 /// covariance's eigenvalue. 2.4477 in a plane, 2.7955 in space.

@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kRatio = "wheel diameter ratio";
 constexpr const char* kWheelbaseEffect = "wheelbase";
+constexpr const char* kScale = "wheel scale";
 
 /// sin(x)/x and its derivative.
 struct Sinc {
@@ -38,10 +39,14 @@ double coefficient(const Effect& effect, Channel channel) {
   return effect.coefficients.empty() ? 0.0 : effect.coefficients.front();
 }
 
+auto effect_named(Model& model, const char* name) {
+  return std::find_if(model.effects.begin(), model.effects.end(),
+                      [&](const Effect& one) { return one.name == name; });
+}
+
 void set_effect(Model& model, const char* name, Channel channel, double value) {
   const Effect effect{name, channel, {"1"}, {value}, false};
-  const auto same = [&](const Effect& one) { return one.name == name; };
-  const auto found = std::find_if(model.effects.begin(), model.effects.end(), same);
+  const auto found = effect_named(model, name);
   if (found == model.effects.end()) {
     model.effects.push_back(effect);
   } else {
@@ -53,37 +58,43 @@ void set_effect(Model& model, const char* name, Channel channel, double value) {
 
 GeometryErrors combined(const GeometryErrors& in_force, const GeometryErrors& found) {
   return {in_force.diameter_ratio * found.diameter_ratio,
-          in_force.wheelbase_ratio * found.wheelbase_ratio};
+          in_force.wheelbase_ratio * found.wheelbase_ratio, in_force.scale * found.scale};
 }
 
 GeometryErrors geometry_errors(const Model& model) {
+  double difference = 0.0;
+  double turn = 0.0;
   GeometryErrors errors;
   for (const Effect& effect : model.effects) {
-    if (effect.name == kRatio) {
-      const double g = coefficient(effect, Channel::difference);
-      if (std::abs(g) >= 2.0) {
-        throw std::invalid_argument(
-            "effect \"wheel diameter ratio\" has a coefficient of 2 or "
-            "more, expected one near 0");
-      }
-      errors.diameter_ratio = (1.0 + g / 2.0) / (1.0 - g / 2.0);
-    } else if (effect.name == kWheelbaseEffect) {
-      const double g = coefficient(effect, Channel::turn);
-      if (g <= -1.0) {
-        throw std::invalid_argument(
-            "effect \"wheelbase\" has a coefficient of -1 or less, "
-            "expected one near 0");
-      }
-      errors.wheelbase_ratio = 1.0 / (1.0 + g);
-    }
+    if (effect.name == kRatio) difference = coefficient(effect, Channel::difference);
+    if (effect.name == kWheelbaseEffect) turn = coefficient(effect, Channel::turn);
+    if (effect.name == kScale) errors.scale = 1.0 + coefficient(effect, Channel::wheels);
   }
+  if (!(errors.scale > 0.0)) {
+    throw std::invalid_argument(
+        "effect \"wheel scale\" has a coefficient of -1 or less, expected one near 0");
+  }
+  if (std::abs(difference) >= 2.0 * errors.scale) {
+    throw std::invalid_argument(
+        "effect \"wheel diameter ratio\" has a coefficient of 2 or more, expected one near 0");
+  }
+  if (turn <= -errors.scale) {
+    throw std::invalid_argument(
+        "effect \"wheelbase\" has a coefficient of -1 or less, expected one near 0");
+  }
+  errors.diameter_ratio = (errors.scale + 0.5 * difference) / (errors.scale - 0.5 * difference);
+  errors.wheelbase_ratio = errors.scale / (errors.scale + turn);
   return errors;
 }
 
 void set_geometry_errors(Model& model, const GeometryErrors& errors) {
   const double e_d = errors.diameter_ratio;
-  set_effect(model, kRatio, Channel::difference, 2.0 * (e_d - 1.0) / (e_d + 1.0));
-  set_effect(model, kWheelbaseEffect, Channel::turn, 1.0 / errors.wheelbase_ratio - 1.0);
+  const double scale = errors.scale;
+  set_effect(model, kRatio, Channel::difference, scale * (2.0 * (e_d - 1.0) / (e_d + 1.0)));
+  set_effect(model, kWheelbaseEffect, Channel::turn, scale * (1.0 / errors.wheelbase_ratio - 1.0));
+  if (scale != 1.0 || effect_named(model, kScale) != model.effects.end()) {
+    set_effect(model, kScale, Channel::wheels, scale - 1.0);
+  }
 }
 
 PathError path_error(const TestPath& path, double wheelbase, const GeometryErrors& errors) {
@@ -91,7 +102,8 @@ PathError path_error(const TestPath& path, double wheelbase, const GeometryError
   const double b = wheelbase * errors.wheelbase_ratio;
   const double c_left = errors.left_factor();
   const double c_right = errors.right_factor();
-  const double slope = 2.0 / std::pow(errors.diameter_ratio + 1.0, 2);  // dc_R/dE_d = -dc_L/dE_d
+  // dc_R/dE_d = -dc_L/dE_d
+  const double slope = errors.scale * 2.0 / std::pow(errors.diameter_ratio + 1.0, 2);
   Pose calculated;
   Pose actual;
   PathError result;

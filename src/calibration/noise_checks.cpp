@@ -106,7 +106,8 @@ NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
   return fit;
 }
 
-NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment) {
+NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment,
+                                  const std::optional<Vector2>& stated) {
   NoiseAnalysis result;
   result.errors = std::move(errors);
   result.experiment = std::move(experiment);
@@ -120,6 +121,10 @@ NoiseAnalysis analyse_wheel_noise(EndErrors errors, NoiseExperiment experiment) 
     result.experiment.order = NoiseOrder::first;
   }
   result.fit = check_noise(result.errors, result.experiment, result.estimate);
+  if (stated) {
+    result.stated =
+        stated_noise(result.errors, result.experiment, result.estimate, (*stated)[0], (*stated)[1]);
+  }
   result.doubts = noise_doubts(result.errors, result.experiment, result.estimate, result.fit);
   return result;
 }

@@ -94,7 +94,7 @@ void doubt_runs(Doubts& doubts, const EndErrors& errors, const NoiseExperiment& 
         "to be 0; drive 30 runs or more",
         distances.size()));
   }
-  const bool sensor = experiment.sensor_sd.maxCoeff() > 0.0;
+  const bool sensor = sensor_noise(experiment).trace() > 0.0;
   for (const double k : {estimate.left.k, estimate.right.k}) {
     if (k > 0.0) continue;
     doubts.push_back(sensor ? "the sensor's noise hides that of a wheel; drive a longer path, or "

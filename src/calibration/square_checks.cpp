@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "calibration/welch.hpp"
-#include "statistics/distributions.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"
 
@@ -34,11 +33,6 @@ Residual residual_of(const SquareClusters& clusters, const SquareSetup& setup) {
   return result;
 }
 
-double two_sided_p(const Estimate& estimate) {
-  if (estimate.dof <= 0.0) return std::numeric_limits<double>::quiet_NaN();
-  return 2.0 * student_p_value(std::abs(estimate.value) / estimate.standard_error, estimate.dof);
-}
-
 /// Smaller of the p-values of the two contrasts that no E_d and E_b can change, times two.
 double contradiction_p(const Residual& residual, const SquareClusters& clusters) {
   const Eigen::HouseholderQR<Eigen::Matrix<double, 4, 2>> qr(residual.jacobian);
@@ -60,9 +54,8 @@ SquareClusters exchanged(const SquareClusters& clusters) {
   return result;
 }
 
-double end_error(const GeometryErrors& errors, const SquareSetup& setup, Direction direction) {
-  const TestPath path = square_path(setup.side, direction);
-  return path_error(path, setup.wheelbase, errors).error.head<2>().norm();
+double end_error(const GeometryErrors& errors, double wheelbase, const TestPath& path) {
+  return path_error(path, wheelbase, errors).error.head<2>().norm();
 }
 
 }  // namespace
@@ -149,26 +142,36 @@ std::vector<std::string> square_outliers(const SquareRuns& runs) {
   return doubts;
 }
 
-OneWayTuning tune_one_way(const GeometryErrors& errors, const SquareSetup& setup,
-                          Direction driven) {
+PathTuning tune_by_path(const GeometryErrors& errors, const SquareSetup& setup,
+                        const TestPath& path) {
   constexpr double kReach = 0.3;  // of the ratio that makes every turn a quarter turn
   constexpr int kBits = 40;
-  const auto tuned_error = [&](double ratio, Direction direction) {
+  const auto error_of = [&](double ratio, const TestPath& driven) {
     // The robot calculates with the tuned wheelbase; its geometry is off by what that leaves.
-    return end_error({errors.diameter_ratio, errors.wheelbase_ratio / ratio},
-                     {setup.side, setup.wheelbase * ratio}, direction);
+    return end_error({errors.diameter_ratio, errors.wheelbase_ratio / ratio, errors.scale},
+                     setup.wheelbase * ratio, driven);
   };
-  const double ratio =
-      boost::math::tools::brent_find_minima([&](double at) { return tuned_error(at, driven); },
-                                            errors.wheelbase_ratio * (1.0 - kReach),
-                                            errors.wheelbase_ratio * (1.0 + kReach), kBits)
+  const double middle = errors.wheelbase_ratio / errors.scale;
+  PathTuning result;
+  result.wheelbase_ratio =
+      boost::math::tools::brent_find_minima([&](double at) { return error_of(at, path); },
+                                            middle * (1.0 - kReach), middle * (1.0 + kReach), kBits)
           .first;
-  const Direction other = driven == Direction::cw ? Direction::ccw : Direction::cw;
+  result.error_before = error_of(1.0, path);
+  result.error_after = error_of(result.wheelbase_ratio, path);
+  result.square_cw = error_of(result.wheelbase_ratio, square_path(setup.side, Direction::cw));
+  result.square_ccw = error_of(result.wheelbase_ratio, square_path(setup.side, Direction::ccw));
+  return result;
+}
+
+OneWayTuning tune_one_way(const GeometryErrors& errors, const SquareSetup& setup,
+                          Direction driven) {
+  const PathTuning tuned = tune_by_path(errors, setup, square_path(setup.side, driven));
   OneWayTuning result;
-  result.wheelbase_ratio = ratio;
-  result.error_before = end_error(errors, setup, driven);
-  result.error_same_way = tuned_error(ratio, driven);
-  result.error_other_way = tuned_error(ratio, other);
+  result.wheelbase_ratio = tuned.wheelbase_ratio;
+  result.error_before = tuned.error_before;
+  result.error_same_way = driven == Direction::cw ? tuned.square_cw : tuned.square_ccw;
+  result.error_other_way = driven == Direction::cw ? tuned.square_ccw : tuned.square_cw;
   return result;
 }
 

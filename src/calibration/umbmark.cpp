@@ -53,19 +53,24 @@ Estimate estimate(const Sensitivity& response, const SquareClusters& at) {
   return welch_estimate(response.value, response.by_cw, at.cw, response.by_ccw, at.ccw);
 }
 
-/// What follows from E_d and E_b.
+/// What follows from E_d and E_b. What E_s does to alpha, beta and E_d is of second order.
 SquareSolution solution(const Sensitivity& alpha, const Sensitivity& beta, const Sensitivity& e_d,
-                        const Sensitivity& e_b, const SquareClusters& at, double wheelbase) {
-  const GeometryErrors errors{e_d.value, e_b.value};
-  const double slope = 2.0 / std::pow(e_d.value + 1.0, 2);
+                        const Sensitivity& e_b, const SquareClusters& at,
+                        const SquareSetup& setup) {
+  const GeometryErrors errors{e_d.value, e_b.value, setup.scale.value};
+  const double slope = 2.0 * errors.scale / std::pow(e_d.value + 1.0, 2);
+  const auto scaled = [&](const Sensitivity& response) {
+    return also_by(estimate(response, at), response.value / errors.scale, setup.scale);
+  };
   SquareSolution result;
   result.alpha = estimate(alpha, at);
   result.beta = estimate(beta, at);
   result.diameter_ratio = estimate(e_d, at);
-  result.wheelbase_ratio = estimate(e_b, at);
-  result.left_factor = estimate(e_d.mapped(errors.left_factor(), -slope), at);
-  result.right_factor = estimate(e_d.mapped(errors.right_factor(), slope), at);
-  result.wheelbase = estimate(e_b.mapped(wheelbase * e_b.value, wheelbase), at);
+  result.wheelbase_ratio = scaled(e_b);
+  result.left_factor = scaled(e_d.mapped(errors.left_factor(), -slope));
+  result.right_factor = scaled(e_d.mapped(errors.right_factor(), slope));
+  result.wheelbase = scaled(e_b.mapped(setup.wheelbase * e_b.value, setup.wheelbase));
+  result.scale = errors.scale;
   return result;
 }
 
@@ -106,7 +111,8 @@ ExactFit descend(const GeometryErrors& start, const SquareClusters& clusters,
         damping *
         (fit.jacobian.transpose() * fit.jacobian).ldlt().solve(fit.jacobian.transpose() * fit.left);
     if (step.cwiseAbs().maxCoeff() <= kSmallestStep) break;
-    const GeometryErrors next{fit.at.diameter_ratio + step.x(), fit.at.wheelbase_ratio + step.y()};
+    const GeometryErrors next{fit.at.diameter_ratio + step.x(), fit.at.wheelbase_ratio + step.y(),
+                              fit.at.scale};
     const bool sensible = std::min(next.diameter_ratio, next.wheelbase_ratio) > kSmallestRatio;
     ExactFit tried = sensible ? exact_fit_at(next, clusters, setup) : fit;
     const bool better = tried.left.squaredNorm() < fit.left.squaredNorm();
@@ -123,16 +129,17 @@ ExactFit fit_exactly(const SquareClusters& clusters, const SquareSetup& setup) {
   constexpr double kLargestError = 0.7;  // rad, per leg or per turn
   constexpr int kStarts = 4;             // on either side of 0
   const double measured = std::hypot(clusters.cw.mean.norm(), clusters.ccw.mean.norm());
-  ExactFit best = descend({}, clusters, setup);
+  const double scale = setup.scale.value;
+  ExactFit best = descend({1.0, scale, scale}, clusters, setup);
   if (best.left.norm() > kGoodShare * measured) {
     ExactFit elsewhere = best;
     for (int i = -kStarts; i <= kStarts; ++i) {
       for (int j = -kStarts; j <= kStarts; ++j) {
         const double beta = kLargestError * i / kStarts;
         const double alpha = kLargestError * j / kStarts;
-        ExactFit fit = descend(
-            {1.0 + beta * setup.wheelbase / setup.side, kQuarterTurn / (kQuarterTurn - alpha)},
-            clusters, setup);
+        ExactFit fit = descend({1.0 + beta * setup.wheelbase / setup.side,
+                                scale * kQuarterTurn / (kQuarterTurn - alpha), scale},
+                               clusters, setup);
         if (fit.left.norm() < elsewhere.left.norm()) elsewhere = std::move(fit);
       }
     }
@@ -151,6 +158,9 @@ void check(const SquareSetup& setup) {
   const bool positive = setup.side > 0.0 && setup.wheelbase > 0.0;
   if (!positive || !std::isfinite(setup.side) || !std::isfinite(setup.wheelbase)) {
     throw std::invalid_argument("side and wheelbase must be above 0");
+  }
+  if (!(setup.scale.value > 0.0) || !std::isfinite(setup.scale.value)) {
+    throw std::invalid_argument("the scale must be above 0");
   }
 }
 
@@ -175,10 +185,11 @@ SquareAngles square_angles(const SquareClusters& clusters, double side) {
 
 SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup) {
   check(setup);
-  const AngleResponses angles(clusters, setup.side);
+  const double scale = setup.scale.value;
+  const double side = scale * setup.side;  // as driven
+  const AngleResponses angles(clusters, side);
   const Sensitivity alpha = mean(angles.alpha_x, angles.alpha_y);
   const Sensitivity beta = mean(angles.beta_x, angles.beta_y);
-  const double side = setup.side;
   const double s = setup.wheelbase * std::sin(0.5 * beta.value);
   if (alpha.value >= kQuarterTurn || std::abs(s) >= side) {
     throw SolveError(
@@ -189,8 +200,9 @@ SquareSolution umbmark(const SquareClusters& clusters, const SquareSetup& setup)
   const double slope_d =
       side * setup.wheelbase * std::cos(0.5 * beta.value) / ((side - s) * (side - s));
   const Sensitivity e_d = beta.mapped((side + s) / (side - s), slope_d);
-  const Sensitivity e_b = alpha.mapped(kQuarterTurn / lacking, kQuarterTurn / (lacking * lacking));
-  return solution(alpha, beta, e_d, e_b, clusters, setup.wheelbase);
+  const Sensitivity e_b =
+      alpha.mapped(scale * kQuarterTurn / lacking, scale * kQuarterTurn / (lacking * lacking));
+  return solution(alpha, beta, e_d, e_b, clusters, setup);
 }
 
 SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& setup) {
@@ -202,15 +214,16 @@ SquareSolution solve_square(const SquareClusters& clusters, const SquareSetup& s
                         gain.block<1, 2>(0, 2).transpose()};
   const Sensitivity e_b{fit.at.wheelbase_ratio, gain.block<1, 2>(1, 0).transpose(),
                         gain.block<1, 2>(1, 2).transpose()};
-  const Sensitivity alpha =
-      e_b.mapped(kQuarterTurn * (1.0 - 1.0 / e_b.value), kQuarterTurn / (e_b.value * e_b.value));
+  const double scale = setup.scale.value;
+  const Sensitivity alpha = e_b.mapped(kQuarterTurn * (1.0 - scale / e_b.value),
+                                       scale * kQuarterTurn / (e_b.value * e_b.value));
   const double per_ratio = setup.side / (setup.wheelbase * e_b.value);
   const double beta = (fit.at.right_factor() - fit.at.left_factor()) * per_ratio;
-  const double by_d = 4.0 / std::pow(e_d.value + 1.0, 2) * per_ratio;
+  const double by_d = 4.0 * scale / std::pow(e_d.value + 1.0, 2) * per_ratio;
   const double by_b = -beta / e_b.value;
   const Sensitivity beta_response{beta, by_d * e_d.by_cw + by_b * e_b.by_cw,
                                   by_d * e_d.by_ccw + by_b * e_b.by_ccw};
-  return solution(alpha, beta_response, e_d, e_b, clusters, setup.wheelbase);
+  return solution(alpha, beta_response, e_d, e_b, clusters, setup);
 }
 
 }  // namespace trussmap

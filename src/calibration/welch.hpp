@@ -23,4 +23,16 @@ namespace trussmap {
                                       const SampleMean& a, const Eigen::Vector2d& gradient_b,
                                       const SampleMean& b);
 
+/// The same quantity where it also goes with another, independent one, by this slope.
+[[nodiscard]] Estimate also_by(const Estimate& quantity, double slope, const Estimate& other);
+
+/// Mean of a sample of two numbers or more, and its standard error.
+[[nodiscard]] Estimate mean_of(const std::vector<double>& sample);
+
+/// a + b of independent ones, the standard error's degrees of freedom as above.
+[[nodiscard]] Estimate sum_of(const Estimate& a, const Estimate& b);
+
+/// Two-sided, that an estimate as far from 0 is chance; NaN without scatter.
+[[nodiscard]] double two_sided_p(const Estimate& estimate);
+
 }  // namespace trussmap

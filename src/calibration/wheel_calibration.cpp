@@ -3,6 +3,7 @@
 #include "calibration/wheel_calibration.hpp"
 
 #include "calibration/heading_offset.hpp"
+#include "calibration/measured_distance.hpp"
 #include "calibration/restricted_likelihood.hpp"
 #include "calibration/truth_alignment.hpp"
 #include "effects/channel_physics.hpp"
@@ -184,18 +185,8 @@ void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibra
   result.model.noise.right = found->k[1];
 }
 
-/// Whether anything in use measures a distance.
-bool measures_distance(const std::vector<Recording>& recordings, const ProblemOptions& options) {
-  return std::any_of(recordings.begin(), recordings.end(), [&options](const Recording& one) {
-    return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
-           std::any_of(one.sightings.begin(), one.sightings.end(),
-                       [](const Sighting& sighting) { return !sighting.standing(); });
-  });
-}
-
 /// What is missing for a constant, in the user's terms.
-std::string why_not(Channel channel, const std::vector<Recording>& recordings,
-                    const ProblemOptions& options) {
+std::string why_not(Channel channel, bool scale) {
   switch (channel) {
     case Channel::difference:
       return "the drive is too short to show one wheel larger than the other; drive straight lines "
@@ -209,22 +200,22 @@ std::string why_not(Channel channel, const std::vector<Recording>& recordings,
     case Channel::turn:
       return "the robot hardly turns; drive turns, both ways";
     case Channel::wheels:
-      return measures_distance(recordings, options)
-                 ? "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
-                   "wheels "
-                   "from a smaller wheelbase; drive straight lines"
-                 : "nothing in use measures a distance; add a survey or truth";
+      return scale ? "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
+                     "wheels "
+                     "from a smaller wheelbase; drive straight lines"
+                   : "nothing in use measures a distance; add a survey, truth, or loops between "
+                     "poses far apart";
     default:
-      return measures_distance(recordings, options)
+      return scale
                  ? "the motion does not tell this wheel from the others; drive ahead, to the side "
                    "where the robot can, and turn"
-                 : "nothing in use measures a distance; add a survey or truth";
+                 : "nothing in use measures a distance; add a survey, truth, or loops between "
+                   "poses far apart";
   }
 }
 
-std::string undetermined_text(const Constant& one, const std::vector<Recording>& recordings,
-                              const ProblemOptions& options) {
-  return one.symbol + ": " + why_not(one.channel, recordings, options);
+std::string undetermined_text(const Constant& one, bool scale) {
+  return one.symbol + ": " + why_not(one.channel, scale);
 }
 
 /// The standard error from which on a constant is none.
@@ -240,7 +231,7 @@ double useless(const Constant& one, const Model& model) {
 Wanted determined(const std::vector<Recording>& recordings, const Model& model,
                   const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
-  const bool scale = measures_distance(recordings, options.problem);
+  const bool scale = measures_distance(recordings, options.problem, model.noise);
   const std::vector<Constant> constants = constants_of(model.robot);
   Wanted wanted;
   for (const Constant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
@@ -259,7 +250,7 @@ Wanted determined(const std::vector<Recording>& recordings, const Model& model,
   };
   for (const Constant& one : constants) {
     if (scale || !shows_scale(one.channel)) continue;
-    undetermined.push_back(undetermined_text(one, recordings, options.problem));
+    undetermined.push_back(undetermined_text(one, scale));
   }
   if (can(wanted)) return wanted;
   // Nothing at all: let the reason through.
@@ -272,7 +263,7 @@ Wanted determined(const std::vector<Recording>& recordings, const Model& model,
     if (can(more)) {
       wanted = more;
     } else {
-      undetermined.push_back(undetermined_text(constants[k], recordings, options.problem));
+      undetermined.push_back(undetermined_text(constants[k], scale));
     }
   }
   return wanted;

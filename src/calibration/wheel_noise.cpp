@@ -3,6 +3,7 @@
 #include "trussmap/wheel_noise.hpp"
 
 #include "calibration/end_moments.hpp"
+#include "calibration/noise_distances.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/error.hpp"
@@ -244,6 +245,12 @@ NoiseShape noise_shape(const TestPath& path, double wheelbase) {
   return {left.covariance, right.covariance};
 }
 
+Matrix3 sensor_noise(const NoiseExperiment& experiment) {
+  Matrix3 noise = experiment.sensor_covariance;
+  noise.diagonal() += experiment.sensor_sd.cwiseAbs2();
+  return noise;
+}
+
 NoiseEstimate estimate_wheel_noise(const EndErrors& errors, const NoiseExperiment& experiment) {
   if (errors.size() < 2) throw std::invalid_argument("a scatter takes two runs or more");
   if (!(experiment.sensor_sd.array() >= 0.0).all()) {
@@ -252,7 +259,7 @@ NoiseEstimate estimate_wheel_noise(const EndErrors& errors, const NoiseExperimen
   Problem problem;
   problem.experiment = experiment;
   problem.shape = noise_shape(experiment.path, experiment.wheelbase);
-  problem.sensor = experiment.sensor_sd.cwiseAbs2().asDiagonal();
+  problem.sensor = sensor_noise(experiment);
   const auto n = static_cast<double>(errors.size());
   for (const Vector3d& e : errors) problem.mean += e / n;
   const Matrix3 scatter = unbiased_scatter(errors, problem.mean);

@@ -68,7 +68,8 @@ Range widest(const Panel& panel, int axis) {
 }
 
 /// One plane of Chong & Kleeman's Figure 4.
-Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate, int across, int up) {
+Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate,
+                  const std::optional<StatedNoise>& stated, int across, int up) {
   constexpr const char* kLabels[] = {"x error [mm]", "y error [mm]", "heading error [mrad]"};
   constexpr const char* kTitles[] = {"Along and across", "Along and heading", "Across and heading"};
   const std::vector<int> pick = {across, up};
@@ -96,6 +97,16 @@ Panel noise_panel(const EndErrors& errors, const NoiseEstimate& estimate, int ac
                          true,
                          "95 % ellipse of the model",
                          {}});
+  for (int sigma = 1; stated && sigma <= 3; ++sigma) {
+    panel.marks.push_back({MarkKind::polyline,
+                           ellipse_outline(kMillimetres * Vector2(stated->centre(pick)),
+                                           stated->modelled(pick, pick), kMillimetres * sigma),
+                           colour::kGreen,
+                           1.2,
+                           false,
+                           sigma == 1 ? "1, 2, 3 sigma by the k stated" : "",
+                           {}});
+  }
   return panel;
 }
 
@@ -121,13 +132,19 @@ Figure square_figure(const std::vector<SquareRuns>& rounds, double side) {
   return figure;
 }
 
-Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate) {
+Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate,
+                    const std::optional<StatedNoise>& stated) {
   Figure figure;
   figure.title = "End errors, and what the wheels' noise explains";
   figure.subtitle = fmt::format("{} runs; k left {:.2g}, right {:.2g} m^1/2", estimate.runs,
                                 estimate.left.k, estimate.right.k);
-  figure.panels = {noise_panel(errors, estimate, 0, 1), noise_panel(errors, estimate, 0, 2),
-                   noise_panel(errors, estimate, 1, 2)};
+  if (stated) {
+    figure.subtitle +=
+        fmt::format("; stated: left {:.2g}, right {:.2g}", stated->left, stated->right);
+  }
+  figure.panels = {noise_panel(errors, estimate, stated, 0, 1),
+                   noise_panel(errors, estimate, stated, 0, 2),
+                   noise_panel(errors, estimate, stated, 1, 2)};
   figure.panel_width = 340.0;
   figure.panel_height = 340.0;
   return figure;

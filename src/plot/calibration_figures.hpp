@@ -10,6 +10,7 @@
 #include "trussmap/umbmark.hpp"
 #include "trussmap/wheel_noise.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -18,7 +19,9 @@ namespace trussmap {
 /// panel per round, all at the first one's scale. At least one round, else std::invalid_argument.
 [[nodiscard]] Figure square_figure(const std::vector<SquareRuns>& rounds, double side);
 
-/// End errors in three planes, with the 95 % ellipses of the runs and of the model.
-[[nodiscard]] Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate);
+/// End errors in three planes, with the 95 % ellipses of the runs and of the model, and of a stated
+/// model those of 1, 2 and 3 standard deviations.
+[[nodiscard]] Figure noise_figure(const EndErrors& errors, const NoiseEstimate& estimate,
+                                  const std::optional<StatedNoise>& stated = std::nullopt);
 
 }  // namespace trussmap

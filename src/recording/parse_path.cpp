@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/test_path.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -28,25 +29,31 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-std::optional<PathSegment> parse_segment(std::string_view text) {
+/// One segment or several; none where the text is not understood.
+TestPath parse_segment(std::string_view text) {
+  constexpr std::string_view kEight = "eight@";
+  if (text.starts_with(kEight)) {
+    const std::optional<double> radius = number(text.substr(kEight.size()));
+    return radius && *radius > 0.0 ? figure_eight_path(*radius) : TestPath();
+  }
   if (text.starts_with('a')) {
     const std::optional<double> turn = number(text.substr(1));
-    if (!turn) return std::nullopt;
-    return PathSegment{0.0, *turn * kDegree};
+    if (!turn) return {};
+    return {{0.0, *turn * kDegree}};
   }
   const std::size_t at = text.find('@');
   const std::optional<double> distance = number(text.substr(0, at));
-  if (!distance) return std::nullopt;
-  if (at == std::string_view::npos) return PathSegment{*distance, 0.0};
+  if (!distance) return {};
+  if (at == std::string_view::npos) return {{*distance, 0.0}};
   const std::optional<double> turn = number(text.substr(at + 1));
-  if (!turn) return std::nullopt;
-  return PathSegment{*distance, *turn * kDegree};
+  if (!turn) return {};
+  return {{*distance, *turn * kDegree}};
 }
 
 [[noreturn]] void refuse(const std::string& segment, const std::string& path) {
   throw std::invalid_argument("segment \"" + segment + "\" of the path \"" + path +
                               "\" cannot be read, expected metres (10 or -10), a turn on the spot "
-                              "in degrees (a90) or an arc (3@45)");
+                              "in degrees (a90), an arc (3@45) or a figure-eight (eight@1)");
 }
 
 }  // namespace
@@ -57,10 +64,12 @@ TestPath parse_path(const std::string& text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     const std::string segment(trimmed(std::string_view(text).substr(begin, comma - begin)));
-    const std::optional<PathSegment> parsed = parse_segment(segment);
-    if (!parsed) refuse(segment, text);
-    path.push_back(*parsed);
-    moves = moves || parsed->distance != 0.0 || parsed->turn != 0.0;
+    const TestPath parsed = parse_segment(segment);
+    if (parsed.empty()) refuse(segment, text);
+    path.insert(path.end(), parsed.begin(), parsed.end());
+    moves = moves || std::any_of(parsed.begin(), parsed.end(), [](const PathSegment& one) {
+              return one.distance != 0.0 || one.turn != 0.0;
+            });
     begin = comma + 1;
   }
   if (!moves) {

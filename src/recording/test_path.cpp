@@ -17,6 +17,11 @@ TestPath square_path(double side, Direction direction) {
   return path;
 }
 
+TestPath figure_eight_path(double radius) {
+  const double circle = 2.0 * std::numbers::pi;
+  return {{circle * radius, circle}, {circle * radius, -circle}};
+}
+
 double path_length(const TestPath& path) {
   double length = 0.0;
   for (const PathSegment& segment : path) length += std::abs(segment.distance);

@@ -25,10 +25,9 @@ std::string constant_text(const WheelConstant& wheel) {
 }
 
 ChartLayer outline_layer(const std::string& name, const Vector2& centre, const Matrix2& covariance,
-                         const std::string& colour) {
+                         const std::string& colour, double reach = ellipse95_scale(2)) {
   ChartLayer layer{LayerKind::line, name, {{"across"}, {"up"}}, colour};
-  for (const Vector2& p :
-       ellipse_outline(kThousand * centre, covariance, kThousand * ellipse95_scale(2))) {
+  for (const Vector2& p : ellipse_outline(kThousand * centre, covariance, kThousand * reach)) {
     layer.columns[0].numbers.push_back(p.x());
     layer.columns[1].numbers.push_back(p.y());
   }
@@ -71,7 +70,27 @@ Chart plane_chart(const NoiseCalibration& found, int across, int up) {
   chart.layers.push_back(
       outline_layer("95 % ellipse of the model", centre, estimate.modelled(pick, pick), "2"));
   chart.layers.back().dashed = true;
+  for (int sigma = 1; found.stated && sigma <= 3; ++sigma) {
+    chart.layers.push_back(outline_layer(fmt::format("{} sigma by the k stated", sigma),
+                                         Vector2(found.stated->centre(pick)),
+                                         found.stated->modelled(pick, pick), "3", sigma));
+  }
   return chart;
+}
+
+PageTable stated_table(const StatedNoise& stated) {
+  PageTable table;
+  table.caption = fmt::format("By the k stated, {:.2g} and {:.2g} m^1/2 (p {})", stated.left,
+                              stated.right, probability_text(stated.p_value));
+  table.headings = {"runs within (expected)", "1 sigma", "2 sigma", "3 sigma"};
+  for (const SigmaCount& count : stated.counts) {
+    std::vector<std::string> row = {count.coordinates};
+    for (std::size_t k = 0; k < count.inside.size(); ++k) {
+      row.push_back(fmt::format("{} ({:.1f})", count.inside[k], count.expected[k]));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 Chart constant_chart(const NoiseEstimate& estimate) {
@@ -137,6 +156,7 @@ Page noise_page(const NoiseCalibration& found, const std::string& subject) {
       {"Where the runs ended",
        {ChartRow{plane_chart(found, 0, 1), plane_chart(found, 0, 2), plane_chart(found, 1, 2)}}});
   page.sections.push_back({"The wheels", {ChartRow{constant_chart(estimate)}, fit_table(found)}});
+  if (found.stated) page.sections.push_back({"As stated", {stated_table(*found.stated)}});
   return page;
 }
 

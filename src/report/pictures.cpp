@@ -14,8 +14,9 @@ std::string square_picture(const std::vector<SquareRuns>& rounds, double side) {
   return draw_figure(square_figure(rounds, side));
 }
 
-std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate) {
-  return draw_figure(noise_figure(errors, estimate));
+std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate,
+                          const std::optional<StatedNoise>& stated) {
+  return draw_figure(noise_figure(errors, estimate, stated));
 }
 
 }  // namespace trussmap

@@ -93,14 +93,21 @@ PageTable metrics_table(const SquareRound& last) {
   PageTable table;
   table.caption = "What the squares say";
   table.headings = {"", "exact", "by the papers' formulas"};
-  const auto row = [&](const char* name, Estimate SquareSolution::*member, const char* unit) {
+  if (last.headings) table.headings.emplace_back("by the headings alone");
+  const auto row = [&](const char* name, Estimate SquareSolution::*member,
+                       Estimate SquareHeadings::*by_heading, const char* unit) {
     table.rows.push_back(
         {name, with_error(last.exact.*member, unit), with_error(last.formulas.*member, unit)});
+    if (last.headings) {
+      table.rows.back().push_back(with_error((*last.headings).*by_heading, unit));
+    }
   };
-  row("E_d, right wheel over left", &SquareSolution::diameter_ratio, "");
-  row("E_b, wheelbase over nominal", &SquareSolution::wheelbase_ratio, "");
-  row("alpha, missing per quarter turn", &SquareSolution::alpha, "rad");
-  row("beta, turned per leg", &SquareSolution::beta, "rad");
+  row("E_d, right wheel over left", &SquareSolution::diameter_ratio,
+      &SquareHeadings::diameter_ratio, "");
+  row("E_b, wheelbase over nominal", &SquareSolution::wheelbase_ratio,
+      &SquareHeadings::wheelbase_ratio, "");
+  row("alpha, missing per quarter turn", &SquareSolution::alpha, &SquareHeadings::alpha, "rad");
+  row("beta, turned per leg", &SquareSolution::beta, &SquareHeadings::beta, "rad");
   return table;
 }
 

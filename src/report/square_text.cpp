@@ -45,18 +45,33 @@ std::string corrections_text(const SquareRound& round, SquareMethod method, Text
 
 std::string solutions_text(const SquareRound& round, TextStyle style) {
   TextTable table;
-  table.columns = {Align::left, Align::right, Align::left, Align::right, Align::left, Align::left};
+  table.columns = {Align::left, Align::right, Align::left, Align::right, Align::left};
   table.has_heading = true;
-  table.rows.push_back({"", "exact", "", "formulas", "", "unit"});
-  const auto row = [&](const char* name, Estimate SquareSolution::*member, const char* unit) {
-    const std::vector<std::string> exact = quantity_cells(round.exact.*member);
-    const std::vector<std::string> small = quantity_cells(round.formulas.*member);
-    table.rows.push_back({name, exact[0], exact[1], small[0], small[1], unit});
+  table.rows.push_back({"", "exact", "", "formulas", ""});
+  if (round.headings) {
+    table.columns.insert(table.columns.end(), {Align::right, Align::left});
+    table.rows.front().insert(table.rows.front().end(), {"headings", ""});
+  }
+  table.columns.push_back(Align::left);
+  table.rows.front().push_back("unit");
+  const auto row = [&](const char* name, Estimate SquareSolution::*member,
+                       Estimate SquareHeadings::*by_heading, const char* unit) {
+    std::vector<std::string> cells = {name};
+    const auto add = [&](const Estimate& value) {
+      for (const std::string& cell : quantity_cells(value)) cells.push_back(cell);
+    };
+    add(round.exact.*member);
+    add(round.formulas.*member);
+    if (round.headings) add((*round.headings).*by_heading);
+    cells.emplace_back(unit);
+    table.rows.push_back(std::move(cells));
   };
-  row("E_d  right wheel / left wheel", &SquareSolution::diameter_ratio, "");
-  row("E_b  wheelbase / believed", &SquareSolution::wheelbase_ratio, "");
-  row("alpha  missing per quarter turn", &SquareSolution::alpha, "rad");
-  row("beta  turned per leg", &SquareSolution::beta, "rad");
+  row("E_d  right wheel / left wheel", &SquareSolution::diameter_ratio,
+      &SquareHeadings::diameter_ratio, "");
+  row("E_b  wheelbase / believed", &SquareSolution::wheelbase_ratio,
+      &SquareHeadings::wheelbase_ratio, "");
+  row("alpha  missing per quarter turn", &SquareSolution::alpha, &SquareHeadings::alpha, "rad");
+  row("beta  turned per leg", &SquareSolution::beta, &SquareHeadings::beta, "rad");
   return "\n" + table_text(table, style);
 }
 
@@ -66,14 +81,34 @@ std::string clusters_text(const SquareRound& round, TextStyle style) {
                    Align::right, Align::left,  Align::right};
   table.has_heading = true;
   table.rows.push_back({"centre", "runs", "x [m]", "", "y [m]", "", "distance [m]"});
+  if (round.headings) {
+    table.columns.insert(table.columns.end(), {Align::right, Align::left});
+    table.rows.front().insert(table.rows.front().end(), {"heading [mrad]", ""});
+  }
   for (const auto& [name, mean] :
        {std::pair("cw", &round.clusters.cw), std::pair("ccw", &round.clusters.ccw)}) {
     const auto x = quantity_cells({mean->mean.x(), std::sqrt(mean->covariance(0, 0)), 0.0});
     const auto y = quantity_cells({mean->mean.y(), std::sqrt(mean->covariance(1, 1)), 0.0});
     table.rows.push_back({name, std::to_string(mean->count), x[0], x[1], y[0], y[1],
                           fmt::format("{:.4f}", mean->mean.norm())});
+    if (!round.headings) continue;
+    const Estimate& heading = mean == &round.clusters.cw ? round.headings->cw : round.headings->ccw;
+    for (const std::string& cell :
+         quantity_cells({1000.0 * heading.value, 1000.0 * heading.standard_error, 0.0})) {
+      table.rows.back().push_back(cell);
+    }
   }
   return "\n" + table_text(table, style);
+}
+
+/// E_s, where a straight run has measured it.
+std::string scale_text(const Estimate& scale) {
+  if (scale.value == 1.0 && scale.dof == 0.0) return "";
+  const QuantityText text = quantity_text(scale.value, scale.standard_error);
+  return fmt::format("\n  The scale of the straight run{}, E_s = {}{}, is in all three.\n",
+                     scale.dof > 0.0 ? "s" : "", text.value,
+                     text.error.empty() ? " (two runs or more give it a standard error)"
+                                        : " \u00b1 " + text.error);
 }
 
 std::string one_way_text(const SquareRound& round) {
@@ -86,6 +121,22 @@ std::string one_way_text(const SquareRound& round) {
 }
 
 }  // namespace
+
+std::string paths_alone_text(const std::vector<PathAlone>& paths, TextStyle style) {
+  if (paths.empty()) return "";
+  TextTable table;
+  table.columns = {Align::left, Align::right, Align::right, Align::right, Align::right};
+  table.has_heading = true;
+  table.rows.push_back({"path alone", "ends off [m]", "with the wheelbase tuned [m]",
+                        "a square then, cw [m]", "ccw [m]"});
+  for (const PathAlone& one : paths) {
+    table.rows.push_back({one.path, fmt::format("{:.3f}", one.tuned.error_before),
+                          fmt::format("{:.3f}", one.tuned.error_after),
+                          fmt::format("{:.3f}", one.tuned.square_cw),
+                          fmt::format("{:.3f}", one.tuned.square_ccw)});
+  }
+  return "\n" + table_text(table, style);
+}
 
 std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod method,
                         TextStyle style) {
@@ -107,8 +158,8 @@ std::string square_text(const std::vector<SquareRound>& rounds, SquareMethod met
         "\n  The last round's own corrections are within its scatter; those of the rounds before\n"
         "  would do as well.\n";
   }
-  out += corrections_text(last, method, style) + solutions_text(last, style) +
-         clusters_text(last, style);
+  out += corrections_text(last, method, style) + scale_text(rounds.front().setup.scale) +
+         solutions_text(last, style) + clusters_text(last, style);
   if (rounds.size() == 1 && last.clusters.second_round_worthwhile) out += one_way_text(last);
   return out + warnings_text(all_doubts(rounds), style);
 }

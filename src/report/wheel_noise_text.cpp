@@ -65,6 +65,26 @@ std::string distribution_text(const NoiseAnalysis& result, TextStyle style) {
   return "\n" + table_text(table, style);
 }
 
+std::string stated_text(const StatedNoise& stated, TextStyle style) {
+  TextTable table;
+  table.columns = {Align::left, Align::right, Align::right, Align::right};
+  table.has_heading = true;
+  table.rows.push_back({"runs within (expected)", "1 sigma", "2 sigma", "3 sigma"});
+  for (const SigmaCount& count : stated.counts) {
+    std::vector<std::string> row = {count.coordinates};
+    for (std::size_t k = 0; k < count.inside.size(); ++k) {
+      row.push_back(fmt::format("{} ({:.1f})", count.inside[k], count.expected[k]));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return fmt::format(
+             "\n  By the k stated, left {:.3g} and right {:.3g} x 10^-3 m^1/2: {} (p {}).\n",
+             1000.0 * stated.left, 1000.0 * stated.right,
+             stated.p_value < 0.01 ? "the runs contradict it" : "the runs allow it",
+             probability_text(stated.p_value)) +
+         "\n" + table_text(table, style);
+}
+
 }  // namespace
 
 std::string wheel_noise_text(const NoiseAnalysis& result, TextStyle style) {
@@ -73,7 +93,9 @@ std::string wheel_noise_text(const NoiseAnalysis& result, TextStyle style) {
                   result.fit.good ? "explains" : "does not explain", result.estimate.runs);
   return verdict_text(result.fit.good ? Mood::good : Mood::bad, verdict, style) + "\n" +
          constants_text(result, style) + scatter_text(result, style) +
-         distribution_text(result, style) + warnings_text(result.doubts, style);
+         distribution_text(result, style) +
+         (result.stated ? stated_text(*result.stated, style) : "") +
+         warnings_text(result.doubts, style);
 }
 
 }  // namespace trussmap

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -204,6 +205,177 @@ TEST(CalibrationCommands, ExchangedLabelsAreAWarningAboutTheRunsGiven) {
   const Ran ran = run_trussmap("umbmark --wheelbase 0.5 " + runs);
   EXPECT_EQ(ran.status, 0);
   EXPECT_NE(ran.output.find("warning: x and y contradict"), std::string::npos) << ran.output;
+}
+
+const std::string kMaps = TRUSSMAP_SOURCE_DIR "/maps/";
+
+TEST(UmbmarkCommand, TakesDistancesToWallsForTheEnds) {
+  // The robot of maps/make_wall_runs.py, which shares nothing with this program.
+  const ScratchFolder scratch;
+  const std::string out = (scratch.path() / "w.json").string();
+  const Ran ran = run_trussmap("umbmark " + kMaps + "wall_runs.csv --wall-sensors " + kMaps +
+                               "wall_sensors.csv --wheelbase 0.34 --json " + out);
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json result = read_json(out);
+  const json& exact = result["exact"];
+  EXPECT_NEAR(exact["E_d"].get<double>(), 1.0008, 4.0 * exact["sd_E_d"].get<double>());
+  EXPECT_NEAR(exact["E_b"].get<double>(), 0.989, 4.0 * exact["sd_E_b"].get<double>());
+  const json& headings = result["headings"];
+  EXPECT_NEAR(headings["E_d"].get<double>(), 1.0008, 4.0 * headings["sd_E_d"].get<double>());
+  EXPECT_NEAR(headings["E_b"].get<double>(), 0.989, 4.0 * headings["sd_E_b"].get<double>());
+  EXPECT_GT(headings["p_value"].get<double>(), 0.01);
+  EXPECT_NE(ran.output.find("headings"), std::string::npos) << ran.output;
+}
+
+TEST(UmbmarkCommand, HeadingsThatContradictPositionsAreAWarning) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  ASSERT_EQ(run_trussmap("umbmark --simulate --true-E-d 1.002 --true-E-b 0.98 --scatter 0.005 "
+                         "--scatter-heading 0.002 --seed 2 --write " +
+                         at + "/r.csv")
+                .status,
+            0);
+  const Ran good = run_trussmap("umbmark --wheelbase 0.34 " + at + "/r.csv");
+  EXPECT_EQ(good.output.find("warning"), std::string::npos) << good.output;
+  std::string text = scratch.contents().at("r.csv");
+  ASSERT_EQ(text.rfind("direction,x,y,heading\n", 0), 0U) << text;
+  text.replace(0, text.find('\n'), "direction,y,x,heading");  // and so both axes are exchanged
+  const Ran bad = run_trussmap("umbmark --wheelbase 0.34 " + scratch.write("b.csv", text).string());
+  EXPECT_NE(bad.output.find("warning: headings and positions contradict"), std::string::npos)
+      << bad.output;
+}
+
+TEST(UmbmarkCommand, StraightRunsMakeTheScalePartOfTheResult) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string truth = "--true-E-d 1.003 --true-E-b 0.98 --true-E-s 1.02 ";
+  ASSERT_EQ(run_trussmap("umbmark --simulate " + truth + "--scatter 0.002 --rounds 2 --json " + at +
+                         "/s.json --write " + at + "/r.csv --out " + at + "/m.toml")
+                .status,
+            0);
+  const json result = read_json(scratch.path() / "s.json");
+  const json& first = result["rounds"][0];
+  EXPECT_NEAR(first["E_s"].get<double>(), 1.02, 6.0 * first["sd_E_s"].get<double>());
+  EXPECT_NEAR(first["exact"]["E_b"].get<double>(), 0.98, 1e-3);
+  EXPECT_EQ(result["E_s"], 1.0);  // corrected by then
+  EXPECT_NEAR(result["sd_E_s"].get<double>(), first["sd_E_s"].get<double>() / 1.02, 1e-5);
+  const GeometryErrors written = geometry_errors(read_model(scratch.path() / "m.toml"));
+  EXPECT_NEAR(written.scale, first["E_s"].get<double>(), 1e-12);
+  EXPECT_NEAR(written.diameter_ratio, 1.003, 3e-4);
+
+  const Ran ran = run_trussmap("umbmark " + at +
+                               "/r.csv --wheelbase 0.34 --straight "
+                               "10.2:10,5.1:5 --json " +
+                               at + "/g.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("E_s = 1.02"), std::string::npos) << ran.output;
+  // What the squares say of E_d and of E_b / E_s is theirs.
+  const Ran bare =
+      run_trussmap("umbmark " + at + "/r.csv --wheelbase 0.34 --json " + at + "/b.json");
+  EXPECT_EQ(bare.output.find("E_s"), std::string::npos) << bare.output;
+  const json with = read_json(scratch.path() / "g.json")["exact"];
+  const json without = read_json(scratch.path() / "b.json")["exact"];
+  EXPECT_NEAR(with["E_b"].get<double>() / 1.02, without["E_b"].get<double>(), 2e-3);
+  EXPECT_NEAR(with["c_left"].get<double>() + with["c_right"].get<double>(), 2.04, 1e-3);
+}
+
+TEST(UmbmarkCommand, SaysWhatAnotherPathAloneWouldHide) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch.path() / "a.json").string();
+  const Ran ran = run_trussmap("umbmark " + kMaps +
+                               "square_runs.csv --wheelbase 0.34 --alone eight@1.5 --alone "
+                               "\"4,a90,4,a90,4,a90,4,a90\" --json " +
+                               out);
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json alone = read_json(out)["alone"];
+  ASSERT_EQ(alone.size(), 2U);
+  EXPECT_EQ(alone[0]["path"], "eight@1.5");
+  EXPECT_LT(alone[0]["end_tuned_m"].get<double>(), 0.01);
+  EXPECT_GT(alone[0]["square_cw_tuned_m"].get<double>(), 0.08);  // 2 sqrt(2) L beta, 0.11 m
+  // The square turning left is what the text has always told of: 0.304 m to 0.000 m, cw 0.224 m.
+  EXPECT_NE(ran.output.find("until 0.304 m became 0.000 m; cw, 0.224"), std::string::npos);
+  EXPECT_NEAR(alone[1]["end_m"].get<double>(), 0.304, 5e-4);
+  EXPECT_NEAR(alone[1]["square_cw_tuned_m"].get<double>(), 0.224, 5e-4);
+}
+
+TEST(NoiseCommand, JudgesAKThatIsStated) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  ASSERT_EQ(run_trussmap("noise --simulate --true-k-left 0.0004 --true-k-right 0.00058 "
+                         "--wheelbase 0.5 --seed 3 --write " +
+                         at + "/r.csv")
+                .status,
+            0);
+  const auto judge = [&](const std::string& k, const std::string& further = "") {
+    return run_trussmap("noise " + at + "/r.csv --wheelbase 0.5 --k " + k + " --json " + at +
+                        "/k.json " + further);
+  };
+  const Ran ran = judge("0.0004,0.00058", "--plots " + at + "/plots --html " + at + "/k.html");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  EXPECT_NE(ran.output.find("the runs allow it"), std::string::npos) << ran.output;
+  const json stated = read_json(scratch.path() / "k.json")["stated"];
+  EXPECT_GT(stated["p_value"].get<double>(), 0.01);
+  ASSERT_EQ(stated["within"].size(), 4U);
+  EXPECT_EQ(stated["within"][0]["coordinates"], "x-y");
+  const std::string picture = scratch.contents().at("plots/noise.svg");
+  EXPECT_NE(picture.find("1, 2, 3 sigma"), std::string::npos);
+  EXPECT_NE(scratch.contents().at("k.html").find("By the k stated"), std::string::npos);
+  const Ran wrong = judge("0.0012,0.00058");
+  EXPECT_NE(wrong.output.find("the runs contradict it"), std::string::npos) << wrong.output;
+  EXPECT_EQ(judge("0,0.1").status, 2);
+  EXPECT_EQ(judge("0.1").status, 2);
+}
+
+TEST(CalibrationCommands, BadWallDistancesAndStraightRunsNameWhatIsWrong) {
+  const ScratchFolder scratch;
+  const std::string columns =
+      "start1,start2,start3,end1,end2,end3,odometry_x,odometry_y,odometry_heading\n";
+  const std::string good = "1,1,1,1,1,1,0,0,0\n";
+  const std::string sensors = "faces,x,y\nleft,0.2,0\nleft,-0.2,0\nahead,0,0\n";
+  struct Bad {
+    std::string runs;
+    std::string sensors;
+    const char* said;
+  };
+  const Bad all[] = {
+      {columns + good + "1,1,1,1,1.6,1,0,0,0\n", sensors, "runs.csv:3: the distances of the two"},
+      {columns + good + "1,1,1,1,1.35,1,0,0,0\n", sensors, "runs.csv:3: the distances say that"},
+      {columns + good + "1,-1,1,1,1,1,0,0,0\n", sensors, "runs.csv:3: start2 is -1"},
+      {columns + good + "1,1,1,1,1,900,0,0,0\n", sensors, "runs.csv:3: x of the end error is"},
+      {columns + good, sensors, "1 run, expected two"},
+      {"x,y,heading\n0,0,0\n", sensors, "odometry_x"},
+      {columns + good, "faces,x,y\nleft,0.2,0\nup,-0.2,0\n", "sensors.csv:3: faces is \"up\""},
+      {columns + good, "faces,x,y\nleft,0.2,0\nleft,-0.2,0\n", "2 sensors, expected three"},
+      {columns + good, "faces,x,y\nleft,0.2,0\nahead,0,0\nright,0,0\n", "no two sensors face"}};
+  for (const Bad& bad : all) {
+    const std::string runs = scratch.write("runs.csv", bad.runs).string();
+    const std::string where = scratch.write("sensors.csv", bad.sensors).string();
+    const Ran ran = run_trussmap("noise --wheelbase 0.34 " + runs + " --wall-sensors " + where);
+    EXPECT_EQ(ran.status, 2) << bad.runs << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_NE(ran.output.find(bad.said), std::string::npos) << ran.output;
+  }
+  const std::string walls = scratch.write("walls.csv", columns + good).string();
+  const std::string where = scratch.write("sensors.csv", sensors).string();
+  const std::string squares = scratch.write("squares.csv", kRuns).string();
+  const std::string turned =
+      scratch.write("turned.csv", "direction,x,y,heading\ncw,0.1,0.1,4.6\n").string();
+  const std::vector<std::pair<std::string, std::string>> usage = {
+      {"noise --wheelbase 0.34 " + walls, "--wall-sensors"},
+      {"noise --simulate --wall-sensors " + where, "--wall-sensors is given"},
+      {"umbmark --wheelbase 0.34 " + turned, "turned.csv:2: heading is off by"},
+      {"umbmark --wheelbase 0.34 --straight 10 " + squares, "--straight"},
+      {"umbmark --wheelbase 0.34 --straight 10:x " + squares, "\"x\" is no length"},
+      {"umbmark --wheelbase 0.34 --straight 10:10, " + squares, "--straight"},
+      {"umbmark --wheelbase 0.34 --straight 10032:10 " + squares, "differ by half"},
+      {"umbmark --simulate --straight 10:10", "--true-E-s"},
+      {"umbmark --wheelbase 0.34 --alone eight " + squares, "\"eight\""}};
+  for (const auto& [arguments, said] : usage) {
+    const Ran ran = run_trussmap(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << ran.output;
+    EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
+    EXPECT_NE(ran.output.find(said), std::string::npos) << arguments << "\n" << ran.output;
+  }
 }
 
 }  // namespace

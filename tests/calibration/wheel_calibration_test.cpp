@@ -139,8 +139,8 @@ TEST(WheelCalibration, NothingThatMeasuresDistanceMeansNoScale) {
   EXPECT_FALSE(found.scale);
   ASSERT_EQ(found.undetermined.size(), 1U);
   EXPECT_EQ(found.undetermined[0],
-            "E_s (true / measured travel): nothing in use measures a distance; add a survey or "
-            "truth");
+            "E_s (true / measured travel): nothing in use measures a distance; add a survey, "
+            "truth, or loops between poses far apart");
 }
 
 TEST(WheelCalibration, ASurveyDoesAsWell) {

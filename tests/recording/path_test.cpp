@@ -24,11 +24,17 @@ TEST(ParsePath, ReadsStraightsTurnsAndArcs) {
     EXPECT_DOUBLE_EQ(path[k].turn, expected[k].turn) << k;
   }
   EXPECT_DOUBLE_EQ(path_length(path), 25.5);
+  const TestPath eight = parse_path("1, eight@0.5");
+  ASSERT_EQ(eight.size(), 3U);
+  EXPECT_DOUBLE_EQ(path_length(eight), 1.0 + 2.0 * kPi);
+  EXPECT_DOUBLE_EQ(eight[1].turn, 2.0 * kPi);
+  EXPECT_DOUBLE_EQ(eight[2].turn, -2.0 * kPi);
 }
 
 TEST(ParsePath, RefusesTheRestAndNamesTheSegment) {
-  for (const char* text : {"", ",", "10,", "10,,3", "ten", "10m", "a", "3@", "@3", "3@4@5", "nan",
-                           "inf", "1e999", "0", "a0", "0,a0", "A90"}) {
+  for (const char* text : {"",   ",",    "10,",   "10,,3", "ten",    "10m",     "a",
+                           "3@", "@3",   "3@4@5", "nan",   "inf",    "1e999",   "0",
+                           "a0", "0,a0", "A90",   "eight", "eight@", "eight@0", "eight@-1"}) {
     EXPECT_THROW((void)parse_path(text), std::invalid_argument) << text;
   }
   try {

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/measured_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+bool spans(const Loop& loop, const Noise& noise) {
+  constexpr double kFar = 10.0;  // standard deviations: what they add to a square is then 1 %
+  const double sd = std::isnan(loop.sd) ? noise.loop : loop.sd;
+  return std::hypot(loop.dx, loop.dy) > kFar * sd;
+}
+
+bool measures(const Recording& one, const ProblemOptions& options, const Noise& noise) {
+  const auto sees_range = [](const Sighting& sighting) { return !sighting.standing(); };
+  return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
+         std::any_of(one.sightings.begin(), one.sightings.end(), sees_range) ||
+         (options.loops && std::any_of(one.loops.begin(), one.loops.end(),
+                                       [&](const Loop& loop) { return spans(loop, noise); }));
+}
+
+}  // namespace
+
+bool measures_distance(const std::vector<Recording>& recordings, const ProblemOptions& options,
+                       const Noise& noise) {
+  return std::any_of(recordings.begin(), recordings.end(),
+                     [&](const Recording& one) { return measures(one, options, noise); });
+}
+
+}  // namespace trussmap
