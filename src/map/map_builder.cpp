@@ -129,6 +129,14 @@ const BuilderMemory& BuilderAccess::memory(const MapBuilder& builder) {
   return builder.state_->memory();
 }
 
+BuilderMemory BuilderAccess::settled_memory(const MapBuilder& builder) {
+  return builder.state_->settled_memory();
+}
+
+const BuilderMemory& BuilderAccess::settle_memory(MapBuilder& builder) {
+  return builder.state_->settle_memory();
+}
+
 bool BuilderAccess::has_journal(const MapBuilder& builder,
                                 const std::vector<BuilderCall>* journal) {
   return builder.state_ && builder.state_->journal == journal;
@@ -193,7 +201,7 @@ double MapBuilder::relax() {
 }
 
 double MapBuilder::energy() const {
-  return state_->mechanics().truss().energy();
+  return state_->mechanics().energy();
 }
 
 const std::vector<LeftOutArrival>& MapBuilder::left_out() const {
@@ -226,7 +234,7 @@ Vector2 MapBuilder::position(int landmark) const {
     throw std::invalid_argument(
         joined("the map has no landmark number ", landmark, ", expected 0 to ", landmarks() - 1));
   }
-  return state_->graph().landmark(landmark).position;
+  return state_->position(landmark);
 }
 
 std::vector<int> MapBuilder::nearest(const Vector2& point, int count) const {
@@ -264,7 +272,7 @@ std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {
 }
 
 LandmarkGraph MapBuilder::map() const {
-  return state_->graph();
+  return state_->map();
 }
 
 std::string name_of(Method method) {
