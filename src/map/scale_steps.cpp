@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Steps of groups by their sums, and the search for what is nearest.
+#include "linalg/dense.hpp"
 #include "map/scale_sums.hpp"
 
 #include <algorithm>
@@ -12,8 +13,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kUnheld = 1e-11;  // share of its stiffness that an unknown keeps when held; sums
-                                   // that cancel leave some rounding
+constexpr double kUnheld = 1e-12;  // share of its stiffness that an unknown keeps when held
 constexpr int kMostHalvings = 10;
 constexpr double kFlattest = 1e-4;  // a frame that can still be gone back from
 constexpr int kUnknowns = 6;        // per group
@@ -21,10 +21,6 @@ constexpr int kUnknowns = 6;        // per group
 /// A group of landmarks in one line may be pulled out of it without bound.
 bool is_modest(const Matrix2& L, double flattest = kFlattest) {
   return L.allFinite() && std::abs(L.determinant()) > flattest * L.squaredNorm();
-}
-
-Affine added(const Affine& frame, const GroupForce& numbers, double share) {
-  return {frame.t + share * numbers.col(0), frame.L + share * numbers.rightCols<2>()};
 }
 
 /// Distance from a point to a box that a frame carries, or less.
@@ -45,23 +41,55 @@ double least_distance(const Affine& frame, const Vector2& low, const Vector2& hi
 /// The free groups of a step.
 struct ScaleSums::Free {
   std::vector<int> groups;
-  std::vector<Affine> at;  ///< per free group
-  std::vector<int> rank;   ///< per free group: its place in the system
+  // Per free group:
+  std::vector<Affine> at;       ///< its places in the map
+  std::vector<Vector2> centre;  ///< of its landmarks in the map
+  std::vector<Matrix2> axes;    ///< from there to places along and across, 1: a standard deviation
+  std::vector<Affine> modes;    ///< the same of places in its frame
+  std::vector<int> rank;        ///< its place in the system
   int band = 0;
   Eigen::VectorXd f;
+
+  [[nodiscard]] GroupForce numbers(std::size_t n) const {
+    return GroupForce(Eigen::Map<const GroupForce>(f.data() + std::ptrdiff_t{kUnknowns} * rank[n]));
+  }
+  /// What a share of the step does to a place in the map: linear part.
+  [[nodiscard]] Matrix2 change(std::size_t n, double share) const {
+    return Matrix2::Identity() + share * numbers(n).rightCols<2>() * axes[n];
+  }
+  [[nodiscard]] Affine moved(std::size_t n, double share) const {
+    const Vector2 shift = centre[n] + share * numbers(n).col(0);
+    return after({shift, change(n, share)}, after(shift_by(-centre[n]), at[n]));
+  }
 };
+
+ScaleSums::Free ScaleSums::free_groups(int level, const std::vector<int>& groups) const {
+  Free free;
+  free.groups = groups;
+  for (const int group : groups) {
+    const Group& one = level_at(level).groups[idx(group)];
+    const Affine at = frame_of(level, group);
+    const Matrix2 spread = at.L * one.spread * at.L.transpose() / std::max(one.landmarks, 1);
+    const PlanarModes modes = planar_modes(spread);
+    const Vector2 sd = modes.eigenvalues.cwiseMax(0.0).cwiseSqrt();  // the larger one last
+    Matrix2 axes = Matrix2::Zero();
+    if (sd[1] > 0.0) axes.row(0) = modes.eigenvectors.col(1).transpose() / sd[1];
+    if (sd[0] > kThinnest * sd[1]) axes.row(1) = modes.eigenvectors.col(0).transpose() / sd[0];
+    free.at.push_back(at);
+    free.centre.push_back(at(one.mean));
+    free.axes.push_back(axes);
+    free.modes.push_back({axes * (at.t - free.centre.back()), axes * at.L});
+  }
+  return free;
+}
 
 double ScaleSums::relax(int level, const std::vector<int>& groups, const ElasticTruss& truss) {
   if (groups.empty()) return 0.0;
   held_ = shift_by(truss.position(0));
   const Level& at = level_at(level);
-  Free free;
-  free.groups = groups;
+  Free free = free_groups(level, groups);
   place_.resize(std::max(place_.size(), at.groups.size()), -1);
-  for (std::size_t n = 0; n < groups.size(); ++n) {
-    free.at.push_back(frame_of(level, groups[n]));
-    place_[idx(groups[n])] = static_cast<int>(n);
-  }
+  for (std::size_t n = 0; n < groups.size(); ++n) place_[idx(groups[n])] = static_cast<int>(n);
   double gain = 0.0;
   try {
     assemble(level, free);
@@ -84,21 +112,14 @@ double ScaleSums::relax(int level, const std::vector<int>& groups, const Elastic
 
 /// Along the direction in which they spread most, as a patch of a map is narrow across it.
 void ScaleSums::order(const Level& level, Free& free) const {
-  const auto count = static_cast<double>(free.groups.size());
-  std::vector<Vector2> centres;
   Vector2 mean = Vector2::Zero();
-  for (std::size_t n = 0; n < free.groups.size(); ++n) {
-    const Group& one = level.groups[idx(free.groups[n])];
-    centres.push_back(one.landmarks > 0 ? free.at[n](0.5 * (one.low + one.high)) : free.at[n].t);
-    mean += centres.back() / count;
-  }
+  for (const Vector2& at : free.centre) mean += at / static_cast<double>(free.centre.size());
   Matrix2 spread = Matrix2::Zero();
-  for (const Vector2& at : centres) spread += (at - mean) * (at - mean).transpose();
-  const double angle = 0.5 * std::atan2(2.0 * spread(0, 1), spread(0, 0) - spread(1, 1));
-  const Vector2 axis(std::cos(angle), std::sin(angle));
+  for (const Vector2& at : free.centre) spread += (at - mean) * (at - mean).transpose();
+  const Vector2 axis = planar_modes(spread).eigenvectors.col(1);
   std::vector<std::pair<double, int>> along;
-  for (std::size_t n = 0; n < centres.size(); ++n) {
-    along.emplace_back(axis.dot(centres[n] - mean), static_cast<int>(n));
+  for (std::size_t n = 0; n < free.centre.size(); ++n) {
+    along.emplace_back(axis.dot(free.centre[n] - mean), static_cast<int>(n));
   }
   std::sort(along.begin(), along.end());
   free.rank.assign(free.groups.size(), 0);
@@ -123,7 +144,12 @@ void ScaleSums::assemble(int level, Free& free) {
   const int unknowns = kUnknowns * static_cast<int>(free.groups.size());
   K_.resize(unknowns, kUnknowns * (free.band + 1) - 1);
   free.f = Eigen::VectorXd::Zero(unknowns);
-  const auto pull = [&](std::size_t n, const GroupForce& force) {
+  const auto pull = [&](std::size_t n, const GroupForce& by_place) {
+    const Affine& modes = free.modes[n];
+    GroupForce force;
+    force.col(0) = by_place.col(0);
+    force.rightCols<2>() =
+        by_place.col(0) * modes.t.transpose() + by_place.rightCols<2>() * modes.L.transpose();
     free.f.segment<kUnknowns>(kUnknowns * free.rank[n]) +=
         Eigen::Map<const Eigen::Matrix<double, kUnknowns, 1>>(force.data());
   };
@@ -152,7 +178,9 @@ void ScaleSums::assemble(int level, Free& free) {
   for (std::size_t n = 0; n < free.groups.size(); ++n) {
     const Group& one = at.groups[idx(free.groups[n])];
     pull(n, pull_within(one.inner, free.at[n].L));
-    add_own(n, one.inner.dd);
+    InnerSums inner;
+    inner.add_inner(one.inner, free.modes[n]);
+    add_own(n, inner.dd);
     for (const int number : one.ties) {
       const Tie& tie = at.ties[idx(number)];
       const bool near = tie.a == free.groups[n];
@@ -162,9 +190,11 @@ void ScaleSums::assemble(int level, Free& free) {
       const Affine theirs = place >= 0  ? free.at[idx(place)]
                             : other < 0 ? held_
                                         : frame_of(level, other);
-      const TieSums& sums = tie.sums;
       const TiePulls pulls =
-          near ? pulls_of(sums, free.at[n], theirs) : pulls_of(sums, theirs, free.at[n]);
+          near ? pulls_of(tie.sums, free.at[n], theirs) : pulls_of(tie.sums, theirs, free.at[n]);
+      const Affine beyond = place >= 0 ? free.modes[idx(place)] : Affine{};
+      const TieSums sums = near ? in_frames(tie.sums, free.modes[n], beyond)
+                                : in_frames(tie.sums, beyond, free.modes[n]);
       pull(n, near ? pulls.on_a : pulls.on_b);
       if (near) {
         add_end(n, sums.n, sums.a, sums.aa);
@@ -199,14 +229,10 @@ void ScaleSums::add_between(int rank_a, int rank_b, const TieSums& sums) {
 
 /// Returns the share of the step's gain: all, unless a group would be drawn out too far.
 double ScaleSums::move(int level, const Free& free) {
-  const auto numbers = [&](std::size_t n) {
-    return GroupForce(
-        Eigen::Map<const GroupForce>(free.f.data() + std::ptrdiff_t{kUnknowns} * free.rank[n]));
-  };
   double share = 1.0;
   int halvings = 0;
   for (std::size_t n = 0; n < free.groups.size() && halvings <= kMostHalvings; ++n) {
-    while (halvings <= kMostHalvings && !is_modest(added(free.at[n], numbers(n), share).L)) {
+    while (halvings <= kMostHalvings && !is_modest(free.change(n, share))) {
       share *= 0.5;
       ++halvings;
     }
@@ -218,14 +244,14 @@ double ScaleSums::move(int level, const Free& free) {
   for (std::size_t n = 0; n < free.groups.size(); ++n) {
     const int group = free.groups[n];
     const int parent = at.frames[idx(group)].parent;
-    const Affine now = added(free.at[n], numbers(n), share);
+    const Affine now = free.moved(n, share);
     set_frame(level, group, parent < 0 ? now : after(inverse_of(frame_of(level + 1, parent)), now));
     const Group& one = at.groups[idx(group)];
     moved += one.landmarks;
     for (const double x : {one.low.x(), one.high.x()}) {
       for (const double y : {one.low.y(), one.high.y()}) {
-        const Vector2 u = share * (numbers(n) * Eigen::Vector3d(1.0, x, y));
-        largest = std::max(largest, u.norm());
+        const Vector2 corner(x, y);
+        largest = std::max(largest, (now(corner) - free.at[n](corner)).norm());
       }
     }
     if (parent >= 0) touch_group(level + 1, parent);

@@ -236,10 +236,13 @@ void ScaleSums::sum_landmarks(int group, ElasticTruss& truss) {
   Level& level = level_at(kFinest);
   Group& one = level.groups[idx(group)];
   one.landmarks = static_cast<int>(one.members.size());
+  one.mean.setZero();  // where the frame has its origin
+  one.spread.setZero();
   for (const int member : one.members) {
     const Vector2 place = seen_[idx(group)].back(truss.position(member));
     one.low = one.low.cwiseMin(place);
     one.high = one.high.cwiseMax(place);
+    one.spread += place * place.transpose();
     for (const int number : truss.elements_at(member)) {
       const Element& bar = truss.element(number);
       const int other = bar.joints[0] == member ? bar.joints[1] : bar.joints[0];
@@ -286,10 +289,36 @@ void ScaleSums::take_frame_of_members(int level, int group) {
   set_frame(level, group, parent < 0 ? now : after(inverse_of(frame_of(level + 1, parent)), now));
 }
 
+/// Its box, and how its landmarks' places spread.
+void ScaleSums::measure_members(int level, int group) {
+  const Level& below = level_at(level - 1);
+  Group& one = level_at(level).groups[idx(group)];
+  Vector2 sum = Vector2::Zero();
+  for (const int member : one.members) {
+    const Group& part = below.groups[idx(member)];
+    const Affine& T = below.frames[idx(member)].T;
+    const Vector2 centre = T(0.5 * (part.low + part.high));
+    const Vector2 reach = T.L.cwiseAbs() * (0.5 * (part.high - part.low));
+    one.low = one.low.cwiseMin(centre - reach);
+    one.high = one.high.cwiseMax(centre + reach);
+    one.landmarks += part.landmarks;
+    sum += part.landmarks * T(part.mean);
+  }
+  one.mean = sum / one.landmarks;
+  one.spread.setZero();
+  for (const int member : one.members) {
+    const Group& part = below.groups[idx(member)];
+    const Affine& T = below.frames[idx(member)].T;
+    const Vector2 off = T(part.mean) - one.mean;
+    one.spread += T.L * part.spread * T.L.transpose() + part.landmarks * off * off.transpose();
+  }
+}
+
 void ScaleSums::sum_members(int level, int group) {
   Level& at = level_at(level);
   const Level& below = level_at(level - 1);
   Group& one = at.groups[idx(group)];
+  measure_members(level, group);
   const auto frame = [&](int member) {
     return member < 0 ? Affine{} : below.frames[idx(member)].T;
   };
@@ -297,11 +326,6 @@ void ScaleSums::sum_members(int level, int group) {
     const Group& part = below.groups[idx(member)];
     const Affine T = frame(member);
     one.inner.add_inner(part.inner, T);
-    one.landmarks += part.landmarks;
-    const Vector2 centre = T(0.5 * (part.low + part.high));
-    const Vector2 reach = T.L.cwiseAbs() * (0.5 * (part.high - part.low));
-    one.low = one.low.cwiseMin(centre - reach);
-    one.high = one.high.cwiseMax(centre + reach);
     for (const int number : part.ties) {
       const Tie& tie = below.ties[idx(number)];
       const int other = tie.a == member ? tie.b : tie.a;

@@ -10,6 +10,10 @@
 //             /|\  /|\                               .
 //            landmarks        c, in the frame of g
 //
+// Numbers of a step, of each free group: how it is moved; how that changes along the axis in which
+// its landmarks spread most, and across it. A group that is thinner than kThinnest of its length
+// moves alike across: there would be nothing to tell it by.
+//
 // A group that is moved, turned and sheared changes its T alone; its landmarks follow when they are
 // looked at. What its bars pull is known from sums (affine_sums.hpp), which every group keeps of
 // the bars within and per neighbour in its own frame: there no move of itself or of a coarser group
@@ -34,6 +38,8 @@ class ScaleSums {
  public:
   /// Finer levels are relaxed landmark by landmark.
   static constexpr int kFinest = 1;
+  /// Of a group across its longest axis, standard deviations of its landmarks' places.
+  static constexpr double kThinnest = 0.01;
 
   [[nodiscard]] bool empty() const { return levels_.empty(); }
   void clear() noexcept;
@@ -85,6 +91,8 @@ class ScaleSums {
     Vector2 low = Vector2::Zero();  ///< its landmarks lie in this box of its frame
     Vector2 high = Vector2::Zero();
     int landmarks = 0;
+    Vector2 mean = Vector2::Zero();    ///< of their places
+    Matrix2 spread = Matrix2::Zero();  ///< sum of squares about it
     bool touched = false;
   };
   struct Tie {
@@ -128,8 +136,10 @@ class ScaleSums {
   void sum_bar(int group, const Element& bar, const ElasticTruss& truss);
   void take_frame_of_members(int level, int group);
   void sum_members(int level, int group);
+  void measure_members(int level, int group);
 
   struct Free;
+  [[nodiscard]] Free free_groups(int level, const std::vector<int>& groups) const;
   void order(const Level& level, Free& free) const;
   void assemble(int level, Free& free);
   void add_between(int rank_a, int rank_b, const TieSums& sums);

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
@@ -88,20 +89,30 @@ double energy_at(const ElasticTruss& truss, const std::vector<Vector2>& position
   return sum;
 }
 
-/// Every landmark visited: the least energy over the six numbers of each free group.
+/// Every landmark visited: the least energy over the numbers of each free group, two per mode.
 std::vector<Vector2> by_landmarks(const World& world, int level, const std::vector<int>& free,
                                   const std::vector<Vector2>& positions) {
   const int unknowns = 6 * static_cast<int>(free.size());
   std::vector<Eigen::MatrixXd> P(positions.size(), Eigen::MatrixXd::Zero(2, unknowns));
-  for (int k = 1; k < world.truss.joints(); ++k) {
-    const auto found =
-        std::find(free.begin(), free.end(), world.groups.group_of(level, k)) - free.begin();
-    if (found == std::ssize(free)) continue;
-    const Vector2 off =
-        positions[idx(k)] - positions[idx(world.groups.seed(level, free[idx(found)]))];
-    const Eigen::Vector3d c(1.0, off.x(), off.y());
-    for (int m = 0; m < 3; ++m) {
-      P[idx(k)].block<2, 2>(0, 6 * found + 2 * m) = c[m] * Matrix2::Identity();
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    std::vector<int> members;
+    world.groups.members(level, free[n], members);
+    Vector2 mean = Vector2::Zero();
+    for (const int k : members) mean += positions[idx(k)] / static_cast<double>(members.size());
+    Matrix2 spread = Matrix2::Zero();
+    for (const int k : members) {
+      spread += (positions[idx(k)] - mean) * (positions[idx(k)] - mean).transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix2> axes(spread);
+    const Vector2 squares = axes.eigenvalues();
+    const bool thin =
+        !(squares[0] > ScaleSums::kThinnest * ScaleSums::kThinnest * squares[1] + 1e-12);
+    for (const int k : members) {
+      const Vector2 off = axes.eigenvectors().transpose() * (positions[idx(k)] - mean);
+      const Eigen::Vector3d c(1.0, off[1], thin ? 0.0 : off[0]);
+      for (int m = 0; m < 3; ++m) {
+        P[idx(k)].block<2, 2>(0, 6 * static_cast<int>(n) + 2 * m) = c[m] * Matrix2::Identity();
+      }
     }
   }
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(unknowns, unknowns);
