@@ -105,7 +105,12 @@ class __attribute__((visibility("hidden"))) BuilderAccess {
   /// A builder with this memory.
   [[nodiscard]] static MapBuilder restored(BuilderMemory memory, const MapBuilderOptions& options);
 
+  /// All but where the landmarks are: of a large map some may be behind.
   [[nodiscard]] static const BuilderMemory& memory(const MapBuilder& builder);
+  /// A copy with the landmarks where they are, and the memory itself after it has been told. Cost:
+  /// all landmarks.
+  [[nodiscard]] static BuilderMemory settled_memory(const MapBuilder& builder);
+  static const BuilderMemory& settle_memory(MapBuilder& builder);
 
   /// From now on every call that succeeds is put into `journal`, which outlives the builder; null:
   /// no longer.

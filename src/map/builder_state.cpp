@@ -16,8 +16,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kMoved = 1e-12;  // m
-
 RefinementScope scope_of(const MapBuilderOptions& options) {
   RefinementScope scope = options.scope;
   if (options.method == Method::gauss_markov) scope.kind = RefinementScope::Kind::all;
@@ -74,7 +72,8 @@ void MapBuilder::State::make_truss() {
   const LandmarkGraph& graph = m_.graph;
   for (int k = 0; k < graph.landmarks(); ++k) {
     const std::vector<int>& routes = graph.routes_at(k);
-    mechanics_.add_landmark(at(k), routes.empty() ? -1 : other_end(graph.route(routes.front()), k));
+    mechanics_.add_landmark(graph.landmark(k).position,
+                            routes.empty() ? -1 : other_end(graph.route(routes.front()), k));
   }
   elements_.resize(idx(graph.routes()));
   reckoned_at_.assign(idx(graph.routes()), -1);
@@ -107,7 +106,7 @@ MapBuilder::State MapBuilder::State::by_variance() const {
   options.method = Method::gauss_markov;
   options.law.reset();
   options.pooled = !weighs_each(options_);
-  return State(options, m_);
+  return State(options, settled_memory());
 }
 
 Matrix2 MapBuilder::State::covariance_between(int a, int b) const {
@@ -216,6 +215,7 @@ void MapBuilder::State::compass(double reading, double sd) {
 void MapBuilder::State::turn_map(double angle) {
   const Matrix2 R = rotation(angle);
   mechanics_.change([&] {
+    mechanics_.settle();
     for (int k = 1; k < m_.graph.landmarks(); ++k) mechanics_.move(k, at(0) + R * (at(k) - at(0)));
     for (const ReckonedRoute& one : m_.reckoned) {
       const int element = elements_[idx(one.route)].direction;
@@ -256,15 +256,40 @@ std::optional<PoseEstimate> MapBuilder::State::pose() const {
   return PoseEstimate{whole.displacement, whole.covariance};
 }
 
-/// The graph's positions follow the truss's.
+/// The graph's positions follow the truss's; where groups have moved, when somebody asks for them.
 void MapBuilder::State::note_moves(Arrival& arrival) noexcept {
-  for (const auto& [landmark, before] : mechanics_.truss().moved()) {
-    const Vector2& now = mechanics_.truss().position(landmark);
-    const double move = (now - at(landmark)).norm();
-    if (move > kMoved) ++arrival.landmarks_moved;
-    arrival.largest_move = std::max(arrival.largest_move, move);
-    m_.graph.set_position(landmark, now);
+  const MapMechanics::Moves moves = mechanics_.moves();
+  arrival.landmarks_moved = moves.landmarks;
+  arrival.largest_move = moves.largest;
+  if (behind_ && !mechanics_.groups_move()) {
+    write_positions(m_.graph);
   }
+  behind_ = mechanics_.groups_move();
+  if (behind_) return;
+  for (const auto& [landmark, before] : mechanics_.truss().moved()) {
+    m_.graph.set_position(landmark, mechanics_.truss().position(landmark));
+  }
+}
+
+void MapBuilder::State::write_positions(LandmarkGraph& graph) const noexcept {
+  for (int k = 0; k < graph.landmarks(); ++k) graph.set_position(k, at(k));
+}
+
+LandmarkGraph MapBuilder::State::map() const {
+  LandmarkGraph map = m_.graph;
+  if (behind_) write_positions(map);
+  return map;
+}
+
+BuilderMemory MapBuilder::State::settled_memory() const {
+  BuilderMemory memory = m_;
+  if (behind_) write_positions(memory.graph);
+  return memory;
+}
+
+const BuilderMemory& MapBuilder::State::settle_memory() noexcept {
+  if (behind_) write_positions(m_.graph);
+  return m_;
 }
 
 double MapBuilder::State::relax() {

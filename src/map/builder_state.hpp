@@ -53,8 +53,14 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] std::vector<Matrix2> covariances() const;
   [[nodiscard]] std::vector<double> expected_falls() const;
   [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
+  /// Its positions may be behind: position(), map().
   [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
+  [[nodiscard]] Vector2 position(int landmark) const { return at(landmark); }
+  [[nodiscard]] LandmarkGraph map() const;
+  /// Its graph's positions may be behind, but for the others.
   [[nodiscard]] const BuilderMemory& memory() const { return m_; }
+  [[nodiscard]] BuilderMemory settled_memory() const;
+  const BuilderMemory& settle_memory() noexcept;
   [[nodiscard]] const MapMechanics& mechanics() const { return mechanics_; }
 
   std::vector<BuilderCall>* journal = nullptr;
@@ -86,9 +92,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
 
   [[nodiscard]] StiffnessLaw law() const { return law_of(options_); }
   [[nodiscard]] bool printed() const { return options_.method == Method::elastic_printed; }
-  [[nodiscard]] const Vector2& at(int landmark) const {
-    return m_.graph.landmark(landmark).position;
-  }
+  [[nodiscard]] Vector2 at(int landmark) const { return mechanics_.position(landmark); }
   void make_truss();
   [[nodiscard]] State by_variance() const;
 
@@ -121,6 +125,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   int refine_as_printed(const Step& step);
   void remember(const Step& step, const std::string& landmark, const Traversal& in_map);
   void note_moves(Arrival& arrival) noexcept;
+  void write_positions(LandmarkGraph& graph) const noexcept;
 
   [[nodiscard]] HeadingEstimate heading_for(const std::optional<int>& to, const Chord& chord) const;
   [[nodiscard]] MeasuredLeg reckoned(const HeadingEstimate& heading, const Chord& chord,
@@ -136,6 +141,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   MapBuilderOptions options_;
   BuilderMemory m_;
   MapMechanics mechanics_;
+  bool behind_ = false;  ///< the graph's positions are: landmarks have moved with their groups
   std::vector<RouteElements> elements_;          ///< per route
   std::vector<int> reckoned_at_;                 ///< per route: its place in m_.reckoned, or -1
   std::vector<int> corner_elements_;             ///< per corner

@@ -178,12 +178,12 @@ TurningLeg MapBuilder::State::turning_leg(int from, int to, const RouteElements&
                                           int corner_element) const {
   const ElasticTruss& truss = mechanics_.truss();
   TurningLeg leg;
-  leg.from = truss.position(from);
+  leg.from = at(from);
   if (elements.bar >= 0) {
     leg.compliance = truss.element(elements.bar).B.inverse();
     return leg;
   }
-  const Vector2 d = truss.position(to) - truss.position(from);
+  const Vector2 d = at(to) - at(from);
   const Vector2 along = d.normalized();
   leg.compliance = along * along.transpose() / truss.element(elements.length).k;
   if (elements.direction >= 0) {

@@ -151,6 +151,14 @@ const BuilderMemory& BuilderAccess::memory(const MapBuilder& builder) {
   return builder.state_->memory();
 }
 
+BuilderMemory BuilderAccess::settled_memory(const MapBuilder& builder) {
+  return builder.state_->settled_memory();
+}
+
+const BuilderMemory& BuilderAccess::settle_memory(MapBuilder& builder) {
+  return builder.state_->settle_memory();
+}
+
 bool BuilderAccess::has_journal(const MapBuilder& builder,
                                 const std::vector<BuilderCall>* journal) {
   return builder.state_ && builder.state_->journal == journal;
@@ -215,7 +223,7 @@ double MapBuilder::relax() {
 }
 
 double MapBuilder::energy() const {
-  return state_->mechanics().truss().energy();
+  return state_->mechanics().energy();
 }
 
 const std::vector<LeftOutArrival>& MapBuilder::left_out() const {
@@ -248,7 +256,7 @@ Vector2 MapBuilder::position(int landmark) const {
     throw std::invalid_argument(
         joined("the map has no landmark number ", landmark, ", expected 0 to ", landmarks() - 1));
   }
-  return state_->graph().landmark(landmark).position;
+  return state_->position(landmark);
 }
 
 std::vector<int> MapBuilder::nearest(const Vector2& point, int count) const {
@@ -286,7 +294,7 @@ std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {
 }
 
 LandmarkGraph MapBuilder::map() const {
-  return state_->graph();
+  return state_->map();
 }
 
 void MapBuilder::save(const std::filesystem::path& file) {

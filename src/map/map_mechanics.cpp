@@ -17,7 +17,8 @@ constexpr Enough kLocal{.rounds = 2};                  // more comes at the next
 constexpr Enough kWhole{.rounds = 12, .gain = 1e-11};  // a further one would gain less
 constexpr double kNegligible = 0.1;  // of what a route yields to its own uncertainty
 constexpr int kFreeGroups = 25;      // at each scale: they cover several of the next
-constexpr int kMostMembers = 6000;   // landmarks in the groups that are free at a scale
+constexpr int kMostMembers = 6000;   // landmarks in the groups that are free at a scale, visited
+constexpr double kMoved = 1e-12;     // m
 
 /// What the call returns, or an error in the user's terms.
 template <typename Call>
@@ -33,43 +34,110 @@ auto solved(const Call& call) {
 
 void MapMechanics::roll_back() noexcept {
   truss_.roll_back();
+  if (!sums_.empty()) {
+    sums_.roll_back();
+    settle();
+  }
   equilibrium_.drop();
+  if (from_.size() > idx(truss_.joints())) index_.drop();
   from_.resize(idx(truss_.joints()));
   if (grouped_ > truss_.joints() || tied_ > truss_.elements()) {
     groups_.clear();
     grouped_ = tied_ = 0;
   }
+  if (others_ == 0) return;
+  others_ = 0;
+  for (int number = 0; number < truss_.elements(); ++number) {
+    others_ += truss_.element(number).kind == Element::Kind::bar ? 0 : 1;
+  }
 }
 
 void MapMechanics::commit() noexcept {
-  if (!at_rest_ && !truss_.moved().empty()) equilibrium_.disturbed();
-  if (exact()) {
+  if (!at_rest_ && (!truss_.moved().empty() || !sums_.empty())) equilibrium_.disturbed();
+  if (exact() || !sums_.empty()) {
     index_.drop();
   } else {
     for (const auto& [landmark, before] : truss_.moved()) {
       index_.move(landmark, truss_.position(landmark));
     }
   }
+  touch_moved();
   truss_.commit();
+  sums_.begin();
+  touched_ = 0;
+}
+
+/// What was moved by itself changes the sums of its group.
+void MapMechanics::touch_moved() noexcept {
+  const auto& moved = truss_.moved();
+  if (!sums_.empty()) {
+    for (; touched_ < moved.size(); ++touched_) sums_.touch(moved[touched_].first);
+  }
+  touched_ = moved.size();
+}
+
+void MapMechanics::settle() noexcept {
+  if (sums_.empty()) return;
+  sums_.settle(truss_);
+  index_.drop();
+}
+
+double MapMechanics::energy() const {
+  if (sums_.empty()) return truss_.energy();
+  double sum = 0.0;
+  for (int number = 0; number < truss_.elements(); ++number) {
+    const Element& bar = truss_.element(number);
+    const Vector2 strain = position(bar.joints[1]) - position(bar.joints[0]) - bar.w;
+    sum += 0.5 * strain.dot(bar.B * strain);
+  }
+  return sum;
+}
+
+MapMechanics::Moves MapMechanics::moves() noexcept {
+  Moves moves;
+  for (const auto& [landmark, before] : truss_.moved()) {
+    if (counted_[idx(landmark)] != 0) continue;  // its first entry has where it was
+    counted_[idx(landmark)] = 1;
+    const double move = (truss_.position(landmark) - before).norm();
+    if (move > kMoved) ++moves.landmarks;
+    moves.largest = std::max(moves.largest, move);
+  }
+  for (const auto& [landmark, before] : truss_.moved()) counted_[idx(landmark)] = 0;
+  if (sums_.largest_move() > kMoved) moves.landmarks = std::max(moves.landmarks, sums_.moved());
+  moves.largest += sums_.largest_move();
+  return moves;
+}
+
+void MapMechanics::move(int landmark, const Vector2& to) {
+  sums_.look(truss_, landmark);
+  truss_.move(landmark, to);
 }
 
 int MapMechanics::add_landmark(const Vector2& position, int from) {
   make_room(from_);
+  make_room(counted_);
   const int number = truss_.add_joint(position);
   from_.push_back(from);
-  index_.insert(number, position);
+  counted_.resize(idx(number) + 1, 0);
+  if (sums_.empty()) index_.insert(number, position);
   return number;
 }
 
 int MapMechanics::add_element(const Element& element) {
   const int number = truss_.add_element(element);
   equilibrium_.changed(number);
+  if (element.kind != Element::Kind::bar) {
+    ++others_;
+    settle();
+  }
+  for (int n = 0; n < element.count(); ++n) sums_.touch(element.joints[idx(n)]);
   return number;
 }
 
 void MapMechanics::set_element(int number, const Element& element) {
   truss_.set_element(number, element);
   equilibrium_.changed(number);
+  for (int n = 0; n < element.count(); ++n) sums_.touch(element.joints[idx(n)]);
 }
 
 bool MapMechanics::exact() const {
@@ -87,11 +155,13 @@ int MapMechanics::relax(int i, int j) {
 }
 
 void MapMechanics::relax_all() {
+  settle();
   solved([this] { equilibrium_.relax(truss_, kWhole); });
   at_rest_ = true;
 }
 
 std::array<std::vector<Vector2>, 2> MapMechanics::pulls(int i, int j) {
+  settle();
   const auto along = [&](const Vector2& force) { return equilibrium_.pull(truss_, i, j, force); };
   return solved([&] { return std::array{along(Vector2::UnitX()), along(Vector2::UnitY())}; });
 }
@@ -169,9 +239,12 @@ int MapMechanics::estimated_eta(int i, int j) const {
 }
 
 int MapMechanics::relax_nearest(int i, int j) {
+  if (!scope_.groups) settle();
+  sums_.look_round(truss_, {i, j});
   const Vector2 middle = 0.5 * (truss_.position(i) + truss_.position(j));
   const std::vector<int> near = members(i, j);
   truss_.fetch(near);
+  sums_.look_round(truss_, near);
   std::vector<FreeJoint> free;
   free.reserve(near.size());
   for (const int landmark : near) {
@@ -179,27 +252,44 @@ int MapMechanics::relax_nearest(int i, int j) {
   }
   relaxation_.relax(truss_, free, 1, kLocal);
   const bool whole = static_cast<int>(near.size()) == truss_.joints();
-  if (scope_.groups && !whole) {
-    grow_groups();
-    for (int level = 0; level < groups_.levels(); ++level) {
-      if (relax_groups(level, i, j, middle) == 0) break;
-    }
-  }
+  if (scope_.groups && !whole) relax_scales(i, j, middle);
   return static_cast<int>(near.size());
 }
 
-/// 0: more landmarks than a correction may move.
-int MapMechanics::relax_groups(int level, int i, int j, const Vector2& middle) {
-  const std::vector<int> near = groups_.nearest(
-      level, i, j, std::min(kFreeGroups, scope_.eta),
-      [&](int landmark) { return (truss_.position(landmark) - middle).squaredNorm(); });
+/// From the finest scale to the coarsest.
+void MapMechanics::relax_scales(int i, int j, const Vector2& middle) {
+  grow_groups();
+  int level = 0;
+  const bool by_sums = others_ == 0 && groups_.levels() > ScaleSums::kFinest;
+  const int visited = by_sums ? ScaleSums::kFinest : groups_.levels();
+  for (; level < visited; ++level) {
+    if (relax_members(level, nearest_groups(level, i, j, middle)) == 0) break;
+  }
+  if (!by_sums) return;
+  touch_moved();
+  sums_.follow(groups_, truss_);
+  for (; level < groups_.levels(); ++level) {
+    sums_.take_sums(level, truss_);
+    sums_.relax(level, nearest_groups(level, i, j, middle), truss_);
+  }
+}
+
+std::vector<int> MapMechanics::nearest_groups(int level, int i, int j,
+                                              const Vector2& middle) const {
+  return groups_.nearest(level, i, j, std::min(kFreeGroups, scope_.eta),
+                         [&](int landmark) { return (position(landmark) - middle).squaredNorm(); });
+}
+
+/// Landmark by landmark. 0: more of them than a correction may move.
+int MapMechanics::relax_members(int level, const std::vector<int>& groups) {
   std::vector<FreeJoint> free;
   std::vector<int> members;
   int block = 0;
-  for (const int group : near) {
+  for (const int group : groups) {
     members.clear();
     groups_.members(level, group, members);
     if (std::ssize(free) + std::ssize(members) > kMostMembers) return 0;
+    sums_.look_round(truss_, members);
     Vector2 centre = Vector2::Zero();
     for (const int landmark : members) centre += truss_.position(landmark);
     centre /= static_cast<double>(members.size());

@@ -6,7 +6,9 @@
 //
 //   nearest      the eta landmarks nearest to the route's middle come to equilibrium, all others
 //                held; then, scale by scale, the nearest groups of landmarks, each moved, turned
-//                and sheared as one
+//                and sheared as one. Of a truss of bars at every scale, by sums
+//                (scale_sums.hpp); where there are lengths, corners or directions, landmark by
+//                landmark and so up to kMostMembers of them at a scale
 //   all          the equilibrium of the whole (truss/equilibrium.hpp)
 //   automatic    all, up to kMostExact landmarks; beyond, nearest at every scale
 //   estimated    nearest, eta by a bound: round the route, ring by ring of neighbours, until
@@ -21,6 +23,7 @@
 
 #include "map/nearest_landmarks.hpp"
 #include "map/scale_groups.hpp"
+#include "map/scale_sums.hpp"
 #include "truss/elastic_truss.hpp"
 #include "truss/equilibrium.hpp"
 #include "truss/relaxation.hpp"
@@ -40,7 +43,23 @@ class MapMechanics {
 
   void set_scope(const RefinementScope& scope) { scope_ = scope; }
 
+  /// Its joints may lie where they were last looked at: see follows() and position().
   [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
+
+  /// Whether landmarks may have moved with their groups, unseen.
+  [[nodiscard]] bool groups_move() const { return !sums_.empty(); }
+  /// Where a landmark is now.
+  [[nodiscard]] Vector2 position(int landmark) const {
+    return sums_.empty() ? truss_.position(landmark) : sums_.position(truss_, landmark);
+  }
+  /// Of all elements.
+  [[nodiscard]] double energy() const;
+  /// What happened since begin(), m.
+  struct Moves {
+    int landmarks = 0;  ///< by more than 1e-12 m
+    double largest = 0.0;
+  };
+  [[nodiscard]] Moves moves() noexcept;
 
   /// Makes the changes of `call`, all or, where it throws, none; then commit().
   template <typename Call>
@@ -60,7 +79,9 @@ class MapMechanics {
   int add_landmark(const Vector2& position, int from);
   int add_element(const Element& element);
   void set_element(int number, const Element& element);
-  void move(int landmark, const Vector2& to) { truss_.move(landmark, to); }
+  void move(int landmark, const Vector2& to);
+  /// All landmarks in the truss are where they are now: before much is moved by itself.
+  void settle() noexcept;
 
   /// After the route between two landmarks has changed. Returns how many landmarks, or members of
   /// groups, were let free. Throws SolveError where stiffnesses span too many magnitudes.
@@ -70,7 +91,8 @@ class MapMechanics {
 
   /// The landmarks nearest to a point, in ascending order.
   [[nodiscard]] std::vector<int> nearest(const Vector2& to, int count) const {
-    return index_.nearest(truss_.positions(), to, count);
+    return sums_.empty() ? index_.nearest(truss_.positions(), to, count)
+                         : sums_.nearest(truss_, to, count);
   }
 
   /// The landmarks that a refinement of the route between two lets free, the first one and the
@@ -91,13 +113,19 @@ class MapMechanics {
  private:
   void begin() noexcept {
     truss_.begin();
+    sums_.begin();
+    touched_ = 0;
     at_rest_ = false;
   }
   void roll_back() noexcept;
   [[nodiscard]] bool exact() const;
   int relax_nearest(int i, int j);
   [[nodiscard]] int estimated_eta(int i, int j) const;
-  int relax_groups(int level, int i, int j, const Vector2& middle);
+  void relax_scales(int i, int j, const Vector2& middle);
+  [[nodiscard]] std::vector<int> nearest_groups(int level, int i, int j,
+                                                const Vector2& middle) const;
+  int relax_members(int level, const std::vector<int>& groups);
+  void touch_moved() noexcept;
   void grow_groups();
 
   RefinementScope scope_;
@@ -111,6 +139,10 @@ class MapMechanics {
   ScaleGroups groups_;     ///< of the first grouped_ landmarks and tied_ elements
   int grouped_ = 0;
   int tied_ = 0;
+  ScaleSums sums_;             ///< of the truss, while it is relaxed by groups
+  std::size_t touched_ = 0;    ///< of the truss's moves: known to the sums
+  int others_ = 0;             ///< elements other than bars
+  std::vector<char> counted_;  ///< per landmark, of moves()
 };
 
 }  // namespace trussmap

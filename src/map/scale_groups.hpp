@@ -34,6 +34,11 @@ class ScaleGroups {
   }
   /// Group of a landmark at a level, -1: in none.
   [[nodiscard]] int group_of(int level, int landmark) const;
+  /// Group of a group at the next level, -1: in none.
+  [[nodiscard]] int parent(int level, int group) const {
+    const std::vector<int>& above = levels_[idx(level) + 1].group;
+    return idx(group) < above.size() ? above[idx(group)] : -1;
+  }
   /// Landmarks of a group.
   void members(int level, int group, std::vector<int>& landmarks) const;
   /// A landmark of the group: the first that came.

@@ -283,7 +283,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     if (!is_made(file_, database_)) {
       make(database_, options.value_or(if_new));
       if (first != nullptr) {
-        MemoryRows(database_).save(BuilderAccess::memory(*first), first->options());
+        MemoryRows(database_).save(BuilderAccess::settled_memory(*first), first->options());
       }
     } else if (is_of_first_version(database_)) {
       upgrade(database_);
@@ -488,7 +488,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
     try {
       if (session != nullptr) put_session(*session);
       for (std::size_t k = 0; k < journal_.size(); ++k) put_leg(journal_[k], k, session != nullptr);
-      rows_->save(BuilderAccess::memory(*builder_), builder_->options());
+      rows_->save(BuilderAccess::settle_memory(*builder_), builder_->options());
       database_.run("COMMIT");
     } catch (...) {
       go_back();
