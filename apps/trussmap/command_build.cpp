@@ -72,7 +72,32 @@ BuildMapOptions map_options(const BuildOptions& options) {
   return result;
 }
 
+/// What a method does not do is not left out in silence.
+void check_scope(const BuildOptions& options) {
+  const bool stored = !options.store.empty();
+  const std::string method = options.method.value_or(stored ? "" : kDefaultMethod);
+  const ScopeOptions& scope = options.scope;
+  if (options.relax && stored) {
+    throw UsageError("--relax is of a map that is built in one go, expected it without --store");
+  }
+  if (method == kDefaultMethod && (scope.given() || options.relax)) {
+    throw UsageError(
+        "--eta, --no-groups, --law and --relax are of maps that are built leg by leg, expected "
+        "--method elastic, elastic-printed or gauss-markov with them");
+  }
+  if (method == "gauss-markov" &&
+      (scope.no_groups || (scope.eta != "auto" && scope.eta != "all"))) {
+    throw UsageError(
+        "gauss-markov always brings the whole map to equilibrium: expected --method elastic "
+        "--law variance with --eta");
+  }
+  if (method == "elastic-printed" && scope.law == "variance") {
+    throw UsageError("elastic-printed has the paper's law: expected --method elastic with --law");
+  }
+}
+
 void check_usage(const BuildOptions& options) {
+  check_scope(options);
   std::set<fs::path> seen;
   for (const std::string& folder : options.recordings) {
     std::error_code ignored;
@@ -185,7 +210,9 @@ void setup_build(const Command& app) {
       .add_option(
           "--method", options->method,
           "How the map is made: by an adjustment of all measurements at once (the default), or leg "
-          "by leg, as a robot would on its way; a store keeps its own, a new one has gauss-markov")
+          "by leg, as a robot would on its way: elastic, whose routes pull until all is at rest; "
+          "gauss-markov, the same as weighted least squares; elastic-printed, the paper's rule, "
+          "which may diverge. A store keeps its own, a new one has gauss-markov")
       .check(one_of({"adjustment", "elastic", "elastic-printed", "gauss-markov"}));
   command
       .add_option("--store", options->store,

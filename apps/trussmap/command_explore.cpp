@@ -131,14 +131,16 @@ void setup_explore(const Command& app) {
   auto options = std::make_shared<ExploreOptions>();
   const Command command = app.add_subcommand(
       "explore",
-      "Let a simulated robot explore a mesh that it does not know, and map it on the way");
+      "Let a simulated robot explore a mesh that it does not know, mapping it on the way; errors "
+      "of its map as it grows");
   command.add_option("--mesh", options->mesh, "Landmarks along x and along y, like 8x8")
       .type_name("NxN")
       .capture_default_str();
   command.add_option("--spacing", options->world.spacing, "Distance between neighbours [m]")
       .check(above_zero())
       .capture_default_str();
-  command.add_flag("--uneven", options->world.uneven, "Routes of 1 to 10 m");
+  command.add_flag("--uneven", options->world.uneven,
+                   "Gaps of 1 to 10 m between the mesh's lines, drawn, in place of --spacing");
   command
       .add_option("--walls", options->world.walls,
                   "Share of the mesh's routes that are walled up; all stays connected")
@@ -158,13 +160,17 @@ void setup_explore(const Command& app) {
       .check(above_zero())
       .capture_default_str();
   command
-      .add_option("--reach", options->world.reach,
-                  "Reach of a sensor for range and bearing of other landmarks [m]; 0: none")
+      .add_option(
+          "--reach", options->world.reach,
+          "How far it sees other landmarks, by range and bearing [m]; 0: it knows the one alone on "
+          "which it stands")
       .check(zero_or_more())
       .capture_default_str();
   command
-      .add_option("--tours", options->tours,
-                  "How far it drives, in lengths of all routes; until all is known at least")
+      .add_option(
+          "--tours", options->tours,
+          "How far it drives, as a multiple of the length of all routes together; further where "
+          "something is still unknown")
       .check(zero_or_more())
       .capture_default_str();
   command.add_option("--seed", options->world.seed, "Draws the world and the noise")

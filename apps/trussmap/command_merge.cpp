@@ -46,7 +46,7 @@ void run_merge(const MergeOptions& options) {
 void setup_merge(const Command& app) {
   auto options = std::make_shared<MergeOptions>();
   const Command command = app.add_subcommand(
-      "merge", "Print what a run would have printed, out of the files of all its shards");
+      "merge", "Put the shards of a tour together: print and write what the whole run would have");
   command.add_option("SHARD", options->shards, "Files that tour --shard has written, in any order")
       .required()
       .type_name("FILE");

@@ -13,12 +13,11 @@
 #include "trussmap/write_files.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,6 +30,7 @@ struct CommandOptions {
   double spacing = 5.0;  // m
   std::vector<double> x_lines;
   std::vector<double> y_lines;
+  int polygon = 0;  ///< corners; 0: a mesh
   std::string walk = "euler";
   int tours = 20;
   int seeds = 20;
@@ -43,7 +43,7 @@ struct CommandOptions {
   std::string readings;
   ScopeOptions scope;
   std::string maps;
-  std::vector<double> maps_after{1, 5, 50};
+  std::vector<double> maps_after;
   std::string json_file;
   PageOptions page;
   std::string shard;  ///< "3/16", "" for the whole run
@@ -58,10 +58,60 @@ Shard shard_of(const CommandOptions& options) {
   if (!options.json_file.empty() || options.page.wanted()) {
     throw UsageError("--json, --html and --plots are of whole runs: give them to merge");
   }
+  Shard shard;
   try {
-    return parse_shard(options.shard);
+    shard = parse_shard(options.shard);
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("--shard: {}", error.what()));
+  }
+  if (!options.maps.empty() && !shard.has(0)) {
+    throw UsageError(
+        fmt::format("--maps shows the first seed, expected it with --shard 1/{} alone", shard.of));
+  }
+  return shard;
+}
+
+/// Absent: the paper's, those of them that are driven.
+std::vector<int> maps_after(const CommandOptions& options) {
+  constexpr int kPapers[] = {1, 5, 50};
+  if (options.maps.empty() && !options.maps_after.empty()) {
+    throw UsageError("--maps-after says after which tours --maps DIR writes: give both");
+  }
+  std::vector<int> after;
+  for (const double tour : options.maps_after) {
+    if (tour > options.tours) {
+      throw UsageError(fmt::format("--maps-after {:g}, expected --tours of as many, not {}", tour,
+                                   options.tours));
+    }
+    after.push_back(static_cast<int>(tour));
+  }
+  if (!after.empty()) return after;
+  for (const int tour : kPapers) {
+    if (tour <= options.tours) after.push_back(tour);
+  }
+  return after;
+}
+
+Mesh mesh_of(const CommandOptions& options) {
+  if (options.polygon > 0) return regular_polygon(options.polygon, options.spacing);
+  if (!options.x_lines.empty()) return mesh_of_lines(options.x_lines, options.y_lines);
+  return even_mesh(parse_mesh_size(options.mesh), options.spacing);
+}
+
+/// Options of a robot that is not the one that was asked for are not left out in silence.
+void check_robot(const Command& command, const CommandOptions& options) {
+  const auto given = [&command](const char* name) { return command.count(name) > 0; };
+  if (!options.wheels && given("--wheelbase")) {
+    throw UsageError("--wheelbase is of a robot on wheels: give --wheels K, too");
+  }
+  if (options.wheels && given("--odometry-error")) {
+    throw UsageError("--odometry-error and --wheels contradict each other");
+  }
+  if (options.no_compass && given("--compass-error")) {
+    throw UsageError("--compass-error and --no-compass contradict each other");
+  }
+  if (given("--mesh") && (options.polygon > 0 || !options.x_lines.empty())) {
+    throw UsageError("--mesh and --polygon or --x-lines contradict each other");
   }
 }
 
@@ -76,10 +126,11 @@ TourOptions experiment_options(const CommandOptions& options) {
   if (options.x_lines.empty() != options.y_lines.empty()) {
     throw UsageError("--x-lines and --y-lines are given both or not at all");
   }
+  if (options.polygon > 0 && !options.x_lines.empty()) {
+    throw UsageError("--polygon and --x-lines contradict each other");
+  }
   try {
-    result.mesh = options.x_lines.empty()
-                      ? even_mesh(parse_mesh_size(options.mesh), options.spacing)
-                      : mesh_of_lines(options.x_lines, options.y_lines);
+    result.mesh = mesh_of(options);
     result.walk = parse_walk_kind(options.walk);
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
@@ -124,29 +175,37 @@ std::string wheels_in_words(const CommandOptions& options) {
           : "compass read once per " + (options.readings.empty() ? "landmark" : options.readings));
 }
 
-/// Maps of the first seed, as GraphML.
-std::function<void(const std::string&, int, const LandmarkGraph&)> map_writer(
-    const CommandOptions& options) {
-  if (options.maps.empty()) return nullptr;
-  std::filesystem::create_directories(options.maps);
-  return [&options](const std::string& method, int tour, const LandmarkGraph& map) {
-    if (std::ranges::count(options.maps_after, tour) == 0) return;
-    const std::string name = fmt::format("{}/{}_{}.graphml", options.maps, method, tour);
-    write_file(name,
-               format_map(map, name,
-                          fmt::format("trussmap tour, method {}, after tour {}", method, tour)));
+/// Maps of the first seed, as GraphML and as pictures.
+void gather_maps(TourOptions& experiment, const CommandOptions& options,
+                 std::vector<FolderOfFiles>& maps) {
+  experiment.maps_after = maps_after(options);
+  if (options.maps.empty()) return;
+  maps.push_back({options.maps, {}, {}});
+  experiment.maps = [&maps](const TourMap& shown) {
+    const std::string name = fmt::format("{}_{}", shown.method, shown.tour);
+    const std::string what =
+        fmt::format("trussmap tour, method {}, after tour {}", shown.method, shown.tour);
+    auto& files = maps.front().files;
+    files.emplace_back(name + ".graphml", format_map(shown.map, name + ".graphml", what));
+    files.emplace_back(name + ".svg", tour_picture(shown));
   };
 }
 
+std::string world_in_words(const CommandOptions& options) {
+  if (options.polygon > 0) return fmt::format("polygon of {}", options.polygon);
+  return options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
+}
+
 /// Trials of a share, of which this process of a team does its own.
-ShardResults run_share(const CommandOptions& options, const Shard& shard, const Team& team) {
+ShardResults run_share(const CommandOptions& options, const Shard& shard, const Team& team,
+                       std::vector<FolderOfFiles>& maps) {
   TourOptions experiment = experiment_options(options);
-  const std::string world = options.x_lines.empty() ? options.mesh + " mesh" : "uneven mesh";
-  const std::string settings = tour_settings(
-      experiment, fmt::format("{}, walk {}{}", world, options.walk, wheels_in_words(options)));
+  const std::string settings =
+      tour_settings(experiment, fmt::format("{}, walk {}{}", world_in_words(options), options.walk,
+                                            wheels_in_words(options)));
   const Shard mine{shard.number + shard.of * team.rank(), shard.of * team.count()};
   const auto seeds = static_cast<std::size_t>(options.seeds) / static_cast<std::size_t>(mine.of);
-  if (team.rank() == 0) experiment.maps = map_writer(options);
+  if (team.rank() == 0) gather_maps(experiment, options, maps);
   std::optional<SeedProgress> progress;
   if (team.rank() == 0) progress.emplace(experiment, std::max<std::size_t>(seeds, 1));
   ShardResults results = run_tour_shard(experiment, settings, mine);
@@ -160,14 +219,16 @@ ShardResults run_share(const CommandOptions& options, const Shard& shard, const 
 void run_tour(const CommandOptions& options) {
   const Shard shard = shard_of(options);
   ShardResults results;
-  if (!run_together(false, [&](const Team& team) { results = run_share(options, shard, team); })) {
+  std::vector<FolderOfFiles> maps;
+  if (!run_together(false,
+                    [&](const Team& team) { results = run_share(options, shard, team, maps); })) {
     return;
   }
   if (options.shard.empty()) {
-    show_tour_run(results, {"", 0, false, options.json_file, options.page});
+    show_tour_run(results, {"", 0, false, options.json_file, options.page, std::move(maps)});
     return;
   }
-  write_file(options.out, format_shard(results));
+  write_files({{options.out, format_shard(results)}}, maps);
   fmt::print("shard {}/{}: {} of {} seeds, in {}\n", shard.number, shard.of, results.results.size(),
              results.trials, options.out);
 }
@@ -187,7 +248,15 @@ void add_world(const Command& command, CommandOptions& options) {
   command.add_option("--y-lines", options.y_lines, "Uneven mesh: y of its rows [m]")
       .type_name("X,X...")
       .delimiter(',');
-  command.add_option("--walk", options.walk, "How a tour covers the routes; drawn anew each tour")
+  command
+      .add_option("--polygon", options.polygon,
+                  "In place of a mesh a regular polygon of N landmarks, --spacing apart")
+      .check(whole_number(3));
+  command
+      .add_option(
+          "--walk", options.walk,
+          "How a tour covers all routes: by a closed walk, face by face, depth first or at random; "
+          "drawn anew each tour")
       .check(one_of({"euler", "face", "depth-first", "random"}))
       .capture_default_str();
 }
@@ -214,16 +283,18 @@ void add_wheels(const Command& command, CommandOptions& options) {
 
 void setup_tour(const Command& app) {
   auto options = std::make_shared<CommandOptions>();
-  const Command command = app.add_subcommand(
-      "tour", "Tour a simulated mesh again and again and compare all methods with the truth");
+  const Command command = app.add_subcommand("tour",
+                                             "The elastic paper's experiment: a simulated robot "
+                                             "tours a mesh again and again; errors of all "
+                                             "methods' maps, tour by tour");
   add_world(command, *options);
   command.add_option("--tours", options->tours, "Number of tours")
       .check(whole_number(1))
       .capture_default_str();
-  command.add_option("--seeds", options->seeds, "Average over this many seeds")
+  command.add_option("--seeds", options->seeds, "Average over this many simulated robots")
       .check(whole_number(1))
       .capture_default_str();
-  command.add_option("--first-seed", options->first_seed, "The first of them")
+  command.add_option("--first-seed", options->first_seed, "Seed of the first of them")
       .check(whole_number(0))
       .capture_default_str();
   command
@@ -239,13 +310,17 @@ void setup_tour(const Command& app) {
   add_wheels(command, *options);
   add_scope_options(command, options->scope);
   command
-      .add_option("--maps", options->maps,
-                  "Write the first seed's maps by every method into this folder (GraphML)")
+      .add_option(
+          "--maps", options->maps,
+          "Write the first seed's maps by every method into this folder: METHOD_TOUR.graphml "
+          "and, over the true map, METHOD_TOUR.svg; first_sight_1 is by first sight alone")
       .type_name("DIR");
-  command.add_option("--maps-after", options->maps_after, "After which tours")
+  command
+      .add_option("--maps-after", options->maps_after,
+                  "With --maps: after which tours; if left out after 1, 5 and 50, as in the paper")
       .type_name("N,N...")
       .delimiter(',')
-      .capture_default_str();
+      .check(whole_number(1));
   command.add_option("--json", options->json_file, "Write every figure as JSON").type_name("FILE");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
@@ -260,7 +335,10 @@ void setup_tour(const Command& app) {
   if (built_with_mpi()) {
     command.footer("mpirun -n N trussmap tour ... shares the seeds among N processes.");
   }
-  command.callback([options] { run_tour(*options); });
+  command.callback([options, command] {
+    check_robot(command, *options);
+    run_tour(*options);
+  });
 }
 
 }  // namespace trussmap::app

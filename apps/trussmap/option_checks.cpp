@@ -24,6 +24,8 @@ std::optional<double> finite_number(const std::string& text) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
+constexpr std::uint64_t kMostEta = 1'000'000'000;
+
 bool is_whole_number(const std::string& text, std::uint64_t least) {
   const std::optional<std::uint64_t> value = number_of<std::uint64_t>(text);
   return value && *value >= least;
@@ -96,9 +98,9 @@ Check whole_number(std::uint64_t least) {
 Check eta_text() {
   return {[](const std::string& text) {
             return text == "all" || text == "auto" || text == "estimated" ||
-                           is_whole_number(text, 2)
+                           (is_whole_number(text, 2) && !is_whole_number(text, kMostEta + 1))
                        ? ""
-                       : "'" + text + "' is no whole number from 2, all, estimated or auto";
+                       : "'" + text + "' is no whole number from 2 to 10^9, all, estimated or auto";
           },
           ""};
 }

@@ -35,7 +35,7 @@ struct StretchOfTime {
 /// What stretch_of_time() let through.
 [[nodiscard]] StretchOfTime parse_stretch(const std::string& text);
 
-/// A number of landmarks from 2 on, "all", "estimated" or "auto".
+/// A number of landmarks from 2 to 10^9, "all", "estimated" or "auto".
 [[nodiscard]] Check eta_text();
 
 }  // namespace trussmap::app

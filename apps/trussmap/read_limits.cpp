@@ -44,7 +44,8 @@ void add_to(CLI::App& command) {
 
 void add_read_limits(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() != "tour") add_to(*command);  // it reads nothing
+    const bool reads = command->get_name() != "tour" && command->get_name() != "explore";
+    if (reads) add_to(*command);
   }
 }
 

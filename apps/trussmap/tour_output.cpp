@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -38,6 +39,10 @@ json result_json(const TourResult& result, bool aligned) {
           {"first_sight",
            {{"before", metrics_json(result.first_sight_before)},
             {"after", metrics_json(result.first_sight_after)}}}};
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 /// Which tours a table shows: the first few, then fewer and fewer, and the last.
@@ -78,6 +83,7 @@ void print_block(const TourResult& result, const char* title, int digits, const 
 
 void show_tours(const TourResult& result, const TourOutput& output) {
   Files files;
+  files.folders = output.maps;
   if (!output.json_file.empty()) {
     files.emplace_back(output.json_file, result_json(result, output.aligned).dump(2) + "\n");
   }
@@ -88,14 +94,15 @@ void show_tours(const TourResult& result, const TourOutput& output) {
   const MethodMetrics& last = result.tours.back();
   const double raw = last.at("raw").stretch_error.mean;
   fmt::print(
-      "after {} tours the elastic map's mean error is {:.2f} % of a route's stretch and {:.4f} rad "
+      "after {} the elastic map's mean error is {:.2f} % of a route's stretch and {:.4f} rad "
       "of its orientation\n"
       "(single measurements: {:.2f} %, {:.4f} rad; the best possible, the adjustment: {:.2f} %, "
-      "{:.4f} rad);\nmeans over {} seeds\n",
-      result.tours.size(), 100.0 * last.at("elastic").stretch_error.mean,
+      "{:.4f} rad);\nmeans over {}\n",
+      counted(result.tours.size(), "tour"), 100.0 * last.at("elastic").stretch_error.mean,
       last.at("elastic").orientation_error.mean, 100.0 * raw, last.at("raw").orientation_error.mean,
       100.0 * last.at("adjustment").stretch_error.mean,
-      last.at("adjustment").orientation_error.mean, output.seeds);
+      last.at("adjustment").orientation_error.mean,
+      counted(static_cast<std::size_t>(output.seeds), "seed"));
   print_block(result, "stretch error, mean of |s - s_true|/s_true over the routes", 4,
               [](const TourMetrics& f) { return std::optional<SeedMean>(f.stretch_error); });
   print_block(result, "orientation error, mean of |theta - theta_true| over the routes [rad]", 4,

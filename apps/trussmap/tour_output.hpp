@@ -8,6 +8,7 @@
 #include "trussmap/tour_experiment.hpp"
 
 #include <string>
+#include <vector>
 
 namespace trussmap::app {
 
@@ -17,6 +18,7 @@ struct TourOutput {
   bool aligned = false;  ///< errors are after the best rotation and translation
   std::string json_file;
   PageOptions page;
+  std::vector<FolderOfFiles> maps;  ///< written, too
 };
 
 void show_tours(const TourResult& result, const TourOutput& output);

@@ -13,8 +13,8 @@
 //   d        running mean of the measured displacement vectors, source -> target        m
 //   C        running mean of the traversals' covariances, map axes                      m^2
 //
-// Golfarelli, Maio & Rizzi (1998), section 3; the paper folds orientations to [0, pi), which here
-// is done for printing and files only (an undirected route has no direction to average).
+// Golfarelli, Maio & Rizzi (1998), section 3. The paper folds orientations to [0, pi), for a route
+// has no direction; here neither memory nor files do, for each has a source: folded_orientation.
 //
 // Landmarks are numbered 0, 1, ... in the order they are added and have unique names; routes are
 // numbered likewise, join two different landmarks, and there is at most one between a pair.
@@ -54,7 +54,7 @@ struct Route {
 /// Takes a traversal from source to target into the averages.
 void average_in(Route& route, const Traversal& traversal);
 
-/// Orientation folded to [0, pi), as the paper prints it.
+/// Orientation folded to [0, pi), as the paper has it.
 [[nodiscard]] double folded_orientation(double orientation);
 
 struct Landmark {

@@ -30,12 +30,13 @@
 // arrival by a known route, landmarks come to equilibrium within a scope (refinement). The truss's
 // energy never rises by that.
 //
-// Methods (their names stand in every output):
+// Methods (their names stand in every output). The first two are pairs of a law and a scope:
 //   elastic          stiffness 1/mean error (the paper's law), scope `automatic`
 //   gauss_markov     stiffness 1/variance, scope `all`: the least-squares map after every arrival
 //   elastic_printed  refinement as the paper prints it: forces of a reference structure, applied to
-//                    a floating piece. It diverges where a route is some 36 times as stiff along as
-//                    across, or the other way round, and near borders earlier.
+//                    a larger one. It diverges where a route is some ten times as stiff along as
+//                    across, or the other way round, and may where routes are of unequal length
+//                    (docs/methods.md).
 //
 // Golfarelli, Maio & Rizzi (1998); refinement by relaxation in place of their section 3.3.
 // Cost per arrival: with scope `nearest` bounded by eta, whatever the size of the map.

@@ -35,6 +35,7 @@ struct DiscoveryEvidence;
 struct FitEvidence;
 struct FleetReport;
 struct PageContent;
+struct TourMap;
 struct TourResult;
 struct EffectPreview;
 class TriedModel;
@@ -136,6 +137,9 @@ struct TruthCalibration {
 /// round a square of this side [m] ended, a cluster per direction and round; end errors with the
 /// 95 % ellipses of the runs and of the estimate.
 [[nodiscard]] std::string map_picture(const BuiltMap& built, const std::string& title);
+/// A tour's map over the true one, as the elastic paper's Figures 5 and 8; by first sight alone
+/// with what was measured below it, and crosses at the true positions, as its Figure 7.
+[[nodiscard]] std::string tour_picture(const TourMap& shown);
 [[nodiscard]] std::string square_picture(const std::vector<SquareRuns>& rounds, double side);
 /// With a stated k its ellipses of 1, 2 and 3 standard deviations as well.
 [[nodiscard]] std::string noise_picture(const EndErrors& errors, const NoiseEstimate& estimate,

@@ -54,10 +54,11 @@ struct MeshSize {
 
 struct MeshRoute {
   int from = -1;  ///< landmark
-  int to = -1;    ///< landmark, to the right of `from` or above it
+  int to = -1;    ///< landmark, to the right of `from` or above it; of a polygon the next corner
 };
 
-/// A mesh of a single column or row is a line of landmarks; two landmarks are the least.
+/// A mesh of a single column or row is a line of landmarks; two landmarks are the least. A polygon
+/// is a row whose ends are joined.
 struct Mesh {
   MeshSize size;
   std::vector<Vector2> positions;  ///< true landmark positions, m
@@ -82,6 +83,10 @@ struct Mesh {
 
 /// Columns at the given x, rows at the given y [m], both increasing.
 [[nodiscard]] Mesh mesh_of_lines(const std::vector<double>& x, const std::vector<double>& y);
+
+/// A regular polygon of 3 to 10^6 corners with sides of this length [m]: v0 at the origin, its
+/// first side along +x, counter-clockwise.
+[[nodiscard]] Mesh regular_polygon(int corners, double side);
 
 /// `count` coordinates from 0 on, with gaps drawn uniformly from [shortest, longest] m.
 [[nodiscard]] std::vector<double> random_lines(int count, double shortest, double longest,

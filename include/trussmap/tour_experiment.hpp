@@ -36,6 +36,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -64,6 +65,18 @@ struct SeedErrors {
   MapErrors first_sight_after;
 };
 
+/// A map of the first seed, as a method has it after a tour.
+struct TourMap {
+  std::string method;  ///< of tour_methods(), or first_sight: by first sight alone, after tour 1
+  int tour = 0;        ///< 1, 2, ...
+  LandmarkGraph map;
+  MapErrors errors;
+  Laid laid = Laid::as_it_is;  ///< how it was compared with the truth
+  LandmarkPositions truth;     ///< m
+  /// Where the first traversal of each route led, and from where dead reckoning has its start, m.
+  std::vector<std::pair<Vector2, Vector2>> measured;
+};
+
 struct TourOptions {
   Mesh mesh;
   WalkKind walk = WalkKind::euler;
@@ -77,8 +90,9 @@ struct TourOptions {
   std::optional<TourWheels> wheels = {};
   RefinementScope scope = {};            ///< of elastic and elastic_printed
   std::optional<StiffnessLaw> law = {};  ///< of elastic
-  /// Gets the first seed's maps after each tour: method, tour (1, 2, ...), map. By one thread.
-  std::function<void(const std::string&, int, const LandmarkGraph&)> maps = {};
+  /// Gets the first seed's maps after each tour that `maps_after` lists. By one thread.
+  std::function<void(const TourMap&)> maps = {};
+  std::vector<int> maps_after = {};          ///< 1, 2, ...
   std::function<void(int)> seeds_done = {};  ///< called after each seed, by one thread at a time
 };
 

@@ -198,7 +198,7 @@ class OnTheRobot(unittest.TestCase):
         kinds = [builder.arrive(name, leg, covariance).kind
                  for name, leg in (("door", (4.1, 0.3)), ("stairs", (0.2, 5.0)),
                                    ("dock", (-4.0, -5.1)))]
-        self.assertEqual(kinds, ["new landmark", "new landmark", "first sight"])
+        self.assertEqual(kinds, ["new landmark", "new landmark", "loop closed"])
         self.assertEqual(builder.landmarks, ["dock", "door", "stairs"])
         # The loop's error of (0.3, 0.2) is shared out among its three legs.
         numpy.testing.assert_allclose(builder.position("door"), [4.0, 0.3 - 0.2 / 3.0], atol=0.05)

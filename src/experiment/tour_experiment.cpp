@@ -91,7 +91,9 @@ class SeedRun {
       errors.tours.push_back(errors_now(static_cast<int>(errors.tours.size()) + 1));
       if (errors.tours.size() == 1) {
         errors.first_sight_before = errors.tours.back().at("raw");
-        errors.first_sight_after = errors_of(builders_.at(kFirstSight).map());
+        const LandmarkGraph map = builders_.at(kFirstSight).map();
+        errors.first_sight_after = errors_of(map);
+        show("first_sight", 1, map, errors.first_sight_after);
         builders_.erase(kFirstSight);
       }
     }
@@ -161,10 +163,21 @@ class SeedRun {
     }
     for (const auto& [method, map] : maps) {
       errors[method] = errors_of(map);
-      if (shows_maps_) options_.maps(method, tour, map);
+      show(method, tour, map, errors.at(method));
     }
-    if (shows_maps_) options_.maps("dead_reckoning", tour, averages_);
+    show("dead_reckoning", tour, averages_, errors.at("dead_reckoning"));
     return errors;
+  }
+
+  void show(const std::string& method, int tour, const LandmarkGraph& map,
+            const Errors& of_map) const {
+    if (!shows_maps_ || std::ranges::count(options_.maps_after, tour) == 0) return;
+    TourMap shown{method, tour, map, of_map, laid_, truth_, {}};
+    for (int k = 0; k < averages_.routes(); ++k) {
+      const Vector2& from = averages_.landmark(averages_.route(k).source).position;
+      shown.measured.emplace_back(from, from + raw_[idx(k)]);
+    }
+    options_.maps(shown);
   }
 
   const TourOptions& options_;

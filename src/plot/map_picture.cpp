@@ -45,6 +45,20 @@ std::string tick(const PictureFrame& view, const Vector2& at, double heading) {
       x, y, x + kLength * std::cos(heading), y - kLength * std::sin(heading));
 }
 
+/// The map's routes as they truly lie.
+std::string true_routes(const MapPicture& picture, const PictureFrame& view) {
+  constexpr double kWidth = 5.0;
+  std::string lines;
+  for (int number = 0; number < picture.map.routes(); ++number) {
+    const Route& route = picture.map.route(number);
+    const auto from = picture.truth.find(picture.map.landmark(route.source).name);
+    const auto to = picture.truth.find(picture.map.landmark(route.target).name);
+    if (from == picture.truth.end() || to == picture.truth.end()) continue;
+    lines += line(view, from->second, to->second, "true", kWidth);
+  }
+  return lines;
+}
+
 /// The largest of 1, 2, 5 times a power of ten that is at most `length`.
 double round_length(double length) {
   const double power = std::pow(10.0, std::floor(std::log10(length)));
@@ -69,11 +83,14 @@ std::string header(const MapPicture& picture, const PictureFrame& view) {
   const bool paths = !picture.paths.empty();
   if (paths) {
     entry(fmt::format(fmt::runtime(bar), "before"), "dead reckoning", 150.0);
+  } else if (!picture.measured.empty()) {
+    entry(fmt::format(fmt::runtime(bar), "measured"), "as measured", 130.0);
   } else if (!picture.before.empty()) {
     entry(fmt::format(fmt::runtime(bar), "before"), "before correction", 170.0);
   }
   entry(fmt::format(fmt::runtime(bar), "after"), paths ? "adjusted path" : "corrected map", 150.0);
-  if (!picture.truth.empty()) {
+  if (picture.true_routes) entry(fmt::format(fmt::runtime(bar), "true"), "true map", 110.0);
+  if (!picture.truth.empty() && picture.crosses) {
     entry("<path class=\"truth\" d=\"M7.5 -4.5l9 9m-9 0l9 -9\"/>", "true position", 140.0);
   }
   if (paths) {
@@ -97,7 +114,8 @@ std::string header(const MapPicture& picture, const PictureFrame& view) {
 
 constexpr const char* kMapStyle =
     "<style>text{font:13px system-ui,sans-serif;fill:#222}.title{font-size:17px;font-weight:600}"
-    ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.after{stroke:#111}"
+    ".name{font-size:10px;fill:#555}.before{stroke:#b9b9b9}.true{stroke:#d3dae6}.measured{stroke:#"
+    "8f8f8f}.after{stroke:#111}"
     ".axis{stroke:#1b6ca8}"
     ".joint{fill:#111}.ghost{fill:#b9b9b9}.truth{stroke:#d1495b;stroke-width:1.6;fill:none}"
     ".scale{stroke:#222;fill:none}polyline,.loop{fill:none;stroke-width:1}"
@@ -131,10 +149,18 @@ std::string draw_map(const MapPicture& picture) {
     if (before(k) != picture.before.end()) view.include(lay.apply(before(k)->second));
   }
   for (const auto& [name, position] : picture.truth) view.include(position);
+  for (const auto& [from, to] : picture.measured) {
+    view.include(lay.apply(from));
+    view.include(lay.apply(to));
+  }
   include_paths(picture.paths, view);
   view.finish();
 
   std::string body = draw_paths(picture.paths, view);
+  if (picture.true_routes) body += true_routes(picture, view);
+  for (const auto& [from, to] : picture.measured) {
+    body += line(view, lay.apply(from), lay.apply(to), "measured", 1.0);
+  }
   for (int number = 0; number < picture.map.routes(); ++number) {
     const Route& route = picture.map.route(number);
     const auto a = before(route.source);
@@ -154,7 +180,9 @@ std::string draw_map(const MapPicture& picture) {
     body += fmt::format("<circle class=\"joint\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.6\"/>\n",
                         view.x(after(k)), view.y(after(k)));
   }
-  for (const auto& [name, position] : picture.truth) body += cross(view, position);
+  for (const auto& [name, position] : picture.truth) {
+    if (picture.crosses) body += cross(view, position);
+  }
   const auto count = static_cast<std::size_t>(picture.map.landmarks());
   for (int k = 0; picture.names && count <= kMostNamesDrawn && k < picture.map.landmarks(); ++k) {
     body += fmt::format("<text class=\"name\" x=\"{:.2f}\" y=\"{:.2f}\">{}</text>\n",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
 #include "plot/map_picture.hpp"
+#include "report/map_tours.hpp"
 #include "report/page.hpp"
 #include "report/page_words.hpp"
 #include "report/path_page.hpp"
@@ -311,6 +312,7 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   const SurveyErrors errors = survey_errors(drawn);
   if (drawn.surveyed()) charts.push_back(survey_chart(errors));
   page.sections.push_back({"The map", {std::move(charts)}});
+  if (!built.tours.empty()) page.sections.push_back(tours_section(built));
   if (drawn.surveyed()) page.sections.push_back({"Against the survey", {survey_table(errors)}});
   return page;
 }

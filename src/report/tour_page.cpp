@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
+#include "plot/map_picture.hpp"
 #include "report/page.hpp"
+#include "report/page_words.hpp"
+#include "trussmap/pages.hpp"
 #include "trussmap/tour_experiment.hpp"
 
 #include <algorithm>
@@ -30,7 +33,8 @@ MethodLook look_of(const std::string& method) {
       {"elastic_printed", {"elastic, as printed", "4"}},
       {"elastic", {"elastic", "2"}},
       {"gauss_markov", {"Gauss-Markov", "6"}},
-      {"adjustment", {"adjustment", "1"}}};
+      {"adjustment", {"adjustment", "1"}},
+      {"first_sight", {"first sight alone", "7"}}};
   const auto found = kMethodLooks.find(method);
   return found == kMethodLooks.end() ? MethodLook{method.c_str(), "ink"} : found->second;
 }
@@ -160,10 +164,10 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
   page.command = "tour";
   page.subject = subject;
   page.verdict = fmt::format(
-      "After {} tours routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
+      "After {} {} routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
       "askew, {:.1f} times better than single measurements ({:.2f} %).",
-      result.tours.size(), 100.0 * elastic.stretch_error.mean,
-      kDegreesTurned * elastic.orientation_error.mean,
+      result.tours.size(), result.tours.size() == 1 ? "tour" : "tours",
+      100.0 * elastic.stretch_error.mean, kDegreesTurned * elastic.orientation_error.mean,
       raw.stretch_error.mean / std::max(elastic.stretch_error.mean, 1e-12),
       100.0 * raw.stretch_error.mean);
   page.facts = {
@@ -194,6 +198,30 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
                     "after."),
         ChartRow{first_sight_chart(result)}}});
   return page;
+}
+
+std::string tour_picture(const TourMap& shown) {
+  MapPicture picture;
+  picture.title = fmt::format(
+      "{}, after {} {}: routes {:.1f} % too long or short, {:.2f}\u00b0 askew",
+      capitalised(look_of(shown.method).words), shown.tour, shown.tour == 1 ? "tour" : "tours",
+      100.0 * shown.errors.stretch, kDegreesTurned * shown.errors.orientation);
+  picture.map = shown.map;
+  picture.truth = shown.truth;
+  picture.true_routes = true;
+  picture.crosses = shown.method == "first_sight";
+  if (picture.crosses) picture.measured = shown.measured;
+  if (shown.laid == Laid::aligned) {
+    std::vector<Vector2> places;
+    std::vector<Vector2> truth;
+    for (const auto& [name, at] : positions_of(shown.map)) {
+      places.push_back(at);
+      truth.push_back(shown.truth.at(name));
+    }
+    picture.map_onto_truth = align_rigidly(places, truth);
+  }
+  picture.names = false;
+  return draw_map(picture);
 }
 
 }  // namespace trussmap

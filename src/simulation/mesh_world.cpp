@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -81,6 +82,29 @@ Mesh mesh_of_lines(const std::vector<double>& x, const std::vector<double>& y) {
     }
   }
   return mesh;
+}
+
+Mesh regular_polygon(int corners, double side) {
+  if (corners < 3 || corners > kMostLandmarks) {
+    throw std::invalid_argument("a polygon has 3 to 1000000 corners");
+  }
+  if (!std::isfinite(side) || side <= 0.0) {
+    throw std::invalid_argument("a polygon's sides must be above 0 m");
+  }
+  Mesh mesh;
+  mesh.size = {corners, 1};
+  Vector2 at = Vector2::Zero();
+  for (int k = 0; k < corners; ++k) {
+    mesh.positions.push_back(at);
+    mesh.routes.push_back({k, (k + 1) % corners});
+    const double along = 2.0 * std::numbers::pi * k / corners;
+    at += side * Vector2(std::cos(along), std::sin(along));
+  }
+  return mesh;
+}
+
+bool is_polygon(const Mesh& mesh) {
+  return mesh.size.rows == 1 && mesh.routes.size() == mesh.positions.size();
 }
 
 std::vector<double> random_lines(int count, double shortest, double longest,

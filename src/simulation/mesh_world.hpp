@@ -10,7 +10,10 @@
 
 namespace trussmap {
 
-/// The landmarks that a route joins to this one, in increasing order.
+/// Whether it is a polygon: a row whose ends are joined.
+[[nodiscard]] bool is_polygon(const Mesh& mesh);
+
+/// The landmarks that a route joins to this one, in increasing order; of a mesh that is no polygon.
 [[nodiscard]] std::vector<int> neighbours(const Mesh& mesh, int landmark);
 
 /// The perimeter's landmarks in order round the mesh from v0, first along +x, each once. A line of

@@ -118,8 +118,9 @@ WalkKind parse_walk_kind(std::string_view name) {
 }
 
 std::vector<MeshRoute> doubled_routes(const Mesh& mesh) {
-  const std::vector<int> round = perimeter(mesh);
   std::vector<MeshRoute> doubled;
+  if (is_polygon(mesh)) return doubled;
+  const std::vector<int> round = perimeter(mesh);
   bool between = false;  // after an odd landmark that still lacks its partner
   for (std::size_t k = 0; k < round.size(); ++k) {
     if (between) {
@@ -154,8 +155,12 @@ std::vector<int> euler_walk(const Mesh& mesh, std::mt19937_64& random) {
 std::vector<int> face_walk(const Mesh& mesh) {
   const int faces_x = mesh.size.columns - 1;
   const int faces_y = mesh.size.rows - 1;
-  if (faces_x == 0 || faces_y == 0) return perimeter(mesh);
   std::vector<int> walk;
+  if (faces_x == 0 || faces_y == 0) {
+    walk = perimeter(mesh);
+    if (is_polygon(mesh)) walk.push_back(walk.front());
+    return walk;
+  }
   for (int j = 0; j < faces_y; ++j) {
     for (int k = 0; k < faces_x; ++k) {
       const int i = j % 2 == 0 ? k : faces_x - 1 - k;

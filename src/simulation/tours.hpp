@@ -23,7 +23,7 @@ namespace trussmap {
 
 /// Routes of the mesh that an Euler walk drives twice: the perimeter's landmarks of odd degree are
 /// paired in order (1st with 2nd, 3rd with 4th, ...), and the perimeter between each pair is
-/// doubled. On a line of landmarks that is the whole line.
+/// doubled. On a line of landmarks that is the whole line, on a polygon nothing.
 [[nodiscard]] std::vector<MeshRoute> doubled_routes(const Mesh& mesh);
 
 /// Closed walk from v0 over every route once, the doubled ones twice: Hierholzer's algorithm, at
@@ -34,7 +34,8 @@ namespace trussmap {
 /// 200 seeds; reference 0.242 +- 0.020 m).
 [[nodiscard]] std::vector<int> euler_walk(const Mesh& mesh, std::mt19937_64& random);
 
-/// From v0, round each face counter-clockwise. On a line of landmarks: from end to end.
+/// From v0, round each face counter-clockwise. On a line of landmarks: from end to end; round a
+/// polygon.
 [[nodiscard]] std::vector<int> face_walk(const Mesh& mesh);
 
 /// From `start` until every route has been driven; lengths [m] decide what is near.

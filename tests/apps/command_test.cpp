@@ -163,10 +163,31 @@ TEST(Command, AnMrclamRobotWithoutItsOdometryIsNamed) {
 }
 
 TEST(Command, BadUsageEndsWithStatus2AndOneLine) {
-  for (const char* arguments :
-       {"", "bild", "build", "build r --model m --method magic", "tour --eta 1", "tour --tours 0",
-        "tour --mesh 6", "tour --x-lines 0,1", "simulate --out /dev/null/x",
-        "build r --model m --gate -1", "convert a.txt b.txt"}) {
+  for (const char* arguments : {"",
+                                "bild",
+                                "build",
+                                "build r --model m --method magic",
+                                "tour --eta 1",
+                                "tour --tours 0",
+                                "tour --mesh 6",
+                                "tour --x-lines 0,1",
+                                "tour --eta 99999999999",
+                                "tour --eta all --no-groups",
+                                "tour --maps-after 1",
+                                "tour --tours 3 --maps x --maps-after 4",
+                                "tour --polygon 2",
+                                "tour --polygon 5 --mesh 3x3",
+                                "tour --wheelbase 0.5",
+                                "tour --wheels 0.003 --odometry-error 0.1",
+                                "tour --wheels 0.003 --no-compass --compass-error 0.1",
+                                "build r --model m --relax",
+                                "build r --model m --eta 9",
+                                "build r --model m --store s.db --relax",
+                                "build r --model m --method gauss-markov --eta 9",
+                                "build r --model m --method elastic-printed --law variance",
+                                "simulate --out /dev/null/x",
+                                "build r --model m --gate -1",
+                                "convert a.txt b.txt"}) {
     const Ran ran = run_trussmap(arguments);
     EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.output;
     EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;

@@ -243,6 +243,11 @@ TEST(PageInBrowser, OfBuildAndTourIsAlive) {
   TRUSSMAP_NEEDS_BROWSER();
   const ScratchFolder scratch;
   expect_alive(page_of(scratch, "build " + kRiddle + " --method adjustment"), "build");
+  const json grown = page_of(scratch, "build " + kRiddle + " --method elastic");
+  expect_alive(grown, "build --method elastic");
+  for (const char* id : {"tours-stretch", "tours-orientation", "tours-position"}) {
+    EXPECT_TRUE(has_chart(grown, id)) << id;
+  }
   expect_alive(page_of(scratch, "tour --mesh 3x3 --tours 4 --seeds 3"), "tour");
 }
 

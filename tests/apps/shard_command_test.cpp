@@ -51,8 +51,8 @@ TEST(ShardCommand, OneThreeAndSixteenSharesGiveTheWholeRunsBytes) {
 }
 
 TEST(ShardCommand, SaysWhatDoesNotFit) {
-  for (const char* wrong :
-       {"--shard 1/2", "--out x", "--shard 3/2 --out x", "--shard 1/2 --out x --json y"}) {
+  for (const char* wrong : {"--shard 1/2", "--out x", "--shard 3/2 --out x",
+                            "--shard 1/2 --out x --json y", "--shard 2/2 --out x --maps y"}) {
     const Ran outcome = run_trussmap(fmt::format("{} {}", kTour, wrong));
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;

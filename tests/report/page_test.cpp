@@ -170,6 +170,35 @@ TEST(Page, AnswersStandUnderTheirQuestions) {
   EXPECT_LT(html.find("<dt>How sure?"), html.find("<h2>"));
 }
 
+TEST(MapPage, ShowsTheErrorsOfEveryTour) {
+  BuiltMap built;
+  built.method = Method::elastic;
+  for (const char* name : {"a", "b"}) {
+    built.map.add_landmark(name, Vector2(name[0] == 'a' ? 0.0 : 4.0, 1.0));
+  }
+  built.map.add_route(0, 1);
+  built.tours = {{{0.04, 0.02, 0.3, 7}, true}, {{0.03, 0.01, 0.2, 8}, false}};
+  const std::string subject = "a recording";
+  const Page page = map_page(built, subject);
+  std::map<std::string, const Chart*> charts;
+  for (const Chart* chart : charts_of(page.content())) charts[chart->id] = chart;
+  const std::map<std::string, std::vector<double>> expected{
+      {"tours-stretch", {4.0, 3.0}},
+      {"tours-orientation", {0.02 * 180.0 / 3.14159265358979, 0.01 * 180.0 / 3.14159265358979}},
+      {"tours-position", {0.3, 0.2}}};
+  for (const auto& [id, errors] : expected) {
+    ASSERT_TRUE(charts.contains(id)) << id;
+    const ChartLayer& dots = charts.at(id)->layers.back();
+    EXPECT_EQ(dots.columns[0].numbers, (std::vector<double>{1.0, 2.0})) << id;
+    ASSERT_EQ(dots.columns[1].numbers.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(dots.columns[1].numbers[k], errors[k], 1e-12);
+    EXPECT_EQ(dots.columns[2].numbers, (std::vector<double>{7.0, 8.0})) << id;
+    EXPECT_NE(dots.columns[3].texts[0], dots.columns[3].texts[1]) << id;
+  }
+  built.tours.clear();
+  EXPECT_EQ(charts_of(map_page(built, subject).content()).size(), charts.size() - 3);
+}
+
 TEST(SlowPage, TenThousandLegsStaySmall) {
   for (const auto& [name, page] : {std::pair{"compare", testing::large_comparison_page(10000)},
                                    std::pair{"diagnose", testing::large_diagnosis_page(10000)},

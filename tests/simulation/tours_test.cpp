@@ -144,6 +144,30 @@ INSTANTIATE_TEST_SUITE_P(Walks, AnyWalk, ::testing::ValuesIn(every_walk_on_every
                            return name + "_" + name_of(test.param.second);
                          });
 
+TEST(Polygon, IsRegularAndEveryWalkGoesRoundIt) {
+  const Mesh hexagon = regular_polygon(6, 5.0);
+  ASSERT_EQ(hexagon.landmarks(), 6);
+  ASSERT_EQ(hexagon.routes.size(), 6U);
+  EXPECT_EQ(hexagon.positions.front(), Vector2(0.0, 0.0));
+  EXPECT_NEAR((hexagon.positions[1] - Vector2(5.0, 0.0)).norm(), 0.0, 1e-12);
+  Vector2 centre = Vector2::Zero();
+  for (const Vector2& corner : hexagon.positions) centre += corner / 6.0;
+  for (const Vector2& corner : hexagon.positions) {
+    EXPECT_NEAR((corner - centre).norm(), 5.0, 1e-12);  // a hexagon's radius is its side
+  }
+  for (const MeshRoute& route : hexagon.routes) {
+    EXPECT_NEAR(hexagon.displacement(route.from, route.to).norm(), 5.0, 1e-12);
+  }
+  std::mt19937_64 random(19);
+  for (const char* kind : {"euler", "face", "depth-first"}) {
+    const Tours tours = make_tours(hexagon, parse_walk_kind(kind), 2, random);
+    EXPECT_EQ(tours.ends, (std::vector<std::size_t>{6, 12})) << kind;
+    for (const auto& [route, times] : drives(hexagon, tours.walk)) EXPECT_EQ(times, 2) << kind;
+  }
+  EXPECT_THROW((void)regular_polygon(2, 5.0), std::invalid_argument);
+  EXPECT_THROW((void)regular_polygon(6, 0.0), std::invalid_argument);
+}
+
 TEST(FaceWalk, GoesRoundEachFaceInTurn) {
   // 3x3: four faces of four routes, three drives from face to face; inner routes at least twice.
   const Mesh mesh = even_mesh({3, 3}, 1.0);
