@@ -82,9 +82,9 @@ std::string moment(const Paper& paper, const ExplorationFrame& one) {
                         paper.y(at), here ? 6 : 3, here ? "#1f6fb4" : "#222");
   }
   return text + fmt::format(
-                    "<text x=\"{}\" y=\"16\" font-size=\"12\">{:.0f} m, {} landmarks, {:.3f} m "
-                    "off</text>",
-                    kMargin, one.way, one.map.landmarks(), one.error);
+                    "<text x=\"6\" y=\"16\" font-size=\"12\">{:.0f} m, {} landmarks, {:.3f} m off"
+                    "</text>",
+                    one.way, one.map.landmarks(), one.error);
 }
 
 std::string opening(const Paper& paper, const std::string& title) {
@@ -143,7 +143,7 @@ std::string error_picture(const std::vector<ExplorationFrame>& frames) {
   panel.marks.push_back(std::move(line));
   Figure figure;
   figure.title = "How far off the map is";
-  figure.subtitle = "Of the landmarks found so far: while there are new ones it may rise.";
+  figure.subtitle = "Of the landmarks found so far";
   figure.panels.push_back(std::move(panel));
   return draw_figure(figure);
 }

@@ -121,7 +121,8 @@ TEST(EulerTour, DrivesEveryRouteAndComesBack) {
   }
 }
 
-/// bench/explore_bench.cpp measures it over more worlds.
+/// Seeds 1 to 96: 0.92 and 0.63. A median of 96 scatters by 0.07. bench/explore_bench.cpp measures
+/// larger worlds.
 TEST(SlowExplorer, MapsBetterThanEulerToursOfTheSameLength) {
   constexpr int kWorlds = 96;
   std::vector<double> ratios;
@@ -139,7 +140,6 @@ TEST(SlowExplorer, MapsBetterThanEulerToursOfTheSameLength) {
   }
   EXPECT_LT(ratios[kWorlds / 2], 1.0);
   EXPECT_LE(reached[kWorlds / 2], 0.8);
-  std::printf("MED %f %f\n", ratios[kWorlds / 2], reached[kWorlds / 2]);
 }
 
 }  // namespace
