@@ -6,42 +6,38 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <boost/pending/disjoint_sets.hpp>
+
 namespace trussmap::explore {
 namespace {
 
-constexpr double kTurnPerRow = 0.2;  // rad
-constexpr double kWayPerRow = 0.25;  // m
-
 Mesh drawn_mesh(const WorldOptions& options, std::mt19937_64& random) {
   if (!options.uneven) return even_mesh(options.size, options.spacing);
-  std::uniform_real_distribution<double> length(1.0, 10.0);
-  const auto lines = [&](int count) {
-    std::vector<double> places{0.0};
-    while (static_cast<int>(places.size()) < count)
-      places.push_back(places.back() + length(random));
-    return places;
-  };
-  const std::vector<double> x = lines(options.size.columns);
-  return mesh_of_lines(x, lines(options.size.rows));
+  const std::vector<double> x = random_lines(options.size.columns, 1.0, 10.0, random);
+  return mesh_of_lines(x, random_lines(options.size.rows, 1.0, 10.0, random));
 }
 
-/// Whether all landmarks can be reached from the first.
-bool is_connected(const std::vector<std::vector<int>>& beyond) {
-  std::vector<char> met(beyond.size(), 0);
-  std::vector<int> next{0};
-  met[0] = 1;
-  std::size_t count = 0;
-  while (!next.empty()) {
-    const int at = next.back();
-    next.pop_back();
-    ++count;
-    for (const int other : beyond[static_cast<std::size_t>(at)]) {
-      if (met[static_cast<std::size_t>(other)] != 0) continue;
-      met[static_cast<std::size_t>(other)] = 1;
-      next.push_back(other);
-    }
+/// Draws the share of the mesh's routes that are walled up, and leaves the others. Those of a
+/// spanning tree stay: of Kruskal's, with the routes in the order that was drawn, the last first.
+std::vector<MeshRoute> open_routes(const Mesh& mesh, double walls, std::mt19937_64& random) {
+  std::vector<MeshRoute> routes = mesh.routes;
+  std::shuffle(routes.begin(), routes.end(), random);
+  boost::disjoint_sets_with_storage<> joined(static_cast<std::size_t>(mesh.landmarks()));
+  const auto set_of = [&](int k) { return joined.find_set(static_cast<std::size_t>(k)); };
+  std::vector<char> in_tree(routes.size(), 0);
+  for (std::size_t k = routes.size(); k-- > 0;) {
+    const std::size_t from = set_of(routes[k].from);
+    const std::size_t to = set_of(routes[k].to);
+    if (from == to) continue;
+    in_tree[k] = 1;
+    joined.link(from, to);
   }
-  return count == beyond.size();
+  auto left = static_cast<int>(walls * static_cast<double>(routes.size()));
+  std::vector<MeshRoute> open;
+  for (std::size_t k = 0; k < routes.size(); ++k) {
+    if (in_tree[k] != 0 || left-- <= 0) open.push_back(routes[k]);
+  }
+  return open;
 }
 
 }  // namespace
@@ -52,37 +48,19 @@ World::World(const WorldOptions& options)
       !(options.wheelbase > 0.0) || !(options.reach >= 0.0)) {
     throw std::invalid_argument("a world's sizes and noise are above 0, its walls a share below 1");
   }
-  mesh_ = drawn_mesh(options, random_);
-  for (int k = 0; k < mesh_.landmarks(); ++k) names_.push_back(landmark_name(mesh_, k));
-  beyond_.resize(names_.size());
-  for (const MeshRoute& route : mesh_.routes) {
-    beyond_[static_cast<std::size_t>(route.from)].push_back(route.to);
-    beyond_[static_cast<std::size_t>(route.to)].push_back(route.from);
+  const Mesh mesh = drawn_mesh(options, random_);
+  for (int k = 0; k < mesh.landmarks(); ++k) {
+    const Vector2& at = mesh.positions[static_cast<std::size_t>(k)];
+    plan_.add_landmark(landmark_name(mesh, k), at);
   }
-  wall_up();
-}
-
-void World::wall_up() {
-  std::vector<MeshRoute> routes = mesh_.routes;
-  std::shuffle(routes.begin(), routes.end(), random_);
-  auto left = static_cast<int>(options_.walls * static_cast<double>(routes.size()));
-  for (const MeshRoute& route : routes) {
-    if (left == 0) return;
-    const std::vector<std::vector<int>> before = beyond_;
-    std::erase(beyond_[static_cast<std::size_t>(route.from)], route.to);
-    std::erase(beyond_[static_cast<std::size_t>(route.to)], route.from);
-    if (is_connected(beyond_)) {
-      --left;
-    } else {
-      beyond_ = before;
-    }
+  for (const MeshRoute& route : open_routes(mesh, options.walls, random_)) {
+    plan_.add_traversal(route.from, route.to,
+                        {mesh.displacement(route.from, route.to), Matrix2::Identity()});
   }
 }
 
-std::vector<int> World::ways_out() const {
-  std::vector<int> ways(beyond_[here_].size());
-  for (std::size_t k = 0; k < ways.size(); ++k) ways[k] = static_cast<int>(k);
-  return ways;
+Vector2 World::displacement_to(int landmark) const {
+  return plan_.landmark(landmark).position - plan_.landmark(here_).position;
 }
 
 std::optional<double> World::read_compass() {
@@ -94,59 +72,34 @@ std::optional<double> World::read_compass() {
 std::vector<Seen> World::look_round() {
   std::vector<Seen> seen;
   std::normal_distribution<double> normal;
-  for (int k = 0; k < mesh_.landmarks() && options_.reach > 0.0; ++k) {
-    const Vector2 to = displacement(static_cast<int>(here_), k);
+  for (int k = 0; k < plan_.landmarks() && options_.reach > 0.0; ++k) {
+    const Vector2 to = displacement_to(k);
     const double range = to.norm() + options_.range_sd * normal(random_);
     const double bearing =
         wrap_angle(direction(to) - heading_ + options_.bearing_sd * normal(random_));
-    const bool here = k == static_cast<int>(here_);
-    if (here || to.norm() > options_.reach || !(range > 0.0)) continue;
-    seen.push_back({names_[static_cast<std::size_t>(k)], range, bearing});
+    if (k == here_ || to.norm() > options_.reach || !(range > 0.0)) continue;
+    seen.push_back({plan_.landmark(k).name, range, bearing});
   }
   return seen;
 }
 
 Driven World::leave_by(int way) {
-  const int to = beyond_[here_].at(static_cast<std::size_t>(way));
-  const Vector2 along = displacement(static_cast<int>(here_), to);
+  const int route = plan_.routes_at(here_).at(static_cast<std::size_t>(way));
+  const int to = other_end(plan_.route(route), here_);
+  const Vector2 along = displacement_to(to);
   const double turn = wrap_angle(direction(along) - heading_);
-  Driven driven;
-  std::normal_distribution<double> normal;
-  const auto drive = [&](double left, double right, double per_row) {
-    const int rows = std::max(1, static_cast<int>(std::ceil(std::abs(right) / per_row)));
-    for (int row = 0; row < rows; ++row) {
-      const double l = left / rows;
-      const double r = right / rows;
-      const double seen_left = l + options_.wheels * std::sqrt(std::abs(l)) * normal(random_);
-      const double seen_right = r + options_.wheels * std::sqrt(std::abs(r)) * normal(random_);
-      driven.rows.push_back({seen_left, seen_right});
-    }
-  };
-  const double arc = 0.5 * turn * options_.wheelbase;
-  if (turn != 0.0) drive(-arc, arc, 0.5 * kTurnPerRow * options_.wheelbase);
-  drive(along.norm(), along.norm(), kWayPerRow);
-  const int from = static_cast<int>(here_);
   heading_ += turn;
   way_ += along.norm();
-  here_ = static_cast<std::size_t>(to);
-  driven.landmark = names_[here_];
-  const std::vector<int>& back = beyond_[here_];
-  driven.way_back = static_cast<int>(std::find(back.begin(), back.end(), from) - back.begin());
-  return driven;
-}
-
-LandmarkPositions World::truth() const {
-  LandmarkPositions truth;
-  for (std::size_t k = 0; k < names_.size(); ++k) truth[names_[k]] = mesh_.positions[k];
-  return truth;
+  here_ = to;
+  const std::vector<int>& back = plan_.routes_at(to);
+  return {drive_route(turn, along.norm(), options_.wheelbase, options_.wheels, random_), landmark(),
+          static_cast<int>(std::find(back.begin(), back.end(), route) - back.begin())};
 }
 
 double World::length_of_all_routes() const {
   double sum = 0.0;
-  for (std::size_t k = 0; k < beyond_.size(); ++k) {
-    for (const int other : beyond_[k]) sum += displacement(static_cast<int>(k), other).norm();
-  }
-  return 0.5 * sum;
+  for (int number = 0; number < plan_.routes(); ++number) sum += plan_.route(number).stretch;
+  return sum;
 }
 
 }  // namespace trussmap::explore

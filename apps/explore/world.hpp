@@ -10,8 +10,8 @@
 #pragma once
 
 #include "trussmap/arc.hpp"
+#include "trussmap/landmark_map.hpp"
 #include "trussmap/simulation.hpp"
-#include "trussmap/survey_comparison.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -55,31 +55,26 @@ class World {
   explicit World(const WorldOptions& options);
 
   [[nodiscard]] const WorldOptions& options() const { return options_; }
-  [[nodiscard]] const std::string& landmark() const { return names_[here_]; }
-  /// Numbers of the ways out of here; another landmark's ways have numbers of their own.
-  [[nodiscard]] std::vector<int> ways_out() const;
+  [[nodiscard]] const std::string& landmark() const { return plan_.landmark(here_).name; }
+  /// How many ways lead out of here, numbered from 0; another landmark's have numbers of their own.
+  [[nodiscard]] std::size_t ways_out() const { return plan_.routes_at(here_).size(); }
   [[nodiscard]] std::optional<double> read_compass();
   [[nodiscard]] std::vector<Seen> look_round();
   Driven leave_by(int way);
 
   // For judges alone.
-  [[nodiscard]] LandmarkPositions truth() const;
-  [[nodiscard]] int landmarks() const { return mesh_.landmarks(); }
+  /// Where landmarks are, and the routes between them; ways out are its routes at a landmark.
+  [[nodiscard]] const LandmarkGraph& plan() const { return plan_; }
   [[nodiscard]] double length_of_all_routes() const;
   [[nodiscard]] double way_driven() const { return way_; }
 
  private:
-  [[nodiscard]] Vector2 displacement(int from, int to) const {
-    return mesh_.displacement(from, to);
-  }
-  void wall_up();
+  [[nodiscard]] Vector2 displacement_to(int landmark) const;
 
   WorldOptions options_;
-  Mesh mesh_;
-  std::vector<std::string> names_;
-  std::vector<std::vector<int>> beyond_;  // per landmark, per way out: the landmark at its end
   std::mt19937_64 random_;
-  std::size_t here_ = 0;
+  LandmarkGraph plan_;
+  int here_ = 0;
   double heading_ = 0.0;  // rad, true
   double way_ = 0.0;      // m
 };

@@ -72,7 +72,7 @@ void run_explore(ExploreOptions options) {
   how.scope = options.scope.scope();
   how.law = options.scope.stiffness_law();
   explore::Explorer robot(world, how);
-  const LandmarkPositions truth = world.truth();
+  const LandmarkPositions truth = positions_of(world.plan());
   const Laid laid = options.world.compass ? Laid::as_it_is : Laid::aligned;
   const double all_routes = world.length_of_all_routes();
   std::vector<Tour> tours;
@@ -86,7 +86,9 @@ void run_explore(ExploreOptions options) {
   robot.explore(options.tours * all_routes, [&](const Arrival& arrival) {
     ++legs;
     if (!options.html.empty() || !options.svg.empty()) {
-      frames.push_back({laid_over(robot.map().map(), truth), arrival.landmark, world.way_driven()});
+      const LandmarkGraph map = robot.map().map();
+      frames.push_back({laid == Laid::aligned ? laid_over(map, truth) : map, arrival.landmark,
+                        world.way_driven(), map_errors(map, truth, laid).position.value_or(0.0)});
     }
     const double next = static_cast<double>(tours.size()) + 1.0;
     if (world.way_driven() >= next * all_routes) note();
@@ -98,7 +100,7 @@ void run_explore(ExploreOptions options) {
   if (!options.json_file.empty()) {
     const ordered_json result = {{"legs", legs},
                                  {"way_m", world.way_driven()},
-                                 {"landmarks", world.landmarks()},
+                                 {"landmarks", world.plan().landmarks()},
                                  {"found", map.landmarks()},
                                  {"routes", map.routes()},
                                  {"aligned", laid == Laid::aligned},
@@ -107,14 +109,14 @@ void run_explore(ExploreOptions options) {
   }
   const std::string subject = fmt::format("{} mesh, seed {}", options.mesh, options.world.seed);
   if (!options.svg.empty()) {
-    files.emplace_back(options.svg, exploration_picture(frames, truth, subject));
+    files.emplace_back(options.svg, exploration_picture(frames, world.plan(), subject));
   }
   if (!options.html.empty()) {
-    files.emplace_back(options.html, exploration_page(frames, truth, subject));
+    files.emplace_back(options.html, exploration_page(frames, world.plan(), subject));
   }
   files.write();
   fmt::print("explored: {} of {} landmarks and {} routes, {} legs, {:.0f} m\n", map.landmarks(),
-             world.landmarks(), map.routes(), legs, world.way_driven());
+             world.plan().landmarks(), map.routes(), legs, world.way_driven());
   fmt::print("\n  errors{} each time the way is as long as all routes together\n",
              laid == Laid::aligned ? " after the best rotation and translation," : "");
   fmt::print("  tour     way [m]  landmarks  position [m]   stretch  orientation [rad]\n");

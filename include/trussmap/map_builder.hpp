@@ -223,11 +223,15 @@ class MapBuilder {
   /// about two factorisations. Throws SolveError likewise.
   [[nodiscard]] std::vector<Matrix2> covariances() const;
 
-  /// Per route of map(): by how much the summed variance of all landmarks (m^2) is expected to fall
-  /// when the route is driven once more, with the covariance that its traversals had on average.
-  /// Where to drive next, for a better map. Cost: one factorisation, two solutions per route.
-  /// Throws SolveError likewise.
-  [[nodiscard]] std::vector<double> expected_falls() const;
+  /// Per way (landmarks one after the other, along routes of the map): by how much the summed
+  /// variance of all landmarks (m^2, as of covariances()) is expected to fall when the robot drives
+  /// it, each route with the covariance that its traversals had on average. Legs in the robot's own
+  /// axes measure corners as well; the first one too where the way starts at here(). Of a map
+  /// without a compass, and so without axes: of the landmarks after the best rotation and
+  /// translation. Where to drive next, for a better map. Throws std::invalid_argument on a way that
+  /// leaves the map's routes; SolveError as covariances(). Cost: one factorisation, and a solution
+  /// per number that is measured, up to three per route.
+  [[nodiscard]] std::vector<double> expected_falls(const std::vector<std::vector<int>>& ways) const;
 
   /// The landmarks along the shortest or the surest way over routes that were driven
   /// (landmark_map.hpp); empty where there is none.

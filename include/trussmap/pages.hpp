@@ -147,19 +147,20 @@ struct TruthCalibration {
 
 /// A moment of an exploration.
 struct ExplorationFrame {
-  LandmarkGraph map;  ///< laid over the truth
-  int here = -1;      ///< landmark
-  double way = 0.0;   ///< m, driven so far
+  LandmarkGraph map;   ///< without a compass laid over the world
+  int here = -1;       ///< landmark
+  double way = 0.0;    ///< m, driven so far
+  double error = 0.0;  ///< m, mean distance of its landmarks from where they are
 };
 
-/// The map as it grows, an animated picture (SVG); without animation its end.
+/// The map as it grows, an animated picture (SVG); without animation its end. `world`: where
+/// landmarks are, and the routes between them.
 [[nodiscard]] std::string exploration_picture(const std::vector<ExplorationFrame>& frames,
-                                              const LandmarkPositions& truth,
+                                              const LandmarkGraph& world,
                                               const std::string& subject);
 
-/// A file with that picture, and moments of it (HTML).
+/// A file with that picture, its error over the way, and moments of it (HTML).
 [[nodiscard]] std::string exploration_page(const std::vector<ExplorationFrame>& frames,
-                                           const LandmarkPositions& truth,
-                                           const std::string& subject);
+                                           const LandmarkGraph& world, const std::string& subject);
 
 }  // namespace trussmap

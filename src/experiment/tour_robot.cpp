@@ -6,8 +6,8 @@
 #include "map/heading_reset.hpp"
 #include "map/reckoned_leg.hpp"
 #include "simulation/route_robot.hpp"
-#include "simulation/wheeled_route.hpp"
 #include "trussmap/dead_reckoning.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <cmath>
 #include <optional>
@@ -46,11 +46,8 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
   const double before = heading_;
   const double turn = wrap_angle(direction(displacement) - heading_);
   heading_ += turn;
-  std::vector<WheelTravel> rows;
-  for (const RecordedRow& row :
-       drive_route(turn, displacement.norm(), wheels.wheelbase, wheels.noise, error_random_)) {
-    rows.push_back({row.left, row.right});
-  }
+  const std::vector<WheelTravel> rows =
+      drive_route(turn, displacement.norm(), wheels.wheelbase, wheels.noise, error_random_);
   TourLeg leg;
   if (wheels.readings == CompassReadings::row) {
     leg.in_map = with_readings(rows, before);

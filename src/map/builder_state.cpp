@@ -3,6 +3,7 @@
 #include "map/builder_state.hpp"
 
 #include "geometry/index.hpp"
+#include "map/expected_falls.hpp"
 #include "map/heading_reset.hpp"
 #include "trussmap/error.hpp"
 
@@ -117,26 +118,61 @@ std::vector<Matrix2> MapBuilder::State::covariances() const {
   return by_variance().mechanics_.flexibilities();
 }
 
-/// P becomes P - D S^-1 D', with D the columns of P for the route's vector and S that vector's
-/// variance before the measurement and its own together.
-std::vector<double> MapBuilder::State::expected_falls() const {
-  State least_squares = by_variance();
-  std::vector<double> falls;
-  for (int number = 0; number < m_.graph.routes(); ++number) {
-    const Route& route = m_.graph.route(number);
-    const auto D = least_squares.mechanics_.pulls(route.source, route.target);
-    Matrix2 S = route.covariance;
-    Matrix2 squares = Matrix2::Zero();
-    for (Eigen::Index c = 0; c < 2; ++c) {
-      const std::vector<Vector2>& column = D[static_cast<std::size_t>(c)];
-      S.col(c) += column[idx(route.target)] - column[idx(route.source)];
-      for (Eigen::Index r = 0; r < 2; ++r) {
-        for (std::size_t k = 0; k < column.size(); ++k) {
-          squares(r, c) += D[static_cast<std::size_t>(r)][k].dot(column[k]);
-        }
-      }
+/// Mean variance of all corners; 0: there is none.
+double MapBuilder::State::usual_corner_variance() const {
+  double sum = 0.0;
+  for (const CornerAverage& one : m_.corners) sum += one.angle.variance;
+  return m_.corners.empty() ? 0.0 : sum / static_cast<double>(m_.corners.size());
+}
+
+/// What a drive along a way measures, in the order in which it does.
+std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& way,
+                                                       double corner_variance) const {
+  std::vector<Element> measured;
+  int before = -1;
+  if (!way.empty() && way.front() == m_.here && m_.earlier) before = m_.earlier->landmark;
+  for (std::size_t n = 1; n < way.size(); ++n) {
+    const int i = way[n - 1];
+    const int j = way[n];
+    const std::optional<int> number = m_.graph.route_between(i, j);
+    if (!number) {
+      throw std::invalid_argument("expected ways along routes of the map");
     }
-    falls.push_back((S.inverse() * squares).trace());
+    const Route& route = m_.graph.route(*number);
+    const int place = reckoned_at_[idx(*number)];
+    if (place < 0 || m_.reckoned[idx(place)].length.count == 0) {
+      measured.push_back(bar_element(route.source, route.target, route.covariance.inverse(), {}));
+      before = -1;
+      continue;
+    }
+    const ReckonedRoute& reckoned = m_.reckoned[idx(place)];
+    measured.push_back(
+        length_element(route.source, route.target, 1.0 / reckoned.length.variance, 0.0));
+    if (m_.frame == Frame::axes && reckoned.direction.count > 0) {
+      measured.push_back(
+          direction_element(route.source, route.target, 1.0 / reckoned.direction.variance, 0.0));
+    }
+    if (before >= 0 && before != j && corner_variance > 0.0) {
+      const auto known = corner_at_.find({std::min(before, j), i, std::max(before, j)});
+      const double variance = known == corner_at_.end()
+                                  ? corner_variance
+                                  : m_.corners[idx(known->second)].angle.variance;
+      measured.push_back(
+          corner_element(std::min(before, j), i, std::max(before, j), 1.0 / variance, 0.0));
+    }
+    before = i;
+  }
+  return measured;
+}
+
+std::vector<double> MapBuilder::State::expected_falls(
+    const std::vector<std::vector<int>>& ways) const {
+  State least_squares = by_variance();
+  ExpectedFalls fall(least_squares.mechanics_, m_.frame == Frame::first_heading);
+  const double corner_variance = usual_corner_variance();
+  std::vector<double> falls;
+  for (const std::vector<int>& way : ways) {
+    falls.push_back(fall.of(measured_along(way, corner_variance)));
   }
   return falls;
 }

@@ -51,7 +51,7 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] std::optional<PoseEstimate> pose() const;
   [[nodiscard]] Matrix2 covariance_between(int a, int b) const;
   [[nodiscard]] std::vector<Matrix2> covariances() const;
-  [[nodiscard]] std::vector<double> expected_falls() const;
+  [[nodiscard]] std::vector<double> expected_falls(const std::vector<std::vector<int>>& ways) const;
   [[nodiscard]] const MapBuilderOptions& options() const { return options_; }
   /// Its positions may be behind: position(), map().
   [[nodiscard]] const LandmarkGraph& graph() const { return m_.graph; }
@@ -95,6 +95,9 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] Vector2 at(int landmark) const { return mechanics_.position(landmark); }
   void make_truss();
   [[nodiscard]] State by_variance() const;
+  [[nodiscard]] double usual_corner_variance() const;
+  [[nodiscard]] std::vector<Element> measured_along(const std::vector<int>& way,
+                                                    double corner_variance) const;
 
   [[nodiscard]] int standing() const;
   [[nodiscard]] std::optional<int> other_landmark(const std::string& name) const;

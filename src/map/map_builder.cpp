@@ -285,8 +285,8 @@ std::vector<Matrix2> MapBuilder::covariances() const {
   return state_->covariances();
 }
 
-std::vector<double> MapBuilder::expected_falls() const {
-  return state_->expected_falls();
+std::vector<double> MapBuilder::expected_falls(const std::vector<std::vector<int>>& ways) const {
+  return state_->expected_falls(ways);
 }
 
 std::vector<int> MapBuilder::path(int from, int to, PathBy by) const {

@@ -160,14 +160,18 @@ void MapMechanics::relax_all() {
   at_rest_ = true;
 }
 
-std::array<std::vector<Vector2>, 2> MapMechanics::pulls(int i, int j) {
+std::vector<Vector2> MapMechanics::displacements(
+    const std::vector<std::pair<int, Vector2>>& loads) {
   settle();
-  const auto along = [&](const Vector2& force) { return equilibrium_.pull(truss_, i, j, force); };
-  return solved([&] { return std::array{along(Vector2::UnitX()), along(Vector2::UnitY())}; });
+  return solved([&] { return equilibrium_.displacements(truss_, loads); });
 }
 
 Matrix2 MapMechanics::flexibility_between(int i, int j) {
-  const auto [by_x, by_y] = pulls(i, j);
+  const auto pulled = [&](const Vector2& force) {
+    return displacements({{i, -force}, {j, force}});
+  };
+  const std::vector<Vector2> by_x = pulled(Vector2::UnitX());
+  const std::vector<Vector2> by_y = pulled(Vector2::UnitY());
   Matrix2 F;
   F << by_x[idx(j)] - by_x[idx(i)], by_y[idx(j)] - by_y[idx(i)];
   return 0.5 * (F + F.transpose());

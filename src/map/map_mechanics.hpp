@@ -29,7 +29,7 @@
 #include "truss/relaxation.hpp"
 #include "trussmap/map_builder.hpp"
 
-#include <array>
+#include <utility>
 #include <vector>
 
 namespace trussmap {
@@ -99,9 +99,10 @@ class MapMechanics {
   /// route's ends among them: all, the nearest, or as many as are estimated to move. Ascending.
   [[nodiscard]] std::vector<int> members(int i, int j) const;
 
-  /// Displacements of all landmarks under a pull of 1 of two of them apart, along x and along y.
-  /// Throws SolveError, as the next two do, where stiffnesses span too many magnitudes.
-  [[nodiscard]] std::array<std::vector<Vector2>, 2> pulls(int i, int j);
+  /// Displacements of all landmarks under loads: landmarks, and the force on each. Throws
+  /// SolveError, as the next two do, where stiffnesses span too many magnitudes.
+  [[nodiscard]] std::vector<Vector2> displacements(
+      const std::vector<std::pair<int, Vector2>>& loads);
   /// What a pull of two landmarks apart does to the vector between them.
   [[nodiscard]] Matrix2 flexibility_between(int i, int j);
   /// Per landmark, the first one held.

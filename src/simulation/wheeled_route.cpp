@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "simulation/wheeled_route.hpp"
+#include "trussmap/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@ constexpr double kWayPerRow = 0.25;  // m
 
 }  // namespace
 
-std::vector<RecordedRow> drive_route(double turn, double length, double wheelbase, double noise,
+std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase, double noise,
                                      std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  std::vector<RecordedRow> rows;
+  std::vector<WheelTravel> rows;
   const auto drive = [&](double left, double right, int count) {
     for (int row = 0; row < count; ++row) {
       const double l = left / count;

@@ -142,13 +142,14 @@ void Equilibrium::evaluate_changes(const ElasticTruss& truss) {
   }
 }
 
-std::vector<Vector2> Equilibrium::pull(const ElasticTruss& truss, int i, int j,
-                                       const Vector2& force) {
+std::vector<Vector2> Equilibrium::displacements(const ElasticTruss& truss,
+                                                const std::vector<std::pair<int, Vector2>>& loads) {
   follow(truss);
   if (!sound_) throw NotPositiveDefinite(0);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(f_.size());
-  if (!held(j)) u.segment<2>(unknown_[idx(j)]) += force;
-  if (!held(i)) u.segment<2>(unknown_[idx(i)]) -= force;
+  for (const auto& [joint, force] : loads) {
+    if (!held(joint)) u.segment<2>(unknown_[idx(joint)]) += force;
+  }
   cholesky_.solve_updated(u);
   std::vector<Vector2> displacements(idx(truss.joints()), Vector2::Zero());
   for (int joint = 1; joint < truss.joints(); ++joint) {

@@ -38,10 +38,10 @@ class Equilibrium {
   /// back.
   void relax(ElasticTruss& truss, const Enough& enough = {});
 
-  /// Displacements of all joints under `force` on j and its opposite on i. Throws likewise, and
-  /// where rounding has eaten the digits of the answer.
-  [[nodiscard]] std::vector<Vector2> pull(const ElasticTruss& truss, int i, int j,
-                                          const Vector2& force);
+  /// Displacements of all joints under loads: joints, and the force on each. Throws likewise,
+  /// and where rounding has eaten the digits of the answer.
+  [[nodiscard]] std::vector<Vector2> displacements(
+      const ElasticTruss& truss, const std::vector<std::pair<int, Vector2>>& loads);
 
  private:
   /// An element as the factor has it.

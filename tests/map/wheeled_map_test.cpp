@@ -5,7 +5,6 @@
 // and hands its motions to a map builder as they are.
 #include "geometry/index.hpp"
 #include "map/reckoned_leg.hpp"
-#include "simulation/wheeled_route.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/map_builder.hpp"
 #include "trussmap/simulation.hpp"
@@ -40,8 +39,8 @@ class Robot {
     const double turn = wrap_angle(direction(way) - heading_);
     heading_ += turn;
     Motion motion;
-    for (const RecordedRow& row : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
-      motion = then(motion, arc_motion({row.left, row.right}, kWheelbase, {believed, believed}));
+    for (const WheelTravel& row : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
+      motion = then(motion, arc_motion(row, kWheelbase, {believed, believed}));
     }
     return motion;
   }
