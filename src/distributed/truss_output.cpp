@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "distributed/truss_output.hpp"
 
-#include "geometry/index.hpp"
 #include "files/temporary.hpp"
+#include "geometry/index.hpp"
 
 #include <array>
 #include <cerrno>

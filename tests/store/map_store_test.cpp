@@ -195,8 +195,8 @@ TEST_F(MapStoreTest, EveryLegIsKeptAsItWasGiven) {
   expect_alike(again, store.builder(), kExact);
 }
 
-/// Equilibria of corners are found to within 1e-11 of their energy, from wherever one begins: places
-/// to within some 3e-6 of the strain.
+/// Equilibria of corners are found to within 1e-11 of their energy, from wherever one begins:
+/// places to within some 3e-6 of the strain.
 void expect_near(const MapBuilder& a, const MapBuilder& b) {
   constexpr double kNear = 1e-5;  // m
   EXPECT_EQ(a.here(), b.here());

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/decompress.hpp"
 
+#include "files/temporary.hpp"
 #include "io/logs/byte_reader.hpp"
 #include "io/logs/message_log.hpp"
 #include "io/read_limits.hpp"
-#include "files/temporary.hpp"
 #include "trussmap/error.hpp"
 
 #include <algorithm>
