@@ -10,7 +10,9 @@
 //
 // What a call has returned from survives the end of the program, kill -9 and the loss of power; a
 // call that was under way then has either happened or not. Every leg is kept as it was given, so
-// that a better map can be made of them later. Opening costs what the map costs, not its history:
+// that a better map can be made of them later. A call writes a row per landmark that it moved:
+// where groups move at every scale (map_builder.hpp) that may be all of them, some microseconds
+// each; a session by append() writes each once. Opening costs what the map costs, not its history:
 // landmarks, routes and the list of sessions are read, legs are not.
 //
 // The file is an SQLite database (write-ahead log, synchronous in full), and no program but one

@@ -17,6 +17,8 @@
 namespace trussmap {
 namespace {
 
+constexpr std::size_t kMostUnwritten = 4096;  // then all are written
+
 RefinementScope scope_of(const MapBuilderOptions& options) {
   RefinementScope scope = options.scope;
   if (options.method == Method::gauss_markov) scope.kind = RefinementScope::Kind::all;
@@ -54,6 +56,7 @@ MapBuilder::State::State(const MapBuilderOptions& options, BuilderMemory memory)
     : options_(options), m_(std::move(memory)), mechanics_(scope_of(options), law_of(options)) {
   check_options(options);
   m_.gate.set_gate(options.gate);
+  unwritten_.reserve(kMostUnwritten);
   make_truss();
 }
 
@@ -292,39 +295,46 @@ std::optional<PoseEstimate> MapBuilder::State::pose() const {
   return PoseEstimate{whole.displacement, whole.covariance};
 }
 
-/// The graph's positions follow the truss's; where groups have moved, when somebody asks for them.
+/// What was moved is written into the graph when somebody asks for it: a landmark there is far from
+/// its neighbours in memory.
 void MapBuilder::State::note_moves(Arrival& arrival) noexcept {
   const MapMechanics::Moves moves = mechanics_.moves();
   arrival.landmarks_moved = moves.landmarks;
   arrival.largest_move = moves.largest;
-  if (behind_ && !mechanics_.groups_move()) {
-    write_positions(m_.graph);
+  const auto& moved = mechanics_.truss().moved();
+  if (mechanics_.groups_move() || unwritten_.size() + moved.size() > unwritten_.capacity()) {
+    all_unwritten_ = true;
   }
-  behind_ = mechanics_.groups_move();
-  if (behind_) return;
-  for (const auto& [landmark, before] : mechanics_.truss().moved()) {
-    m_.graph.set_position(landmark, mechanics_.truss().position(landmark));
+  if (!all_unwritten_) {
+    for (const auto& [landmark, before] : moved) unwritten_.push_back(landmark);
   }
+  if (printed()) static_cast<void>(settle_memory());  // it reads the graph
 }
 
 void MapBuilder::State::write_positions(LandmarkGraph& graph) const noexcept {
-  for (int k = 0; k < graph.landmarks(); ++k) graph.set_position(k, at(k));
+  if (all_unwritten_) {
+    for (int k = 0; k < graph.landmarks(); ++k) graph.set_position(k, at(k));
+    return;
+  }
+  for (const int k : unwritten_) graph.set_position(k, at(k));
 }
 
 LandmarkGraph MapBuilder::State::map() const {
   LandmarkGraph map = m_.graph;
-  if (behind_) write_positions(map);
+  write_positions(map);
   return map;
 }
 
 BuilderMemory MapBuilder::State::settled_memory() const {
   BuilderMemory memory = m_;
-  if (behind_) write_positions(memory.graph);
+  write_positions(memory.graph);
   return memory;
 }
 
 const BuilderMemory& MapBuilder::State::settle_memory() noexcept {
-  if (behind_) write_positions(m_.graph);
+  write_positions(m_.graph);
+  unwritten_.clear();
+  all_unwritten_ = mechanics_.groups_move();
   return m_;
 }
 

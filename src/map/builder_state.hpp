@@ -144,10 +144,11 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   MapBuilderOptions options_;
   BuilderMemory m_;
   MapMechanics mechanics_;
-  bool behind_ = false;  ///< the graph's positions are: landmarks have moved with their groups
-  std::vector<RouteElements> elements_;          ///< per route
-  std::vector<int> reckoned_at_;                 ///< per route: its place in m_.reckoned, or -1
-  std::vector<int> corner_elements_;             ///< per corner
+  std::vector<int> unwritten_;           ///< landmarks that have moved, and in the graph not yet
+  bool all_unwritten_ = false;           ///< any may have
+  std::vector<RouteElements> elements_;  ///< per route
+  std::vector<int> reckoned_at_;         ///< per route: its place in m_.reckoned, or -1
+  std::vector<int> corner_elements_;     ///< per corner
   std::map<std::array<int, 3>, int> corner_at_;  ///< by its landmarks i, j, k
 };
 

@@ -282,6 +282,8 @@ void MapBuilder::State::remember(const Step& step, const std::string& landmark,
     if (new_corner) corner_at_.erase(corner);
     throw;
   }
+  if (step.new_landmark)
+    m_.graph.set_position(step.to, at(step.to));  // the other end may be behind
   m_.graph.route(step.route) = step.average;
   if (step.new_route) {
     elements_.emplace_back();

@@ -43,7 +43,7 @@ class MapMechanics {
 
   void set_scope(const RefinementScope& scope) { scope_ = scope; }
 
-  /// Its joints may lie where they were last looked at: see follows() and position().
+  /// Its joints may lie where they were last looked at: see position().
   [[nodiscard]] const ElasticTruss& truss() const { return truss_; }
 
   /// Whether landmarks may have moved with their groups, unseen.
