@@ -31,8 +31,8 @@ Arrival Explorer::drive(int way) {
   const Driven driven = world_.leave_by(way);
   const double k = world_.options().wheels;
   Motion motion;
-  for (const WheelTravel& row : driven.rows) {
-    motion = then(motion, arc_motion(row, world_.options().wheelbase, {k, k}));
+  for (const DrivenRow& row : driven.rows) {
+    motion = then(motion, arc_motion({row.left, row.right}, world_.options().wheelbase, {k, k}));
   }
   const Arrival arrival = map_.arrive(driven.landmark, motion);
   way_ += motion.displacement.position().norm();

@@ -38,7 +38,7 @@ struct WorldOptions {
 
 /// What wheels said on the way to the next landmark.
 struct Driven {
-  std::vector<WheelTravel> rows;
+  std::vector<DrivenRow> rows;
   std::string landmark;  ///< where the way ended
   int way_back = 0;      ///< the way out of there that leads back
 };

@@ -33,7 +33,6 @@
 // explains the recording fully. No formula here is one of an estimator's.
 #pragma once
 
-#include "trussmap/arc.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
@@ -337,12 +336,18 @@ enum class Stream : std::uint32_t {
   return std::mt19937_64(sequence);
 }
 
+/// What the wheels of a row say they have travelled, m.
+struct DrivenRow {
+  double left = 0.0;
+  double right = 0.0;
+};
+
 /// Of a robot that turns on the spot at a landmark, by `turn` (rad), and
 /// drives straight to the next one, `length` (m), exactly: what its two wheels say, row by row,
 /// each travel d with the error k sqrt(|d|) e, e standard normal. `wheelbase` in m, `noise`: k of
 /// both wheels, m^(1/2).
-[[nodiscard]] std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase,
-                                                   double noise, std::mt19937_64& random);
+[[nodiscard]] std::vector<DrivenRow> drive_route(double turn, double length, double wheelbase,
+                                                 double noise, std::mt19937_64& random);
 
 // A robot for rehearsing calibrations with a tape measure: it drives a path exactly by its own
 // odometry, and ends where its true wheels and the noise have brought it.

@@ -46,7 +46,7 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
   const double before = heading_;
   const double turn = wrap_angle(direction(displacement) - heading_);
   heading_ += turn;
-  const std::vector<WheelTravel> rows =
+  const std::vector<DrivenRow> rows =
       drive_route(turn, displacement.norm(), wheels.wheelbase, wheels.noise, error_random_);
   TourLeg leg;
   if (wheels.readings == CompassReadings::row) {
@@ -64,8 +64,8 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
     knows_heading_ = true;
   }
   leg.motion.emplace();
-  for (const WheelTravel& row : rows) {
-    leg.motion = then(*leg.motion, arc_motion(row, wheels.wheelbase, noise));
+  for (const DrivenRow& row : rows) {
+    leg.motion = then(*leg.motion, arc_motion({row.left, row.right}, wheels.wheelbase, noise));
   }
   leg.in_map = in_map_axes(believed_, leg.motion->displacement.position(),
                            leg.motion->covariance.topLeftCorner<2, 2>());
@@ -75,7 +75,7 @@ TourLeg TourRobot::drive_wheels(const Vector2& displacement) {
 }
 
 /// Heading filtered row by row.
-Traversal TourRobot::with_readings(const std::vector<WheelTravel>& rows, double heading) {
+Traversal TourRobot::with_readings(const std::vector<DrivenRow>& rows, double heading) {
   const TourWheels& wheels = *options_.wheels;
   Robot robot;
   robot.wheelbase = wheels.wheelbase;
@@ -86,10 +86,10 @@ Traversal TourRobot::with_readings(const std::vector<WheelTravel>& rows, double 
   const double whole = heading_ - heading;
   double turned = 0.0;
   double spun = 0.0;  // as recorded, of which the whole turn is known
-  for (const WheelTravel& row : rows) {
+  for (const DrivenRow& row : rows) {
     if (row.left * row.right < 0.0) spun += (row.right - row.left) / wheels.wheelbase;
   }
-  for (const WheelTravel& row : rows) {
+  for (const DrivenRow& row : rows) {
     if (row.left * row.right < 0.0 && spun != 0.0) {
       turned += whole * (row.right - row.left) / wheels.wheelbase / spun;
     } else {

@@ -36,7 +36,7 @@ class TourRobot {
 
  private:
   [[nodiscard]] TourLeg drive_wheels(const Vector2& displacement);
-  [[nodiscard]] Traversal with_readings(const std::vector<WheelTravel>& rows, double heading);
+  [[nodiscard]] Traversal with_readings(const std::vector<DrivenRow>& rows, double heading);
   [[nodiscard]] HeadingEstimate read(double heading);
 
   const TourOptions& options_;

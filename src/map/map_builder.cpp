@@ -298,7 +298,7 @@ LandmarkGraph MapBuilder::map() const {
 }
 
 void MapBuilder::save(const std::filesystem::path& file) {
-  const std::string text = format_memory(state_->memory(), state_->options());
+  const std::string text = format_memory(state_->settled_memory(), state_->options());
   // As it is read: what cannot be read is not written.
   KeptMemory kept = parse_memory(text, file.string());
   auto next = std::make_unique<State>(kept.options, std::move(kept.memory));

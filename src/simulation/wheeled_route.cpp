@@ -13,10 +13,10 @@ constexpr double kWayPerRow = 0.25;  // m
 
 }  // namespace
 
-std::vector<WheelTravel> drive_route(double turn, double length, double wheelbase, double noise,
-                                     std::mt19937_64& random) {
+std::vector<DrivenRow> drive_route(double turn, double length, double wheelbase, double noise,
+                                  std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  std::vector<WheelTravel> rows;
+  std::vector<DrivenRow> rows;
   const auto drive = [&](double left, double right, int count) {
     for (int row = 0; row < count; ++row) {
       const double l = left / count;

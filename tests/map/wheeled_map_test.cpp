@@ -39,8 +39,8 @@ class Robot {
     const double turn = wrap_angle(direction(way) - heading_);
     heading_ += turn;
     Motion motion;
-    for (const WheelTravel& row : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
-      motion = then(motion, arc_motion(row, kWheelbase, {believed, believed}));
+    for (const auto& [left, right] : drive_route(turn, way.norm(), kWheelbase, noise_, random_)) {
+      motion = then(motion, arc_motion({left, right}, kWheelbase, {believed, believed}));
     }
     return motion;
   }
