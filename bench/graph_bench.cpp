@@ -12,9 +12,12 @@
 //   names alone     of grow: the table of names, which all have
 //
 // Boost's lists of edges have no numbers of routes (edges vecS: their places), and a call that
-// throws halfway leaves Boost's graphs halfway; LandmarkGraph gives both in these figures.
+// throws halfway leaves Boost's graphs halfway; LandmarkGraph gives both in these figures. "with
+// routes_at" has what LandmarkGraph's callers need: a route by its number, and the numbers of the
+// routes at a landmark.
 //
-// Every rival is in a process of its own, they take turns, and the least of the rounds counts.
+// Every rival is in a process of its own, they take turns; of each round's ratios the
+// median, the least and the most.
 #include "scale/measure.hpp"
 #include "trussmap/landmark_map.hpp"
 
@@ -46,7 +49,7 @@ struct Options {
   int side = 1000;
   int neighbourhoods = 20000;
   int pairs = 1000000;
-  int rounds = 5;
+  int rounds = 7;
 };
 
 /// Landmarks of a square mesh, numbered as the robot meets them: there and back, row after row.
@@ -101,7 +104,7 @@ class Ours {
   LandmarkGraph map_;
 };
 
-template <typename OutEdges, typename Edges>
+template <typename OutEdges, typename Edges, bool kNumbered = false>
 class Listed {
  public:
   using Graph = boost::adjacency_list<OutEdges, boost::vecS, boost::undirectedS, Landmark, Route,
@@ -111,7 +114,7 @@ class Listed {
   void add_landmark(const std::string& name, int from, const Traversal& traversal) {
     const auto begin = at(from);
     const std::size_t number = add(name, graph_[begin].position + traversal.displacement);
-    add_edge(begin, number, averaged(from, static_cast<int>(number), traversal), graph_);
+    join(begin, number, averaged(from, static_cast<int>(number), traversal));
   }
   void add_traversal(int from, int to, const Traversal& traversal) {
     const auto [known, there] = edge(at(from), at(to), graph_);
@@ -119,7 +122,7 @@ class Listed {
       Route& route = graph_[known];
       average_in(route, route.source == from ? traversal : reversed(traversal));
     } else {
-      add_edge(at(from), at(to), averaged(from, to, traversal), graph_);
+      join(at(from), at(to), averaged(from, to, traversal));
     }
   }
   [[nodiscard]] double read_at(int landmark) const {
@@ -155,7 +158,17 @@ class Listed {
     if (name.empty() || !numbers_.emplace(name, number).second) {
       throw std::invalid_argument("no name, or taken");
     }
+    if constexpr (kNumbered) routes_at_.emplace_back();
     return add_vertex(Landmark{name, position, std::nullopt}, graph_);
+  }
+  void join(std::size_t from, std::size_t to, const Route& route) {
+    const auto added = add_edge(from, to, route, graph_).first;
+    if constexpr (kNumbered) {
+      const auto number = static_cast<int>(routes_.size());
+      routes_.push_back(added);
+      routes_at_[from].push_back(number);
+      routes_at_[to].push_back(number);
+    }
   }
   static Route averaged(int from, int to, const Traversal& traversal) {
     Route route;
@@ -166,6 +179,8 @@ class Listed {
   }
 
   Graph graph_;
+  std::vector<typename Graph::edge_descriptor> routes_;  ///< by number
+  std::vector<std::vector<int>> routes_at_;
   std::unordered_map<std::string, int> numbers_;
 };
 
@@ -252,24 +267,32 @@ void compare(const Options& options) {
   const auto rival = [&options](const std::string& name, auto run) {
     return Rival{name, [=](Stages& stages) { return run(options, stages); }};
   };
-  const std::vector<Rival> rivals{rival("LandmarkGraph", work<Ours>),
-                                  rival("vecS, edges listS (default)", work<Listed<vecS, listS>>),
-                                  rival("vecS, edges vecS", work<Listed<vecS, vecS>>),
-                                  rival("setS, edges listS", work<Listed<setS, listS>>),
-                                  rival("hash_setS, edges listS", work<Listed<hash_setS, listS>>),
-                                  rival("names alone", names_alone)};
-  const std::vector<Run> runs = race(rivals, options.rounds);
-  print(rivals, runs);
-  fmt::print("\nover LandmarkGraph:\n");
-  const Run& ours = runs.front();
-  for (std::size_t k = 1; k < runs.size(); ++k) {
-    std::string line = fmt::format("  {:<28}", rivals[k].name);
-    for (const auto& stage : runs[k].stages.stages) {
-      line += fmt::format(" {} {:.2f}", stage.name, stage.seconds / ours.stages.of(stage.name));
+  const std::vector<Rival> rivals{
+      rival("LandmarkGraph", work<Ours>),
+      rival("vecS, edges listS (default)", work<Listed<vecS, listS>>),
+      rival("vecS, edges vecS", work<Listed<vecS, vecS>>),
+      rival("vecS, edges vecS, with routes_at", work<Listed<vecS, vecS, true>>),
+      rival("setS, edges listS", work<Listed<setS, listS>>),
+      rival("hash_setS, edges listS", work<Listed<hash_setS, listS>>),
+      rival("names alone", names_alone)};
+  std::vector<std::vector<Run>> rounds;
+  for (int round = 0; round < options.rounds; ++round) rounds.push_back(race(rivals, 1));
+  fmt::print("over LandmarkGraph:\n");
+  for (std::size_t k = 1; k < rivals.size(); ++k) {
+    std::string line = fmt::format("  {:<33}", rivals[k].name);
+    for (const auto& stage : rounds.front()[k].stages.stages) {
+      std::vector<double> ratios;
+      for (const std::vector<Run>& runs : rounds) {
+        ratios.push_back(runs[k].stages.of(stage.name) / runs.front().stages.of(stage.name));
+      }
+      line += fmt::format(" {} {:.2f} ({:.2f} to {:.2f})", stage.name, percentile(ratios, 0.5),
+                          percentile(ratios, 0.0), percentile(ratios, 1.0));
     }
-    fmt::print("{} memory {:.2f}\n", line, runs[k].megabytes / ours.megabytes);
-    if (runs[k].stages.stages.size() > 1 &&
-        !(std::abs(runs[k].answer - ours.answer) <= 1e-9 * std::abs(ours.answer))) {
+    const std::vector<Run>& last = rounds.back();
+    fmt::print("{} memory {:.2f}\n", line, last[k].megabytes / last.front().megabytes);
+    const double ours = last.front().answer;
+    if (last[k].stages.stages.size() > 1 &&
+        !(std::abs(last[k].answer - ours) <= 1e-9 * std::abs(ours))) {
       throw std::runtime_error(rivals[k].name + " answers otherwise");
     }
   }
