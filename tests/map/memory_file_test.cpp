@@ -136,7 +136,7 @@ class Robot {
 
 /// All that is kept, as text: two builders that are the same have the same.
 std::string all_of(const MapBuilder& builder) {
-  return format_memory(BuilderAccess::memory(builder), builder.options());
+  return format_memory(BuilderAccess::settled_memory(builder), builder.options());
 }
 
 std::vector<MapBuilderOptions> many_options() {
