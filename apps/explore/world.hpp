@@ -9,7 +9,6 @@
 // who judge its map.
 #pragma once
 
-#include "trussmap/arc.hpp"
 #include "trussmap/landmark_map.hpp"
 #include "trussmap/simulation.hpp"
 
