@@ -77,6 +77,7 @@ void ScaleSums::look(ElasticTruss& truss, int landmark) noexcept {
 }
 
 void ScaleSums::look_round(ElasticTruss& truss, const std::vector<int>& landmarks) noexcept {
+  if (empty()) return;
   for (const int landmark : landmarks) {
     look(truss, landmark);
     for (const int number : truss.elements_at(landmark)) {
