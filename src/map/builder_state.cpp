@@ -137,7 +137,9 @@ std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& w
   for (std::size_t n = 1; n < way.size(); ++n) {
     const int i = way[n - 1];
     const int j = way[n];
-    const std::optional<int> number = m_.graph.route_between(i, j);
+    const auto inside = [&](int k) { return k >= 0 && k < m_.graph.landmarks(); };
+    const std::optional<int> number =
+        inside(i) && inside(j) ? m_.graph.route_between(i, j) : std::nullopt;
     if (!number) {
       throw std::invalid_argument("expected ways along routes of the map");
     }

@@ -14,7 +14,7 @@ constexpr double kWayPerRow = 0.25;  // m
 }  // namespace
 
 std::vector<DrivenRow> drive_route(double turn, double length, double wheelbase, double noise,
-                                  std::mt19937_64& random) {
+                                   std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<DrivenRow> rows;
   const auto drive = [&](double left, double right, int count) {
