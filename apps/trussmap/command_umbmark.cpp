@@ -15,7 +15,6 @@
 #include "umbmark_output.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -83,15 +82,13 @@ std::vector<StraightRun> simulated_straight(const TapeRobot& robot, std::uint64_
 }
 
 double length_of(const std::string& text, const std::string& option) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  if (read.ec != std::errc{} || read.ptr != end || !std::isfinite(value) || !(value > 0.0)) {
+  const std::optional<double> value = finite_number(text);
+  if (!value || !(*value > 0.0)) {
     throw UsageError("--straight " + option + ": \"" + text +
                      "\" is no length, expected MEASURED:REPORTED in metres, 10.032:10 for "
                      "instance, several separated by commas");
   }
-  return value;
+  return *value;
 }
 
 std::vector<StraightRun> straight_runs(const std::string& text) {

@@ -3,14 +3,14 @@
 #include "effect_options.hpp"
 
 #include "commands.hpp"
+#include "option_checks.hpp"
 #include "terminal.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/model_file.hpp"
 #include "trussmap/simulated_recording.hpp"
 
-#include <charconv>
-#include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -25,15 +25,14 @@ std::vector<double> numbers(const std::string& option, std::string_view text) {
   std::vector<double> values;
   while (true) {
     const std::string_view one = text.substr(0, text.find(','));
-    double value = 0.0;
-    const auto read = std::from_chars(one.data(), one.data() + one.size(), value);
-    if (read.ec != std::errc{} || read.ptr != one.data() + one.size() || !std::isfinite(value)) {
+    const std::optional<double> value = finite_number(one);
+    if (!value) {
       throw UsageError(
           fmt::format("--effect \"{}\": \"{}\" is no number, expected NAME=VALUE or "
                       "NAME=VALUE,VALUE",
                       option, one));
     }
-    values.push_back(value);
+    values.push_back(*value);
     if (one.size() == text.size()) return values;
     text.remove_prefix(one.size() + 1);
   }

@@ -12,16 +12,11 @@ namespace {
 
 /// The number that the whole text is.
 template <typename Number>
-std::optional<Number> number_of(const std::string& text) {
+std::optional<Number> number_of(std::string_view text) {
   Number value{};
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (read.ec != std::errc{} || read.ptr != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-std::optional<double> finite_number(const std::string& text) {
-  const std::optional<double> value = number_of<double>(text);
-  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 constexpr std::uint64_t kMostEta = 1'000'000'000;
@@ -55,6 +50,11 @@ std::optional<StretchOfTime> stretch_in(const std::string& text) {
 }
 
 }  // namespace
+
+std::optional<double> finite_number(std::string_view text) {
+  const std::optional<double> value = number_of<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
 Check stretch_of_time() {
   return {[](const std::string& text) {

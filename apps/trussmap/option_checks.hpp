@@ -12,8 +12,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace trussmap::app {
+
+/// The finite number that the whole text is.
+[[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
 /// A number above 0, infinity not included.
 [[nodiscard]] Check above_zero();

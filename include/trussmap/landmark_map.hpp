@@ -99,6 +99,7 @@ class LandmarkGraph {
   [[nodiscard]] Route& route(int number);
 
   [[nodiscard]] std::optional<int> find(const std::string& name) const;
+  /// None where one of them is no landmark.
   [[nodiscard]] std::optional<int> route_between(int a, int b) const;
   /// The routes that end at a landmark, in the order they were added.
   [[nodiscard]] const std::vector<int>& routes_at(int landmark) const;

@@ -208,6 +208,8 @@ class MapBuilder {
   /// Present position, m. Cost: at most log n. Throws std::invalid_argument on a number that no
   /// landmark has.
   [[nodiscard]] Vector2 position(int landmark) const;
+  /// Throws likewise. Without the copy that map() makes.
+  [[nodiscard]] const std::string& name(int landmark) const;
 
   /// The `count` landmarks nearest to a point, the nearest first. Throws std::invalid_argument
   /// unless count is above 0.
@@ -243,7 +245,7 @@ class MapBuilder {
   /// (landmark_map.hpp); empty where there is none.
   [[nodiscard]] std::vector<int> path(int from, int to, PathBy by = PathBy::length) const;
 
-  /// The map: present positions, and the routes with their averages.
+  /// The map: present positions, and the routes with their averages. A copy, made anew each time.
   [[nodiscard]] LandmarkGraph map() const;
 
   /// Writes all that the builder remembers into a file, whole or not at all (docs/formats.md; its

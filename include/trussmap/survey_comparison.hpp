@@ -63,8 +63,11 @@ struct MapErrors {
   int routes = 0;                  ///< that count: both ends in the truth, and apart there
 };
 
-/// The map turned and moved so that its landmarks lie best on the truth's. Throws
+/// What turns and moves the map so that its landmarks lie best on the truth's. Throws
 /// std::invalid_argument where they have fewer than two in common.
+[[nodiscard]] Alignment onto_truth(const LandmarkGraph& map, const LandmarkPositions& truth);
+
+/// The map laid so. Throws likewise.
 [[nodiscard]] LandmarkGraph laid_over(const LandmarkGraph& map, const LandmarkPositions& truth);
 
 /// Errors of a map's routes and landmarks as they lie in it. Landmarks that the truth lacks do not

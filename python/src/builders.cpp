@@ -35,6 +35,71 @@ Traversal leg_of(const py::object& displacement, const py::object& covariance) {
   return {matrix<Vector2>(displacement, "displacement"), matrix<Matrix2>(covariance, "covariance")};
 }
 
+int number_of(const MapBuilder& builder, const std::string& landmark) {
+  const std::optional<int> number = builder.find(landmark);
+  if (!number) throw py::key_error("the map has no landmark \"" + landmark + "\"");
+  return *number;
+}
+
+std::vector<std::string> names_of(const MapBuilder& builder, const std::vector<int>& landmarks) {
+  std::vector<std::string> names;
+  for (const int landmark : landmarks) names.push_back(builder.name(landmark));
+  return names;
+}
+
+PathBy path_by(const std::string& name) {
+  if (name == "length") return PathBy::length;
+  if (name == "uncertainty") return PathBy::uncertainty;
+  throw py::value_error("by: there is no \"" + name + "\", expected length or uncertainty");
+}
+
+/// What a planner asks of a builder, landmarks by their names.
+template <typename Class, typename Get>
+void add_planning(Class& type, const Get& builder) {
+  using Self = typename Class::type;
+  type.def(
+          "nearest",
+          [builder](const Self& self, const py::object& point, int count) {
+            return names_of(builder(self),
+                            builder(self).nearest(matrix<Vector2>(point, "point"), count));
+          },
+          py::arg("point"), py::arg("count") = 1, doc("MapBuilder.nearest"))
+      .def(
+          "path",
+          [builder](const Self& self, const std::string& from, const std::string& to,
+                    const std::string& by) {
+            const MapBuilder& asked = builder(self);
+            return names_of(asked,
+                            asked.path(number_of(asked, from), number_of(asked, to), path_by(by)));
+          },
+          py::arg("start"), py::arg("end"), py::kw_only(), py::arg("by") = "length",
+          "The landmarks along the shortest way over known routes, by=\"uncertainty\" the surest; "
+          "none where there is no way.")
+      .def(
+          "covariance_between",
+          [builder](const Self& self, const std::string& a, const std::string& b) {
+            const MapBuilder& asked = builder(self);
+            return array_of(asked.covariance_between(number_of(asked, a), number_of(asked, b)));
+          },
+          py::arg("a"), py::arg("b"), doc("MapBuilder.covariance_between"))
+      .def(
+          "covariances",
+          [builder](const Self& self) { return array_of(builder(self).covariances()); },
+          doc("MapBuilder.covariances"))
+      .def(
+          "expected_falls",
+          [builder](const Self& self, const std::vector<std::vector<std::string>>& ways) {
+            const MapBuilder& asked = builder(self);
+            std::vector<std::vector<int>> numbers;
+            for (const std::vector<std::string>& way : ways) {
+              std::vector<int>& along = numbers.emplace_back();
+              for (const std::string& landmark : way) along.push_back(number_of(asked, landmark));
+            }
+            return asked.expected_falls(numbers);
+          },
+          py::arg("ways"), doc("MapBuilder.expected_falls"));
+}
+
 /// What both have, by what gives the builder.
 template <typename Class, typename Get>
 void add_questions(Class& type, const Get& builder) {
@@ -49,9 +114,7 @@ void add_questions(Class& type, const Get& builder) {
       .def(
           "position",
           [builder](const Self& self, const std::string& landmark) {
-            const std::optional<int> number = builder(self).find(landmark);
-            if (!number) throw py::key_error("the map has no landmark \"" + landmark + "\"");
-            return array_of(builder(self).position(*number));
+            return array_of(builder(self).position(number_of(builder(self), landmark)));
           },
           py::arg("landmark"), "Where a landmark is now, m. KeyError on one that is not there.")
       .def_property_readonly(
@@ -59,7 +122,7 @@ void add_questions(Class& type, const Get& builder) {
           [builder](const Self& self) -> py::object {
             const int here = builder(self).here();
             if (here < 0) return py::none();
-            return py::str(builder(self).map().landmark(here).name);
+            return py::str(builder(self).name(here));
           },
           "The landmark that the robot stands on; None before start().")
       .def("__len__", [builder](const Self& self) { return builder(self).landmarks(); })
@@ -78,6 +141,7 @@ void add_questions(Class& type, const Get& builder) {
             write_file(file, format_map(builder(self).map(), file));
           },
           py::arg("file"), "Writes the map: .graphml, .g2o, .geojson, .dot or .yaml.");
+  add_planning(type, builder);
 }
 
 /// What both can do.

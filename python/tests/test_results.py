@@ -208,6 +208,30 @@ class OnTheRobot(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "displacement"):
             builder.arrive("door", [1.0], covariance)
 
+    def test_a_planner_asks_its_map(self):
+        store = trussmap.MapStore(scratch_folder(self) / "map.db")
+        builder = trussmap.MapBuilder()
+        sides = [("b", (3.0, 0.0)), ("c", (0.0, 4.0)), ("d", (-3.0, 0.0)), ("a", (0.0, -4.0))]
+        for one in (store, builder):
+            one.start("a")
+            for name, leg in sides:
+                one.arrive(name, leg, numpy.eye(2) * 1e-4)
+            self.assertEqual(one.nearest((2.9, 0.1), 2), ["b", "a"])
+            self.assertEqual(one.path("a", "c"), ["a", "b", "c"])
+            self.assertEqual(one.path("a", "b", by="uncertainty"), ["a", "b"])
+            # One side beside three: the flexibilities of 1e-4 and 3e-4, side by side.
+            numpy.testing.assert_allclose(one.covariance_between("a", "b"),
+                                          numpy.eye(2) * 0.75e-4, atol=1e-12)
+            numpy.testing.assert_allclose(one.covariances()[2], numpy.eye(2) * 1e-4, atol=1e-12)
+            short, whole = one.expected_falls([["a", "b"], ["a", "b", "c", "d", "a"]])
+            # Once more all of it: every variance halves; the sum was 2 (0.75 + 1 + 0.75) 1e-4.
+            self.assertAlmostEqual(whole, 2.5e-4, delta=1e-10)
+            self.assertGreater(whole, short)
+            with self.assertRaises(KeyError):
+                one.path("a", "nowhere")
+            with self.assertRaisesRegex(ValueError, "expected length"):
+                one.path("a", "b", by="luck")
+
     def test_a_store_goes_on(self):
         file = scratch_folder(self) / "map.db"
         store = trussmap.MapStore(file)

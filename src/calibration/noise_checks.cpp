@@ -88,10 +88,10 @@ double nonlinear_share(const NoiseExperiment& experiment, const NoiseEstimate& e
 NoiseFit check_noise(const EndErrors& errors, const NoiseExperiment& experiment,
                      const NoiseEstimate& estimate) {
   NoiseFit fit;
-  fit.ellipses = {count_inside(squared_distances(errors, estimate, {0, 1}), "x-y", 2),
-                  count_inside(squared_distances(errors, estimate, {0, 2}), "x-heading", 2),
-                  count_inside(squared_distances(errors, estimate, {1, 2}), "y-heading", 2),
-                  count_inside(squared_distances(errors, estimate, {0, 1, 2}), "x-y-heading", 3)};
+  for (const auto& [name, which] : end_coordinates()) {
+    fit.ellipses.push_back(count_inside(squared_distances(errors, estimate, which), name,
+                                        static_cast<int>(which.size())));
+  }
   fit.distance_p_value = distance_p(squared_distances(errors, estimate, {0, 1, 2}));
   const double count = estimate.runs - (experiment.subtract_mean ? 1 : 0);
   fit.shape_p_value = shape_p(estimate, count);

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "calibration/end_moments.hpp"
 #include "calibration/noise_distances.hpp"
 #include "statistics/distributions.hpp"
 #include "trussmap/wheel_noise.hpp"
@@ -8,32 +7,24 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include <Eigen/LU>
 
 namespace trussmap {
 namespace {
 
-EndMoments moments_of(const NoiseExperiment& experiment, const Vector2& squared) {
-  if (experiment.order == NoiseOrder::exact) {
-    return end_moments(experiment.path, experiment.wheelbase, squared);
-  }
-  const NoiseShape shape = noise_shape(experiment.path, experiment.wheelbase);
-  return {Eigen::Vector3d::Zero(), squared[0] * shape.left + squared[1] * shape.right};
-}
-
-SigmaCount count_within(const EndErrors& errors, const StatedNoise& stated, std::string coordinates,
-                        const std::vector<int>& which) {
-  const std::vector<double> distances = squared_distances(errors, stated, which);
+SigmaCount count_within(const EndErrors& errors, const StatedNoise& stated,
+                        const EndCoordinates& coordinates) {
+  const std::vector<double> distances = squared_distances(errors, stated, coordinates.which);
   SigmaCount result;
-  result.coordinates = std::move(coordinates);
+  result.coordinates = coordinates.name;
   result.runs = static_cast<int>(errors.size());
   for (std::size_t k = 0; k < result.inside.size(); ++k) {
     const double limit = std::pow(static_cast<double>(k + 1), 2);
     result.inside[k] = static_cast<int>(
         std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
-    result.expected[k] = result.runs * chi2_cdf(limit, static_cast<double>(which.size()));
+    result.expected[k] =
+        result.runs * chi2_cdf(limit, static_cast<double>(coordinates.which.size()));
   }
   return result;
 }
@@ -50,16 +41,17 @@ StatedNoise stated_noise(const EndErrors& errors, const NoiseExperiment& experim
   if (!(k_left > 0.0 && k_right > 0.0) || !std::isfinite(k_left + k_right)) {
     throw std::invalid_argument("k of both wheels must be above 0");
   }
-  const EndMoments moments = moments_of(experiment, {k_left * k_left, k_right * k_right});
+  const EndMoments moments =
+      end_moments(experiment, noise_shape(experiment.path, experiment.wheelbase),
+                  {k_left * k_left, k_right * k_right});
   StatedNoise result;
   result.left = k_left;
   result.right = k_right;
   result.modelled = moments.covariance + sensor_noise(experiment);
   result.centre = experiment.subtract_mean ? estimate.mean : moments.mean;
-  result.counts = {count_within(errors, result, "x-y", {0, 1}),
-                   count_within(errors, result, "x-heading", {0, 2}),
-                   count_within(errors, result, "y-heading", {1, 2}),
-                   count_within(errors, result, "x-y-heading", {0, 1, 2})};
+  for (const EndCoordinates& coordinates : end_coordinates()) {
+    result.counts.push_back(count_within(errors, result, coordinates));
+  }
   // S about where the model has the mean; a subtracted mean costs a run.
   const double count = estimate.runs - (experiment.subtract_mean ? 1.0 : 0.0);
   Matrix3 observed = Matrix3::Zero();

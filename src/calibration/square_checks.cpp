@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"
@@ -23,14 +24,8 @@ struct Residual {
 };
 
 Residual residual_of(const SquareClusters& clusters, const SquareSetup& setup) {
-  const GeometryErrors errors = solve_square(clusters, setup).errors();
-  const PathError cw = path_error(square_path(setup.side, Direction::cw), setup.wheelbase, errors);
-  const PathError ccw =
-      path_error(square_path(setup.side, Direction::ccw), setup.wheelbase, errors);
-  Residual result;
-  result.left << clusters.cw.mean - cw.error.head<2>(), clusters.ccw.mean - ccw.error.head<2>();
-  result.jacobian << cw.jacobian.topRows<2>(), ccw.jacobian.topRows<2>();
-  return result;
+  const SquareEnds ends = square_ends(setup, solve_square(clusters, setup).errors());
+  return {ends.left_of(clusters), ends.jacobian()};
 }
 
 /// Smaller of the p-values of the two contrasts that no E_d and E_b can change, times two.

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"
@@ -25,16 +26,13 @@ struct PositionGains {
 };
 
 PositionGains position_gains(const SquareSetup& setup, const SquareSolution& exact) {
-  const GeometryErrors at = exact.errors();
-  const PathError cw = path_error(square_path(setup.side, Direction::cw), setup.wheelbase, at);
-  const PathError ccw = path_error(square_path(setup.side, Direction::ccw), setup.wheelbase, at);
-  Eigen::Matrix<double, 4, 2> by_ratios;
-  by_ratios << cw.jacobian.topRows<2>(), ccw.jacobian.topRows<2>();
+  const SquareEnds ends = square_ends(setup, exact.errors());
+  const Eigen::Matrix<double, 4, 2> by_ratios = ends.jacobian();
   const Eigen::Matrix<double, 2, 4> gain =
       (by_ratios.transpose() * by_ratios).ldlt().solve(by_ratios.transpose());
   // Headings go with alpha and beta alone: cw 4 (beta + alpha), ccw 4 (beta - alpha).
-  const Eigen::RowVector2d alpha = (cw.jacobian.row(2) - ccw.jacobian.row(2)) / 8.0;
-  const Eigen::RowVector2d beta = (cw.jacobian.row(2) + ccw.jacobian.row(2)) / 8.0;
+  const Eigen::RowVector2d alpha = (ends.cw.jacobian.row(2) - ends.ccw.jacobian.row(2)) / 8.0;
+  const Eigen::RowVector2d beta = (ends.cw.jacobian.row(2) + ends.ccw.jacobian.row(2)) / 8.0;
   return {(alpha * gain).transpose(), (beta * gain).transpose()};
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/umbmark.hpp"
 
+#include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
 #include "trussmap/error.hpp"
 
@@ -89,12 +90,8 @@ struct ExactFit {
 
 ExactFit exact_fit_at(const GeometryErrors& at, const SquareClusters& clusters,
                       const SquareSetup& setup) {
-  const PathError cw = path_error(square_path(setup.side, Direction::cw), setup.wheelbase, at);
-  const PathError ccw = path_error(square_path(setup.side, Direction::ccw), setup.wheelbase, at);
-  ExactFit fit{at, {}, {}};
-  fit.left << clusters.cw.mean - cw.error.head<2>(), clusters.ccw.mean - ccw.error.head<2>();
-  fit.jacobian << cw.jacobian.topRows<2>(), ccw.jacobian.topRows<2>();
-  return fit;
+  const SquareEnds ends = square_ends(setup, at);
+  return {at, ends.left_of(clusters), ends.jacobian()};
 }
 
 /// Gauss-Newton from a given geometry to the minimum nearby; a step that makes things worse is

@@ -28,14 +28,6 @@ Vector2 direction(Faces faces) {
   return Vector2::Zero();
 }
 
-Vector2 quarter_left(const Vector2& v) {
-  return {-v.y(), v.x()};
-}
-
-Vector2 turned(const Vector2& v, double angle) {
-  return std::cos(angle) * v + std::sin(angle) * quarter_left(v);
-}
-
 /// Numbers of the two sensors that face the same wall, and of the third.
 struct Roles {
   std::size_t first = 0;
@@ -62,7 +54,7 @@ double heading_by(const Vector2& u, const Vector2& m, double difference) {
                     "than the {:.3g} m between them",
                     std::abs(difference), m.norm()));
   }
-  const double middle = std::atan2(u.dot(quarter_left(m)), u.dot(m));
+  const double middle = std::atan2(u.dot(quarter_turn(m)), u.dot(m));
   const double plus = wrap_angle(middle + std::acos(share));
   const double minus = wrap_angle(middle - std::acos(share));
   const double heading = std::abs(plus) < std::abs(minus) ? plus : minus;
@@ -86,7 +78,7 @@ void check_wall_sensors(const WallSensors& sensors) {
         "the third sensor does not face a wall at right angles to that of the two others");
   }
   const Vector2 apart = first.at - sensors[roles.second].at;
-  if (!(std::abs(quarter_left(u).dot(apart)) > std::abs(u.dot(apart)))) {
+  if (!(std::abs(quarter_turn(u).dot(apart)) > std::abs(u.dot(apart)))) {
     throw std::invalid_argument(
         "the two sensors that face one wall are not apart along it, so that they say nothing of "
         "the heading");
@@ -108,13 +100,14 @@ WallPose pose_by_walls(const WallSensors& sensors, const WallDistances& distance
   const Vector2 u_b = direction(third.faces);
   const Vector2 apart = first.at - sensors[roles.second].at;
   const double heading = heading_by(u_a, apart, distances[roles.second] - distances[roles.first]);
+  const Matrix2 R = rotation(heading);
   // -d_i - u . R m_i is the same of both sensors that face wall A.
-  const double along_a = -distances[roles.first] - u_a.dot(turned(first.at, heading));
-  const double along_b = -distances[roles.third] - u_b.dot(turned(third.at, heading));
+  const double along_a = -distances[roles.first] - u_a.dot((R * first.at));
+  const double along_b = -distances[roles.third] - u_b.dot((R * third.at));
   const Vector2 position = along_a * u_a + along_b * u_b;
 
   const auto by_heading = [&](const Vector2& u, const Vector2& m) {
-    return u.dot(quarter_left(turned(m, heading)));
+    return u.dot(quarter_turn(R * m));
   };
   const auto unit = [](std::size_t sensor) {
     return Eigen::RowVector3d(Eigen::RowVector3d::Unit(static_cast<Eigen::Index>(sensor)));
@@ -135,12 +128,9 @@ WallError end_error(const WallSensors& sensors, const WallRun& run) {
   const WallPose start = pose_by_walls(sensors, run.start);
   const WallPose end = pose_by_walls(sensors, run.end);
   const Vector2 off = end.pose.position() - start.pose.position();
-  const Vector2 moved = turned(off, -start.pose.heading);
-  const Vector2 by_heading = -quarter_left(moved);
-  const double cosine = std::cos(start.pose.heading);
-  const double sine = std::sin(start.pose.heading);
-  Matrix3 by_end;
-  by_end << cosine, sine, 0.0, -sine, cosine, 0.0, 0.0, 0.0, 1.0;
+  const Vector2 moved = rotation(-start.pose.heading) * off;
+  const Vector2 by_heading = -quarter_turn(moved);
+  const Matrix3 by_end = pose_rotation(-start.pose.heading);
   Matrix3 by_start = -by_end;
   by_start.block<2, 1>(0, 2) = by_heading;
   WallError result;

@@ -41,10 +41,7 @@ struct Problem {
   double count = 0.0;                 // n, or n - 1
 
   [[nodiscard]] EndMoments moments(const Vector2& squared) const {
-    if (experiment.order == NoiseOrder::exact) {
-      return end_moments(experiment.path, experiment.wheelbase, squared);
-    }
-    return {Vector3d::Zero(), squared[0] * shape.left + squared[1] * shape.right};
+    return end_moments(experiment, shape, squared);
   }
 
   [[nodiscard]] Law law(const Vector2& squared) const {
@@ -249,6 +246,14 @@ Matrix3 sensor_noise(const NoiseExperiment& experiment) {
   Matrix3 noise = experiment.sensor_covariance;
   noise.diagonal() += experiment.sensor_sd.cwiseAbs2();
   return noise;
+}
+
+EndMoments end_moments(const NoiseExperiment& experiment, const NoiseShape& shape,
+                       const Vector2& squared) {
+  if (experiment.order == NoiseOrder::exact) {
+    return end_moments(experiment.path, experiment.wheelbase, squared);
+  }
+  return {Vector3d::Zero(), squared[0] * shape.left + squared[1] * shape.right};
 }
 
 NoiseEstimate estimate_wheel_noise(const EndErrors& errors, const NoiseExperiment& experiment) {

@@ -1,37 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "text/fnv_hash.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/recording_files.hpp"
 
-#include <cstdint>
 #include <string_view>
 
 namespace trussmap {
 namespace {
 
-/// FNV-1a, 64 bits: against the same file given twice, not against a forger.
+/// Against the same file given twice, not against a forger.
 class Hash {
  public:
   void take(std::string_view text) {
-    for (const char c : text) take_byte(static_cast<unsigned char>(c));
-    take_byte(0);
+    hash_.take(text);
+    hash_.take(std::string_view("", 1));  // so that texts do not run together
   }
   void take(const std::vector<double>& numbers) {
     for (const double number : numbers) take(shortest_text(number));
     take("");
   }
 
-  [[nodiscard]] std::string digits() const {
-    std::string result;
-    for (int shift = 60; shift >= 0; shift -= 4)
-      result += "0123456789abcdef"[(state_ >> shift) & 15U];
-    return result;
-  }
+  [[nodiscard]] std::string digits() const { return hash_.digits(); }
 
  private:
-  void take_byte(unsigned char byte) { state_ = (state_ ^ byte) * 0x100000001b3U; }
-
-  std::uint64_t state_ = 0xcbf29ce484222325U;
+  FnvHash hash_;
 };
 
 }  // namespace

@@ -51,9 +51,8 @@ Matrix2 MapBuilder::State::known_of_route(int number) const {
 /// Of the angle between two routes of the map: the corner's, or where the robot has never gone from
 /// the one to the other, that of both directions.
 double MapBuilder::State::angle_variance(int i, int j, int k) const {
-  const auto known = corner_at_.find({std::min(i, k), j, std::max(i, k)});
-  if (known != corner_at_.end()) {
-    const Average& angle = m_.corners[idx(known->second)].angle;
+  if (const std::optional<int> known = corner_of(i, j, k)) {
+    const Average& angle = m_.corners[idx(*known)].angle;
     return angle.variance / angle.count;
   }
   double sum = 0.0;
@@ -73,9 +72,7 @@ Matrix2 MapBuilder::State::known_between(int i, int j) {
   }
 }
 
-/// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map;
-/// of a leg in the robot's own axes doubled: what is left out wrongly comes in with the next
-/// landmark.
+/// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map.
 double MapBuilder::State::squared_misfit(int i, int j, const Traversal& leg) {
   const Vector2 misfit = leg.displacement - (at(j) - at(i));
   const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
@@ -109,6 +106,14 @@ Arrival MapBuilder::State::travel_gated(const std::string& landmark, const Measu
   return arrival;
 }
 
+/// Of those left out the one at this place comes in, by `leg`.
+void MapBuilder::State::bring_back(std::size_t place, const MeasuredLeg& leg, Arrival& arrival) {
+  const Arrival done = take_in(m_.left_out[place].to, leg);
+  arrival.largest_move = std::max(arrival.largest_move, done.largest_move);
+  ++arrival.back;
+  m_.left_out.erase(m_.left_out.begin() + static_cast<std::ptrdiff_t>(place));
+}
+
 /// Order does not matter to least squares: what fits by now is taken in late. Beside an elastic
 /// map, whose corrections are to cost little, one is tried at a time.
 void MapBuilder::State::take_back_in(Arrival& arrival) {
@@ -118,7 +123,7 @@ void MapBuilder::State::take_back_in(Arrival& arrival) {
   std::size_t tried = 0;
   for (std::size_t k = first; k < m_.left_out.size();) {
     if (one_alone && tried++ > 0) return;
-    const LeftOutArrival one = m_.left_out[k];
+    const LeftOutArrival& one = m_.left_out[k];
     MeasuredLeg late;
     late.from = *m_.graph.find(one.from);
     late.in_map = one.leg;
@@ -132,10 +137,7 @@ void MapBuilder::State::take_back_in(Arrival& arrival) {
       ++k;
       continue;
     }
-    const Arrival done = take_in(one.to, late);
-    arrival.largest_move = std::max(arrival.largest_move, done.largest_move);
-    ++arrival.back;
-    m_.left_out.erase(m_.left_out.begin() + static_cast<std::ptrdiff_t>(k));
+    bring_back(k, late, arrival);
   }
 }
 
@@ -171,10 +173,7 @@ void MapBuilder::State::take_late(const std::string& landmark, const MeasuredLeg
   });
   if (one == m_.left_out.rend()) return;
   try {
-    const Arrival done = take_in(landmark, leg);
-    arrival.largest_move = std::max(arrival.largest_move, done.largest_move);
-    ++arrival.back;
-    m_.left_out.erase(std::next(one).base());
+    bring_back(static_cast<std::size_t>(m_.left_out.rend() - one) - 1, leg, arrival);
   } catch (const std::exception&) {
     // The arrival is in; what could not come back stays out.
   }

@@ -137,9 +137,7 @@ std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& w
   for (std::size_t n = 1; n < way.size(); ++n) {
     const int i = way[n - 1];
     const int j = way[n];
-    const auto inside = [&](int k) { return k >= 0 && k < m_.graph.landmarks(); };
-    const std::optional<int> number =
-        inside(i) && inside(j) ? m_.graph.route_between(i, j) : std::nullopt;
+    const std::optional<int> number = m_.graph.route_between(i, j);
     if (!number) {
       throw std::invalid_argument("expected ways along routes of the map");
     }
@@ -158,10 +156,8 @@ std::vector<Element> MapBuilder::State::measured_along(const std::vector<int>& w
           direction_element(route.source, route.target, 1.0 / reckoned.direction.variance, 0.0));
     }
     if (before >= 0 && before != j && corner_variance > 0.0) {
-      const auto known = corner_at_.find({std::min(before, j), i, std::max(before, j)});
-      const double variance = known == corner_at_.end()
-                                  ? corner_variance
-                                  : m_.corners[idx(known->second)].angle.variance;
+      const std::optional<int> known = corner_of(before, i, j);
+      const double variance = known ? m_.corners[idx(*known)].angle.variance : corner_variance;
       measured.push_back(
           corner_element(std::min(before, j), i, std::max(before, j), 1.0 / variance, 0.0));
     }

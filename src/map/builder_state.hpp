@@ -105,9 +105,11 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   Arrival travel_gated(const std::string& landmark, const MeasuredLeg& leg);
   [[nodiscard]] Matrix2 along_the_surest_way(int i, int j) const;
   [[nodiscard]] Matrix2 known_of_route(int number) const;
+  [[nodiscard]] std::optional<int> corner_of(int i, int j, int k) const;
   [[nodiscard]] double angle_variance(int i, int j, int k) const;
   [[nodiscard]] Matrix2 known_between(int i, int j);
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
+  void bring_back(std::size_t place, const MeasuredLeg& leg, Arrival& arrival);
   void take_back_in(Arrival& arrival);
   void take_late(const std::string& landmark, const MeasuredLeg& leg, Arrival& arrival);
   [[nodiscard]] bool fits_from_said(int to, const Motion& motion, const LandmarkOffset& seen) const;

@@ -108,18 +108,24 @@ MapBuilder::State::Step MapBuilder::State::averaged(int to, bool is_new,
   return step;
 }
 
+/// Between the routes from j to i and to k.
+std::optional<int> MapBuilder::State::corner_of(int i, int j, int k) const {
+  const auto known = corner_at_.find({std::min(i, k), j, std::max(i, k)});
+  if (known == corner_at_.end()) return std::nullopt;
+  return known->second;
+}
+
 /// The corner between the route that the robot came by and this one; a U-turn says nothing.
 void MapBuilder::State::average_corner(Step& step, const MeasuredLeg& leg) const {
   if (!leg.corner || leg.corner_from == step.to) return;
   const bool forward = leg.corner_from < step.to;
   CornerAverage corner{
       std::min(leg.corner_from, step.to), leg.from, std::max(leg.corner_from, step.to), {}};
-  const auto known = corner_at_.find({corner.i, corner.j, corner.k});
-  step.corner_place =
-      known == corner_at_.end() ? static_cast<int>(m_.corners.size()) : known->second;
-  if (known != corner_at_.end()) {
-    corner = m_.corners[idx(known->second)];
-    step.corner_element = corner_elements_[idx(known->second)];
+  const std::optional<int> known = corner_of(corner.i, corner.j, corner.k);
+  step.corner_place = known.value_or(static_cast<int>(m_.corners.size()));
+  if (known) {
+    corner = m_.corners[idx(*known)];
+    step.corner_element = corner_elements_[idx(*known)];
   }
   corner.angle.take_angle(forward ? leg.corner->value : -leg.corner->value, leg.corner->variance);
   step.corner = corner;

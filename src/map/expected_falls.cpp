@@ -74,7 +74,7 @@ double ExpectedFalls::of(const std::vector<Element>& measured) {
     for (Eigen::Index c = 0; c <= r; ++c) {
       double variance = 0.0;
       for (const auto& [joint, force] : columns[idx(r)]->gradient) {
-        variance += force.dot(columns[idx(c)]->displacement.segment<2>(2 * joint));
+        variance += force.dot(columns[idx(c)]->displacement.segment<2>(Eigen::Index{2} * joint));
       }
       S(r, c) = S(c, r) = variance;
       squares(r, c) = squares(c, r) = columns[idx(r)]->counted.dot(columns[idx(c)]->counted);

@@ -110,6 +110,7 @@ std::optional<int> LandmarkGraph::find(const std::string& name) const {
 }
 
 std::optional<int> LandmarkGraph::route_between(int a, int b) const {
+  if (std::min(a, b) < 0 || std::max(a, b) >= landmarks()) return std::nullopt;
   const bool fewer = routes_at(a).size() <= routes_at(b).size();
   for (const int number : routes_at(fewer ? a : b)) {
     if (other_end(route(number), fewer ? a : b) == (fewer ? b : a)) return number;

@@ -63,6 +63,12 @@ void check_tied(const LandmarkGraph& map) {
   }
 }
 
+void check_landmark(int number, int count) {
+  if (number >= 0 && number < count) return;
+  throw std::invalid_argument(
+      joined("the map has no landmark number ", number, ", expected 0 to ", count - 1));
+}
+
 /// All landmarks settled, and the routes' averages as they are.
 BuilderMemory memory_of(const LandmarkGraph& map, const MapBuilderOptions& options) {
   BuilderMemory memory(options.gate);
@@ -252,11 +258,13 @@ std::optional<int> MapBuilder::find(const std::string& landmark) const {
 }
 
 Vector2 MapBuilder::position(int landmark) const {
-  if (landmark < 0 || landmark >= landmarks()) {
-    throw std::invalid_argument(
-        joined("the map has no landmark number ", landmark, ", expected 0 to ", landmarks() - 1));
-  }
+  check_landmark(landmark, landmarks());
   return state_->position(landmark);
+}
+
+const std::string& MapBuilder::name(int landmark) const {
+  check_landmark(landmark, landmarks());
+  return state_->graph().landmark(landmark).name;
 }
 
 std::vector<int> MapBuilder::nearest(const Vector2& point, int count) const {
@@ -276,8 +284,8 @@ std::optional<Route> MapBuilder::route_between(int a, int b) const {
 }
 
 Matrix2 MapBuilder::covariance_between(int a, int b) const {
-  static_cast<void>(position(a));
-  static_cast<void>(position(b));
+  check_landmark(a, landmarks());
+  check_landmark(b, landmarks());
   return a == b ? Matrix2(Matrix2::Zero()) : state_->covariance_between(a, b);
 }
 

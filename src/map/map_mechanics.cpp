@@ -125,18 +125,22 @@ int MapMechanics::add_landmark(const Vector2& position, int from) {
 
 int MapMechanics::add_element(const Element& element) {
   const int number = truss_.add_element(element);
-  equilibrium_.changed(number);
   if (element.kind != Element::Kind::bar) {
     ++others_;
     settle();
   }
-  for (int n = 0; n < element.count(); ++n) sums_.touch(element.joints[idx(n)]);
+  element_changed(number);
   return number;
 }
 
 void MapMechanics::set_element(int number, const Element& element) {
   truss_.set_element(number, element);
+  element_changed(number);
+}
+
+void MapMechanics::element_changed(int number) {
   equilibrium_.changed(number);
+  const Element& element = truss_.element(number);
   for (int n = 0; n < element.count(); ++n) sums_.touch(element.joints[idx(n)]);
 }
 

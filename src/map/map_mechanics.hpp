@@ -127,6 +127,7 @@ class MapMechanics {
                                                 const Vector2& middle) const;
   int relax_members(int level, const std::vector<int>& groups);
   void touch_moved() noexcept;
+  void element_changed(int number);
   void grow_groups();
 
   RefinementScope scope_;

@@ -4,6 +4,7 @@
 
 #include "geometry/index.hpp"
 #include "map/memory_tables.hpp"
+#include "text/fnv_hash.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -23,11 +24,9 @@ constexpr std::string_view kNull = "-";
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 std::string check_sum(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  std::string digits;
-  for (int shift = 60; shift >= 0; shift -= 4) digits += kHexDigits[(hash >> shift) & 15U];
-  return digits;
+  FnvHash hash;
+  hash.take(text);
+  return hash.digits();
 }
 
 std::string escaped(const std::string& text) {

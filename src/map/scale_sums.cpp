@@ -155,8 +155,8 @@ void ScaleSums::follow_landmarks(const ScaleGroups& groups, ElasticTruss& truss)
       make_room(members);
       Seen& seen = seen_[idx(group)];
       if (members.empty()) {  // nothing of it to look at
-        seen.at = frame_of(kFinest, group);
-        seen = {seen.at, inverse_of(seen.at), now_};
+        const Affine at = frame_of(kFinest, group);
+        seen = {at, inverse_of(at), now_};
       } else {
         look(truss, members.front());
       }

@@ -184,9 +184,13 @@ InBoth in_both(const LandmarkGraph& map, const LandmarkPositions& truth) {
 
 }  // namespace
 
-LandmarkGraph laid_over(const LandmarkGraph& map, const LandmarkPositions& truth) {
+Alignment onto_truth(const LandmarkGraph& map, const LandmarkPositions& truth) {
   const InBoth both = in_both(map, truth);
-  const Alignment onto = align_rigidly(both.map, both.truth);
+  return align_rigidly(both.map, both.truth);
+}
+
+LandmarkGraph laid_over(const LandmarkGraph& map, const LandmarkPositions& truth) {
+  const Alignment onto = onto_truth(map, truth);
   LandmarkGraph laid = map;
   for (int k = 0; k < map.landmarks(); ++k) {
     laid.set_position(k, onto.apply(map.landmark(k).position));

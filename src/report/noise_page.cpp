@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/layers.hpp"
 #include "report/page.hpp"
+#include "report/quantity_cells.hpp"
 #include "trussmap/pages.hpp"
 #include "trussmap/table.hpp"
 
@@ -82,14 +83,8 @@ PageTable stated_table(const StatedNoise& stated) {
   PageTable table;
   table.caption = fmt::format("By the k stated, {:.2g} and {:.2g} m^1/2 (p {})", stated.left,
                               stated.right, probability_text(stated.p_value));
-  table.headings = {"runs within (expected)", "1 sigma", "2 sigma", "3 sigma"};
-  for (const SigmaCount& count : stated.counts) {
-    std::vector<std::string> row = {count.coordinates};
-    for (std::size_t k = 0; k < count.inside.size(); ++k) {
-      row.push_back(fmt::format("{} ({:.1f})", count.inside[k], count.expected[k]));
-    }
-    table.rows.push_back(std::move(row));
-  }
+  table.headings = sigma_heading();
+  table.rows = sigma_rows(stated);
   return table;
 }
 

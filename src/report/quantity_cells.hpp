@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// An estimate as two cells of a table.
+// Figures as cells of a table, alike in texts and on pages.
 #pragma once
 
 #include "trussmap/umbmark.hpp"
+#include "trussmap/wheel_noise.hpp"
 
 #include <string>
 #include <vector>
@@ -13,5 +14,10 @@ namespace trussmap {
 
 /// The value, and "\u00b1" with its standard error; empty without one.
 [[nodiscard]] std::vector<std::string> quantity_cells(const Estimate& estimate);
+
+/// How many runs end within 1, 2 and 3 standard deviations, and how many are expected to: a
+/// heading, and a row per plane.
+[[nodiscard]] std::vector<std::string> sigma_heading();
+[[nodiscard]] std::vector<std::vector<std::string>> sigma_rows(const StatedNoise& stated);
 
 }  // namespace trussmap

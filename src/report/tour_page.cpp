@@ -211,15 +211,7 @@ std::string tour_picture(const TourMap& shown) {
   picture.true_routes = true;
   picture.crosses = shown.method == "first_sight";
   if (picture.crosses) picture.measured = shown.measured;
-  if (shown.laid == Laid::aligned) {
-    std::vector<Vector2> places;
-    std::vector<Vector2> truth;
-    for (const auto& [name, at] : positions_of(shown.map)) {
-      places.push_back(at);
-      truth.push_back(shown.truth.at(name));
-    }
-    picture.map_onto_truth = align_rigidly(places, truth);
-  }
+  if (shown.laid == Laid::aligned) picture.map_onto_truth = onto_truth(shown.map, shown.truth);
   picture.names = false;
   return draw_map(picture);
 }

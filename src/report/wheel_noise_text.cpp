@@ -69,14 +69,8 @@ std::string stated_text(const StatedNoise& stated, TextStyle style) {
   TextTable table;
   table.columns = {Align::left, Align::right, Align::right, Align::right};
   table.has_heading = true;
-  table.rows.push_back({"runs within (expected)", "1 sigma", "2 sigma", "3 sigma"});
-  for (const SigmaCount& count : stated.counts) {
-    std::vector<std::string> row = {count.coordinates};
-    for (std::size_t k = 0; k < count.inside.size(); ++k) {
-      row.push_back(fmt::format("{} ({:.1f})", count.inside[k], count.expected[k]));
-    }
-    table.rows.push_back(std::move(row));
-  }
+  table.rows = sigma_rows(stated);
+  table.rows.insert(table.rows.begin(), sigma_heading());
   return fmt::format(
              "\n  By the k stated, left {:.3g} and right {:.3g} x 10^-3 m^1/2: {} (p {}).\n",
              1000.0 * stated.left, 1000.0 * stated.right,
