@@ -42,16 +42,25 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/trussmapConfigVersion.cmake
         DESTINATION ${config_dir})
 if(BUILD_SHARED_LIBS)  # brings what it needs
-  set(pkgconfig_requires eigen3)
-  set(pkgconfig_libs "-ltrussmap")
+  set(requires eigen3)
+  set(libs "-ltrussmap")
+  set(map_requires eigen3)
+  set(map_libs "-ltrussmap")
 else()  # their users link what they need
   install(FILES cmake/FindCholmod.cmake cmake/FindLz4.cmake DESTINATION ${config_dir})
-  set(pkgconfig_requires
+  set(requires
       "eigen3 lapack fmt muparser liblzma expat tomlplusplus sqlite3 liblz4 libzstd yaml-cpp")
-  set(pkgconfig_libs "-ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -pthread")
+  set(libs "-ltrussmap_logs -ltrussmap_store -ltrussmap -ltrussmap_map -lcholmod -pthread")
+  set(map_requires "eigen3 lapack")
+  set(map_libs "-ltrussmap_map -lcholmod -pthread")
 endif()
-configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/trussmap.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+# All of it, and maps alone.
+function(trussmap_pkgconfig name pkgconfig_requires pkgconfig_libs)
+  configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+trussmap_pkgconfig(trussmap "${requires}" "${libs}")
+trussmap_pkgconfig(trussmap-map "${map_requires}" "${map_libs}")
 if(TARGET trussmap_command)
   install(TARGETS trussmap_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(FILES docs/trussmap.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/trussmap)

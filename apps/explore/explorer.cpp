@@ -9,6 +9,7 @@ namespace trussmap::explore {
 
 Explorer::Explorer(World& world, const MapBuilderOptions& options) : world_(world), map_(options) {
   map_.start(world_.landmark());
+  here_ = map_.here();
   stand_here();
 }
 
@@ -18,16 +19,17 @@ void Explorer::explore(double way, const std::function<void(const Arrival&)>& ar
     const Way unknown = to_nearest_unknown();
     if (unknown.empty()) break;
     follow(unknown);
-    const std::vector<int>& ways = ways_out_.at(map_.here());
+    const std::vector<int>& ways = ways_out_.at(here_);
     drive(static_cast<int>(std::find(ways.begin(), ways.end(), kUnknown) - ways.begin()));
   }
   while (way_ < way) follow(most_worth_driving());
-  follow(path(driven_, map_.here(), 0, PathBy::uncertainty));
+  follow(path(driven_, here_, 0, PathBy::uncertainty));
 }
 
-/// From wheels to map: rows are composed, with their covariance, and handed on as they are.
+/// From wheels to map: rows are composed, with their covariance, and handed on as they are. Where
+/// the map leaves the arrival out, the robot stands there all the same.
 Arrival Explorer::drive(int way) {
-  const int from = map_.here();
+  const int from = here_;
   const Driven driven = world_.leave_by(way);
   const double k = world_.options().wheels;
   Motion motion;
@@ -36,13 +38,14 @@ Arrival Explorer::drive(int way) {
   }
   const Arrival arrival = map_.arrive(driven.landmark, motion);
   way_ += motion.displacement.position().norm();
+  here_ = arrival.landmark;
   stand_here();
-  const int to = map_.here();
+  const int to = here_;
   ways_out_[from][static_cast<std::size_t>(way)] = to;
   ways_out_[to][static_cast<std::size_t>(driven.way_back)] = from;
-  driven_.add_traversal(
-      from, to,
-      {map_.position(to) - map_.position(from), map_.route_between(from, to)->covariance});
+  const std::optional<Route> route = map_.route_between(from, to);
+  const Matrix2 covariance = route ? route->covariance : motion.covariance.topLeftCorner<2, 2>();
+  driven_.add_traversal(from, to, {map_.position(to) - map_.position(from), covariance});
   if (arrived_) arrived_(arrival);
   return arrival;
 }
@@ -59,7 +62,7 @@ void Explorer::stand_here() {
                  seen_at(seen.range, seen.bearing, robot.range_sd, robot.bearing_sd));
     note(seen.landmark);
   }
-  ways_out_[map_.here()].resize(world_.ways_out(), kUnknown);
+  ways_out_[here_].resize(world_.ways_out(), kUnknown);
 }
 
 void Explorer::note(const std::string& landmark) {
@@ -71,7 +74,7 @@ void Explorer::note(const std::string& landmark) {
 /// Along routes that were driven.
 void Explorer::follow(const Way& landmarks) {
   for (std::size_t k = 1; k < landmarks.size(); ++k) {
-    const std::vector<int>& ways = ways_out_.at(map_.here());
+    const std::vector<int>& ways = ways_out_.at(here_);
     drive(static_cast<int>(std::find(ways.begin(), ways.end(), landmarks[k]) - ways.begin()));
   }
 }
@@ -89,13 +92,13 @@ Explorer::Way Explorer::to_nearest_unknown() const {
   Way best;
   for (const auto& [landmark, ways] : ways_out_) {
     if (std::find(ways.begin(), ways.end(), kUnknown) == ways.end()) continue;
-    Way way = path(driven_, map_.here(), landmark);
+    Way way = path(driven_, here_, landmark);
     if (best.empty() || length(way) < length(best)) best = std::move(way);
   }
   return best;
 }
 
-/// All ways on of a few legs, turning round only in dead ends.
+/// All ways on of a few legs that the map has, turning round only in dead ends.
 void Explorer::add_ways_on(const Way& so_far, std::vector<Way>& ways) const {
   constexpr std::size_t kLegsAhead = 4;
   if (so_far.size() > kLegsAhead) return;
@@ -103,6 +106,7 @@ void Explorer::add_ways_on(const Way& so_far, std::vector<Way>& ways) const {
   for (const int next : ways_out) {
     const bool back = so_far.size() > 1 && next == so_far[so_far.size() - 2];
     if (back && ways_out.size() > 1) continue;
+    if (!map_.route_between(so_far.back(), next)) continue;  // it was left out
     Way way = so_far;
     way.push_back(next);
     add_ways_on(way, ways);
@@ -114,7 +118,8 @@ void Explorer::add_ways_on(const Way& so_far, std::vector<Way>& ways) const {
 /// metre; where it leads to, that is asked anew.
 Explorer::Way Explorer::most_worth_driving() const {
   std::vector<Way> ways;
-  add_ways_on({map_.here()}, ways);
+  add_ways_on({here_}, ways);
+  if (ways.empty()) return {here_, ways_out_.at(here_).front()};
   const std::vector<double> falls = map_.expected_falls(ways);
   const auto worth = [&](std::size_t k) { return falls[k] / length(ways[k]); };
   std::size_t best = 0;

@@ -44,6 +44,7 @@ class Explorer {
 
   World& world_;
   MapBuilder map_;
+  int here_ = -1;         ///< where the robot stands
   LandmarkGraph driven_;  ///< landmarks as in the map; routes that were driven, not only seen
   std::map<int, std::vector<int>> ways_out_;  ///< per landmark, where its ways out lead
   std::function<void(const Arrival&)> arrived_;

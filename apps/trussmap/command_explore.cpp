@@ -36,12 +36,13 @@ struct ExploreOptions {
   std::string svg;
 };
 
-/// Errors each time the robot has driven as far as all routes are long.
+/// Errors each time the robot has driven as far as all routes are long, and at the end.
 struct Tour {
   int number = 0;
   double way = 0.0;  ///< m
   int landmarks = 0;
-  MapErrors errors;
+  MapErrors errors;  ///< as the map lies, without a compass aligned
+  MapErrors aligned;
 };
 
 ordered_json tours_json(const std::vector<Tour>& tours) {
@@ -52,9 +53,26 @@ ordered_json tours_json(const std::vector<Tour>& tours) {
                     {"landmarks", tour.landmarks},
                     {"stretch_error", tour.errors.stretch},
                     {"orientation_error_rad", tour.errors.orientation},
-                    {"position_error_m", tour.errors.position.value_or(0.0)}});
+                    {"position_error_m", tour.errors.position.value_or(0.0)},
+                    {"aligned_error_m", tour.aligned.position.value_or(0.0)}});
   }
   return list;
+}
+
+void print_tours(const std::vector<Tour>& tours, Laid laid) {
+  const bool both = laid == Laid::as_it_is;
+  fmt::print("\n  errors{} each time the way is as long as all routes together\n",
+             both ? "" : " after the best rotation and translation,");
+  fmt::print("  tour     way [m]  landmarks  position [m]{}   stretch  orientation [rad]\n",
+             both ? "  aligned [m]" : "");
+  for (const Tour& tour : tours) {
+    const bool last = &tour == &tours.back();
+    fmt::print("  {:>4}  {:>10.0f}  {:>9}  {:>12.4f}", last ? "end" : std::to_string(tour.number),
+               tour.way, tour.landmarks, tour.errors.position.value_or(0.0));
+    if (both) fmt::print("  {:>11.4f}", tour.aligned.position.value_or(0.0));
+    fmt::print("  {:>8.4f}  {:>17.4f}\n", tour.errors.stretch, tour.errors.orientation);
+  }
+  if (both) fmt::print("\n  aligned: after the best rotation and translation\n");
 }
 
 void run_explore(ExploreOptions options) {
@@ -81,7 +99,7 @@ void run_explore(ExploreOptions options) {
   const auto note = [&] {
     const LandmarkGraph map = robot.map().map();
     tours.push_back({static_cast<int>(tours.size()) + 1, world.way_driven(), map.landmarks(),
-                     map_errors(map, truth, laid)});
+                     map_errors(map, truth, laid), map_errors(map, truth, Laid::aligned)});
   };
   robot.explore(options.tours * all_routes, [&](const Arrival& arrival) {
     ++legs;
@@ -117,14 +135,7 @@ void run_explore(ExploreOptions options) {
   files.write();
   fmt::print("explored: {} of {} landmarks and {} routes, {} legs, {:.0f} m\n", map.landmarks(),
              world.plan().landmarks(), map.routes(), legs, world.way_driven());
-  fmt::print("\n  errors{} each time the way is as long as all routes together\n",
-             laid == Laid::aligned ? " after the best rotation and translation," : "");
-  fmt::print("  tour     way [m]  landmarks  position [m]   stretch  orientation [rad]\n");
-  for (const Tour& tour : tours) {
-    fmt::print("  {:>4}  {:>10.0f}  {:>9}  {:>12.4f}  {:>8.4f}  {:>17.4f}\n", tour.number, tour.way,
-               tour.landmarks, tour.errors.position.value_or(0.0), tour.errors.stretch,
-               tour.errors.orientation);
-  }
+  print_tours(tours, laid);
 }
 
 }  // namespace

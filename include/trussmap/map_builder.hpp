@@ -103,10 +103,12 @@ struct Arrival {
     refinement,    ///< a known route was driven again
     left_out,      ///< contradicts the map (MapBuilderOptions::gate), or leads from such a place
                    ///< back to where the map still has the robot: nothing moved
+    found_again,   ///< at a landmark of the map, past one that was left out: no route joins it with
+                   ///< the one before, and none was added; nothing moved
   };
   Kind kind = Kind::new_landmark;
   int landmark = -1;  ///< where the robot is now, or was said to be
-  int route = -1;     ///< the route it came by, -1 where it was left out
+  int route = -1;     ///< the route it came by, -1 where it was left out or found again
   /// Displaced by more than 1e-12 m, the landmarks of groups that were moved among them, and by how
   /// much at most, m: of landmarks in groups a bound.
   int landmarks_moved = 0;
@@ -116,7 +118,7 @@ struct Arrival {
   int back = 0;                      ///< of those left out earlier that came back now
 };
 
-/// "new landmark", "loop closed", "new route", "known route", "left out".
+/// "new landmark", "loop closed", "new route", "known route", "left out", "found again".
 [[nodiscard]] std::string name_of(Arrival::Kind kind);
 
 /// An arrival or a side measurement that was left out and has not come back.
@@ -221,7 +223,9 @@ class MapBuilder {
 
   /// Covariance of where landmark b lies from landmark a, m^2, by all that the map was told: the
   /// flexibility of the truss with stiffness 1/variance. Exact to first order, as far as what was
-  /// measured is independent; the refinement's scope may lie some percent above it. Cost: one
+  /// measured is independent; the refinement's scope may lie some percent above it. In the map's
+  /// axes: without a compass these are those of the first leg, and what is not known of that leg's
+  /// direction turns all, however often the rest is driven. Cost: one
   /// factorisation of the whole truss. Throws std::invalid_argument on numbers that no landmark
   /// has, SolveError where the traversals' covariances span so many magnitudes that rounding would
   /// leave fewer than four digits of the answer.
@@ -235,14 +239,16 @@ class MapBuilder {
   /// variance of all landmarks (m^2, as of covariances()) is expected to fall when the robot drives
   /// it, each route with the covariance that its traversals had on average. Legs in the robot's own
   /// axes measure corners as well; the first one too where the way starts at here(). Of a map
-  /// without a compass, and so without axes: of the landmarks after the best rotation and
-  /// translation. Where to drive next, for a better map. Throws std::invalid_argument on a way that
-  /// leaves the map's routes; SolveError as covariances(). Cost: one factorisation, and a solution
-  /// per number that is measured, up to three per route.
+  /// without a compass, which covariances() has in the axes of its first leg, of the landmarks
+  /// after the best rotation and translation instead. Where to drive next, for a better map. Throws
+  /// std::invalid_argument on a way that leaves the map's routes; SolveError as covariances().
+  /// Cost: one factorisation, and a solution per number that is measured, up to three per route.
   [[nodiscard]] std::vector<double> expected_falls(const std::vector<std::vector<int>>& ways) const;
 
-  /// The landmarks along the shortest or the surest way over routes that were driven
-  /// (landmark_map.hpp); empty where there is none.
+  /// The landmarks along the shortest or the surest way over the map's routes (landmark_map.hpp);
+  /// empty where there is none. A landmark seen from afar is joined by a route, too, and so is a
+  /// new one with the last that was not left out: a robot that can only go where it went keeps a
+  /// list of its ways, as apps/explore does.
   [[nodiscard]] std::vector<int> path(int from, int to, PathBy by = PathBy::length) const;
 
   /// The map: present positions, and the routes with their averages. A copy, made anew each time.

@@ -230,7 +230,7 @@ void add_map_builder(py::module_& module) {
   RowClass<Arrival>(module, "Arrival", "Arrival")
       .value(
           "kind", [](const Arrival& self) { return name_of(self.kind); },
-          "new landmark, loop closed, new route, known route or left out.")
+          "new landmark, loop closed, new route, known route, left out or found again.")
       .field("landmark", &Arrival::landmark)
       .field("route", &Arrival::route)
       .field("landmarks_moved", &Arrival::landmarks_moved)

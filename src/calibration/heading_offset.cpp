@@ -3,6 +3,7 @@
 #include "calibration/heading_offset.hpp"
 
 #include "calibration/reckoning.hpp"
+#include "geometry/units.hpp"
 #include "recording/legs.hpp"
 
 #include <cmath>
@@ -71,7 +72,6 @@ HeadingOffset heading_offset(const std::vector<Recording>& recordings, const Rob
 
 std::string describe(const HeadingOffset& offset) {
   constexpr double kTurned = 0.2;  // rad: less is a marker put on by hand
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   if (offset.agreement < kAgree) {
     return "the truth's headings do not follow the direction of travel; are they in radians, and "
            "of the same clock as the wheels?";

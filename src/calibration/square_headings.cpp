@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
+#include "geometry/units.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/umbmark.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -16,8 +16,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 /// alpha and beta of the exact solution by the centres: cw x, y, ccw x, y; rad/m.
 struct PositionGains {

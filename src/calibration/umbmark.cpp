@@ -4,10 +4,10 @@
 
 #include "calibration/square_ends.hpp"
 #include "calibration/welch.hpp"
+#include "geometry/units.hpp"
 #include "trussmap/error.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -16,8 +16,6 @@ namespace trussmap {
 namespace {
 
 using Eigen::Vector2d;
-
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 /// A number and its derivatives by the two centres.
 struct Sensitivity {

@@ -5,12 +5,12 @@
 #include "criticism/response_bins.hpp"
 #include "effects/place.hpp"
 #include "effects/place_patterns.hpp"
+#include "geometry/units.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/median.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -19,7 +19,6 @@ namespace trussmap {
 namespace {
 
 constexpr int kCurvePoints = 73;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// The variable as a formula; nothing without one, or without a place.
 std::optional<Shape> formula_of(const std::string& variable, const Effect& effect) {
@@ -230,7 +229,7 @@ Response response_along(const std::string& variable, const Effect& effect, const
   if (result.bins.empty()) return result;
   const bool round = variable == "heading";
   const double low = round || variable == kPlace ? 0.0 : result.bins.front().at;
-  const double high = round ? kTurn : result.bins.back().at;
+  const double high = round ? kFullTurn : result.bins.back().at;
   result.curve = levelled(effect_curve(effect, variable, low, high), effect, variable, projected);
   for (std::size_t k = 0; k < rivals.size(); ++k) {
     if (rivals[k].channel != effect.channel || variable == kPlace) continue;

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/response_bins.hpp"
 
+#include "geometry/units.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -14,11 +15,10 @@ namespace {
 constexpr std::size_t kBins = 9;
 constexpr int kHeadingBins = 12;
 constexpr std::size_t kFewValues = 9;
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double in_one_turn(double heading) {
-  const double rest = std::fmod(heading, kTurn);
-  return rest < 0.0 ? rest + kTurn : rest;
+  const double rest = std::fmod(heading, kFullTurn);
+  return rest < 0.0 ? rest + kFullTurn : rest;
 }
 
 /// A formula in all rows in which a wheel turns, in order.
@@ -81,13 +81,13 @@ std::vector<double> edges_of(const std::vector<double>& values, bool from_place)
 
 Bins heading_bins(const std::vector<double>& values) {
   Bins result;
-  const double width = kTurn / kHeadingBins;
+  const double width = kFullTurn / kHeadingBins;
   for (int k = 0; k < kHeadingBins; ++k) {
     const double middle = k * width;
     double sum = 0.0;
     int count = 0;
     for (const double value : values) {
-      const double off = std::remainder(value - middle, kTurn);
+      const double off = std::remainder(value - middle, kFullTurn);
       if (std::abs(off) > 0.5 * width) continue;
       sum += off;
       ++count;

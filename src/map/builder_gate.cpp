@@ -106,6 +106,27 @@ Arrival MapBuilder::State::travel_gated(const std::string& landmark, const Measu
   return arrival;
 }
 
+bool MapBuilder::State::lacks_route_to(const std::string& landmark) const {
+  const std::optional<int> to = m_.graph.find(landmark);
+  return to && *to != m_.here && !m_.graph.route_between(m_.here, *to);
+}
+
+/// By way of a landmark that was left out to one of the map: nobody drove from here to there, so
+/// that the map gets no route, but where the robot is it knows again.
+Arrival MapBuilder::State::pass_to(const std::string& landmark, const MeasuredLeg& leg) {
+  Arrival arrival;
+  arrival.landmark = other_landmark(landmark).value();
+  arrival.misfit = leg.in_map.displacement - (at(arrival.landmark) - at(m_.here));
+  const double misfit = std::min(squared_misfit(m_.here, arrival.landmark, leg.in_map),
+                                 std::numeric_limits<double>::max());
+  ArrivalGate gate = m_.gate;
+  gate.remember(misfit);
+  const bool fits = gate.lets_in(misfit);
+  arrival.kind = fits ? Arrival::Kind::found_again : Arrival::Kind::left_out;
+  m_.gate = std::move(gate);
+  return arrival;
+}
+
 /// Of those left out the one at this place comes in, by `leg`.
 void MapBuilder::State::bring_back(std::size_t place, const MeasuredLeg& leg, Arrival& arrival) {
   const Arrival done = take_in(m_.left_out[place].to, leg);

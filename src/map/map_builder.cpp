@@ -346,6 +346,8 @@ std::string name_of(Arrival::Kind kind) {
       return "known route";
     case Arrival::Kind::left_out:
       return "left out";
+    case Arrival::Kind::found_again:
+      return "found again";
   }
   return "unknown";
 }

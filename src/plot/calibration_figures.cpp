@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "plot/calibration_figures.hpp"
 
+#include "geometry/units.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -11,8 +13,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
 
 std::vector<Vector2> in_millimetres(const std::vector<Eigen::Vector2d>& metres) {
   std::vector<Vector2> result;

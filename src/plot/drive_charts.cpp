@@ -5,6 +5,7 @@
 #include "effects/channel_physics.hpp"
 #include "effects/wheel_places.hpp"
 #include "geometry/index.hpp"
+#include "geometry/units.hpp"
 #include "trussmap/planar.hpp"
 
 #include <algorithm>
@@ -17,8 +18,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Strokes seen from above: the page's x is to the right, its y ahead.
 class Strokes {

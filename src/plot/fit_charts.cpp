@@ -2,20 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "plot/fit_charts.hpp"
 
+#include "geometry/units.hpp"
 #include "plot/layers.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostLegs = 2000;  // of a chart
 
 /// All estimates and the curve, and intervals as far as they are not much longer.

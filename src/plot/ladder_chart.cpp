@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "plot/fit_charts.hpp"
 #include "plot/layers.hpp"
 
@@ -8,7 +9,6 @@
 namespace trussmap {
 
 Chart ladder_chart(const std::string& id, const std::vector<LadderStep>& steps, double floor) {
-  constexpr double kMillimetres = 1000.0;
   Chart chart;
   chart.id = id;
   chart.title = "The error, step by step";

@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "plot/sketch.hpp"
 
+#include "geometry/units.hpp"
 #include "text/xml_text.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 const char* colour_of(Ink ink) {
   switch (ink) {

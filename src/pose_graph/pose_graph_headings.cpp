@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "pose_graph/pose_graph_headings.hpp"
 
+#include "geometry/units.hpp"
 #include "pose_graph/pose_graph_chain.hpp"
 #include "pose_graph/pose_graph_gauge.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace trussmap {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kRewindings = 5;
 
 }  // namespace
@@ -100,7 +99,7 @@ std::vector<Pose> HeadingSystem::fit(const std::vector<Pose>& estimates) {
     for (const Link& link : links_) {
       const double off =
           result[idx(link.to)].heading - result[idx(link.from)].heading - link.measured;
-      const double pull = link.information * std::remainder(off, kTurn);
+      const double pull = link.information * std::remainder(off, kFullTurn);
       if (!fixed_[idx(link.from)]) step[angles_->offset(link.from)] += pull;
       if (!fixed_[idx(link.to)]) step[angles_->offset(link.to)] -= pull;
     }
@@ -152,7 +151,7 @@ std::vector<int> HeadingSystem::windings(const std::vector<Pose>& estimates) con
   const auto turns_of = [&estimates](const Link& link) {
     const double off =
         estimates[idx(link.to)].heading - estimates[idx(link.from)].heading - link.measured;
-    return static_cast<int>(std::lround(off / kTurn));
+    return static_cast<int>(std::lround(off / kFullTurn));
   };
   std::vector<int> excess(estimates.size(), 0);  // whole turns that a heading has too many
   for (const Branch& branch : tree_) {

@@ -16,7 +16,8 @@
 namespace trussmap {
 namespace {
 
-constexpr double kMargin = 24.0;  // pixels
+constexpr double kMargin = 24.0;    // pixels
+constexpr double kCaption = 240.0;  // the longest one, in pixels
 constexpr double kSecondsPerFrame = 0.2;
 constexpr double kSecondsAtTheEnd = 3.0;
 constexpr std::size_t kMostFrames = 150;
@@ -37,7 +38,7 @@ struct Paper {
     }
     const Vector2 size = (high - low).cwiseMax(1e-9);
     scale = (wide - 2.0 * kMargin) / size.maxCoeff();
-    width = std::max(size.x() * scale, 0.5 * wide) + 2.0 * kMargin;
+    width = std::max(size.x() * scale + 2.0 * kMargin, kCaption);
     height = size.y() * scale + 2.0 * kMargin + 20.0;
   }
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "report/map_tours.hpp"
 
-#include <numbers>
+#include "geometry/units.hpp"
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,12 +20,10 @@ struct TourQuantity {
   std::optional<double> (*pick)(const MapErrors&);
 };
 
-constexpr double kDegreesTurned = 180.0 / std::numbers::pi;
-
 const TourQuantity kQuantities[] = {
     {"tours-stretch", "Routes too long or too short", "mean stretch error \u03c3 [%]", 100.0,
      [](const MapErrors& errors) { return std::optional(errors.stretch); }},
-    {"tours-orientation", "Routes askew", "mean orientation error \u03c1 [\u00b0]", kDegreesTurned,
+    {"tours-orientation", "Routes askew", "mean orientation error \u03c1 [\u00b0]", kDegrees,
      [](const MapErrors& errors) { return std::optional(errors.orientation); }},
     {"tours-position", "Landmarks off", "mean position error [m]", 1.0,
      [](const MapErrors& errors) { return errors.position; }}};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/rivals.hpp"
 
+#include "geometry/units.hpp"
 #include "report/page_words.hpp"
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
 constexpr std::size_t kMostNamed = 5;  // of one effect and its rivals, in a headline
 
 /// The effects that a lack hides; none: more than can be listed.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/robot_off.hpp"
 
+#include "geometry/units.hpp"
 #include "report/page_words.hpp"
 
 #include <algorithm>
@@ -11,8 +12,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
 
 /// What noise alone would leave, and whose noise that is.
 struct Floor {

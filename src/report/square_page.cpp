@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "plot/layers.hpp"
 #include "report/page.hpp"
 #include "trussmap/pages.hpp"
@@ -7,15 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
 
-constexpr double kMillimetres = 1000.0;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostRuns = 2000;
 
 std::string with_error(const Estimate& estimate, const char* unit) {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "plot/layers.hpp"
 #include "plot/map_picture.hpp"
 #include "report/page.hpp"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
@@ -17,7 +17,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kDegreesTurned = 180.0 / std::numbers::pi;
 constexpr std::size_t kMostTours = 250;  // drawn
 
 struct MethodLook {
@@ -167,7 +166,7 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
       "After {} {} routes of the elastic map are {:.2f} % too long or short and {:.2f}\u00b0 "
       "askew, {:.1f} times better than single measurements ({:.2f} %).",
       result.tours.size(), result.tours.size() == 1 ? "tour" : "tours",
-      100.0 * elastic.stretch_error.mean, kDegreesTurned * elastic.orientation_error.mean,
+      100.0 * elastic.stretch_error.mean, kDegrees * elastic.orientation_error.mean,
       raw.stretch_error.mean / std::max(elastic.stretch_error.mean, 1e-12),
       100.0 * raw.stretch_error.mean);
   page.facts = {
@@ -183,8 +182,7 @@ Page tour_page(const TourResult& result, int seeds, const std::string& subject) 
   }
   const Quantity quantities[] = {
       {"stretch", "Routes too long or too short", "mean stretch error [%]", 100.0, stretch},
-      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegreesTurned,
-       orientation},
+      {"orientation", "Routes askew", "mean orientation error [\u00b0]", kDegrees, orientation},
       {"position", "Landmarks off", "mean position error [m]", 1.0, position}};
   PageSection section{"Errors, tour by tour", {}};
   for (const Quantity& one : quantities) {
@@ -205,7 +203,7 @@ std::string tour_picture(const TourMap& shown) {
   picture.title = fmt::format(
       "{}, after {} {}: routes {:.1f} % too long or short, {:.2f}\u00b0 askew",
       capitalised(look_of(shown.method).words), shown.tour, shown.tour == 1 ? "tour" : "tours",
-      100.0 * shown.errors.stretch, kDegreesTurned * shown.errors.orientation);
+      100.0 * shown.errors.stretch, kDegrees * shown.errors.orientation);
   picture.map = shown.map;
   picture.truth = shown.truth;
   picture.true_routes = true;

@@ -408,7 +408,7 @@ class __attribute__((visibility("hidden"))) MapStore::Impl {
   };
 
   [[nodiscard]] Arrival::Kind outcome_of(std::int64_t number) const {
-    if (number < 0 || number > static_cast<std::int64_t>(Arrival::Kind::left_out)) {
+    if (number < 0 || number > static_cast<std::int64_t>(Arrival::Kind::found_again)) {
       throw InputError(file_.string(), 0, "is damaged: it has a leg of no outcome");
     }
     return static_cast<Arrival::Kind>(number);

@@ -1,18 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/wording.hpp"
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include <fmt/format.h>
 
 namespace trussmap {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// A law of noise in a sentence, with its size and, where the model has such noise, what it states.
 struct LawWords {

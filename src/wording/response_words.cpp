@@ -1,15 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
-#include <numbers>
-
 namespace trussmap {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 ShownUnit unit_of(const std::string& variable) {
   if (variable == "heading") return {kDegrees, "\u00b0"};

@@ -266,6 +266,39 @@ TEST(WheeledMap, BackWhereTheMapHasItARobotGoesOn) {
   EXPECT_EQ(map.arrive("1", ahead).kind, Arrival::Kind::refinement);
 }
 
+/// Past a landmark that was misread no route is made up, in either kind of legs.
+TEST(WheeledMap, PastALandmarkThatIsLeftOutNoRouteIsMadeUp) {
+  const Matrix3 C = Eigen::Vector3d(1e-4, 1e-4, 1e-5).asDiagonal();
+  const Motion ahead{{5.0, 0.0, 0.5 * std::numbers::pi}, C};
+  MapBuilder map;
+  map.start("0");
+  for (int leg = 1; leg <= 8; ++leg) map.arrive(std::to_string(leg % 4), ahead);
+  EXPECT_EQ(map.arrive("3", ahead).kind, Arrival::Kind::left_out);  // it was 1
+  const Arrival arrival = map.arrive("2", ahead);
+  EXPECT_EQ(arrival.kind, Arrival::Kind::found_again);
+  EXPECT_EQ(map.here(), 2);
+  EXPECT_EQ(map.map().routes(), 4);
+  EXPECT_NEAR((map.pose()->pose.position() - Vector2(5.0, 5.0)).norm(), 0.0, 0.05);
+  EXPECT_NEAR(wrap_angle(map.pose()->pose.heading - std::numbers::pi), 0.0, 0.05);
+  EXPECT_EQ(map.arrive("3", ahead).kind, Arrival::Kind::refinement);
+
+  MapBuilder axes;
+  const auto leg = [](double x, double y) {
+    return Traversal{{x, y}, Vector2(1e-4, 1e-4).asDiagonal()};
+  };
+  axes.start("0");
+  for (int tour = 0; tour < 2; ++tour) {
+    axes.arrive("1", leg(5.0, 0.0));
+    axes.arrive("2", leg(0.0, 5.0));
+    axes.arrive("3", leg(-5.0, 0.0));
+    axes.arrive("0", leg(0.0, -5.0));
+  }
+  EXPECT_EQ(axes.arrive("3", leg(5.0, 0.0)).kind, Arrival::Kind::left_out);
+  EXPECT_EQ(axes.arrive("2", leg(0.0, 5.0)).kind, Arrival::Kind::found_again);
+  EXPECT_EQ(axes.here(), 2);
+  EXPECT_EQ(axes.map().routes(), 4);
+}
+
 /// However often a compass reads, the map is right in its axes, and the better for more readings.
 TEST(WheeledMap, CompassReadingsOfAnyRateGiveTheMapItsAxes) {
   World world;
