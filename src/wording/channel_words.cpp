@@ -2,19 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "wording/channel_words.hpp"
 
+#include "geometry/units.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 #include <fmt/format.h>
 
 namespace trussmap {
-namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-}  // namespace
 
 Scale scale_of(Channel channel) {
   switch (channel) {
