@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/channel_record.hpp"
 #include "effects/place.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
@@ -58,10 +59,10 @@ std::string name_in_words(const Effect& effect) {
   const std::string rest = name.substr(channel.size());
   const std::optional<Vector2> place = place_of(effect);
   if ((rest == " at a place" || rest == " within a circle") && place) {
-    return fmt::format("{} at {}", noun_of(effect.channel), place_text(*place));
+    return fmt::format("{} at {}", record_of(effect.channel).noun, place_text(*place));
   }
   if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
-  return noun_of(effect.channel) + variables_in_words(rest);
+  return std::string(record_of(effect.channel).noun) + variables_in_words(rest);
 }
 
 }  // namespace trussmap
