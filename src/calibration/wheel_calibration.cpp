@@ -126,12 +126,13 @@ std::vector<Constant> constants_of(const Robot& robot) {
       break;
   }
   std::vector<Constant> result;
-  for (const Channel channel : {Channel::wheel1, Channel::wheel2, Channel::wheel3, Channel::wheel4,
-                                Channel::wheel5, Channel::wheel6}) {
-    if (!is_of_drive(channel, robot)) break;
-    const std::string& column = robot.columns[*wheel_of(channel)];
-    result.push_back(
-        {.name = "radius of " + column, .channel = channel, .symbol = "the radius of " + column});
+  for (const ChannelFacts& one : channels()) {
+    const std::optional<std::size_t> wheel = wheel_of(one.channel);
+    if (!wheel || !is_of_drive(one.channel, robot)) continue;
+    const std::string& column = robot.columns[*wheel];
+    result.push_back({.name = "radius of " + column,
+                      .channel = one.channel,
+                      .symbol = "the radius of " + column});
   }
   result.push_back(turn_constant());
   // With these the wheels may roll in other directions than stated, too, to first order: together
