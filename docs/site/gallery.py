@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: MIT
 #
 # The gallery: a page for every effect that `trussmap effects` lists. What the command knows is asked
-# of it; what happens on a robot stands in effects.toml; the picture is that of a simulated recording,
-# diagnosed when the site is built. Usage: gallery.py --check COMMAND
+# of it; what happens on a robot stands in the effect's file (src/effects/catalogue, [gallery]); the
+# picture is that of a simulated recording, diagnosed when the site is built. Usage: gallery.py --check COMMAND
 import hashlib
 import json
 import os
@@ -20,8 +20,10 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # nothing is left beside the sources
 
-from pages import HERE, TOP, slug_of
+import effects_table
+from pages import TOP, slug_of
 
+EFFECTS = TOP / "src/effects/catalogue"
 WORLD = "--mesh 4x4 --uneven --tours 2"
 GROUPS = ("Wheels", "Turning", "Floor and slip", "Gears and encoders", "Gyro", "Compass", "Sightings",
           "Truth and fixes", "Other drives")
@@ -61,6 +63,12 @@ CHANNELS = {
 }
 
 
+def effect_texts():
+    """What the gallery says of each effect."""
+    files = [tomllib.loads(path.read_text()) for path in sorted(EFFECTS.glob("*.toml"))]
+    return {one["name"]: one["gallery"] for one in files}
+
+
 def formula_of(shape):
     """A shape as TeX: names upright, products without a star."""
     text = shape.replace("{}", "COLUMN")
@@ -97,9 +105,8 @@ def factor(shape):
 class Gallery:
     def __init__(self, command):
         self.command = Path(command).resolve()
-        self.entries = json.loads(self.run(["effects", "--json", "/dev/stdout"]).split("\n}\n")[0] + "\n}")[
-            "effects"]
-        self.texts = tomllib.loads((HERE / "effects.toml").read_text())
+        self.entries = effects_table.effects_of(self.command)
+        self.texts = effect_texts()
         self.slugs = {entry["name"]: slug_of(entry["name"]) for entry in self.entries}
         self.drawn = "--drawing" in self.run(["effects", "--help"])
 
@@ -113,9 +120,9 @@ class Gallery:
     def faults(self):
         """What keeps an effect of the catalogue from having its page."""
         names = [entry["name"] for entry in self.entries]
-        found = [f"{name} is not in docs/site/effects.toml" for name in names
+        found = [f"{name} has no file in {EFFECTS.relative_to(TOP)}" for name in names
                  if name not in self.texts]
-        found += [f"docs/site/effects.toml has {name}, which the catalogue has not"
+        found += [f"{EFFECTS.relative_to(TOP)} has {name}, which the command has not"
                   for name in self.texts if name not in names]
         for name, text in self.texts.items():
             found += [f"{name} has no {field}" for field in FIELDS if not text.get(field)]
@@ -123,6 +130,9 @@ class Gallery:
                 found.append(f"{name}: {text.get('group')} is no group")
         found += [f"{entry['name']}: no formula for channel {entry['channel']}"
                   for entry in self.entries if entry["channel"] not in CHANNELS]
+        if not effects_table.is_right(self.entries):
+            found.append("the table in docs/effects.md is not that of the catalogue: run "
+                         "docs/site/effects_table.py COMMAND")
         if len(set(self.slugs.values())) != len(names):
             found.append("two effects have the same page")
         if not names:

@@ -13,6 +13,7 @@ sys.dont_write_bytecode = True  # nothing is left beside the sources
 
 from pages import HERE, TOP, Contents, without_code
 
+EFFECTS = TOP / "src/effects/catalogue"
 WORDS = HERE / "words.txt"
 
 
@@ -29,9 +30,14 @@ def prose_of(path):
 
 
 def texts_of_effects():
-    effects = tomllib.loads((HERE / "effects.toml").read_text())
-    text = " ".join(one["happens"] + " " + one["look"] for one in effects.values())
-    return re.sub(r"`[^`]*`|\]\([^)]*\)", " ", text)
+    """By file."""
+    for path in sorted(EFFECTS.glob("*.toml")):
+        effect = tomllib.loads(path.read_text())
+        told = effect["explanation"]
+        text = " ".join([effect["cause"], effect["remedy"], told["does"], told["look"], told["drive"],
+                         told.get("otherwise", ""), effect["gallery"]["happens"],
+                         effect["gallery"]["look"]])
+        yield path, re.sub(r"`[^`]*`|\{\}|\]\([^)]*\)", " ", text)
 
 
 def unknown(text):
@@ -51,8 +57,10 @@ def check(contents, names=None):
     for path in files:
         for word in unknown(prose_of(path)):
             wrong.append(f"{path.relative_to(TOP)}: {word}")
-    wrong += [f"docs/site/effects.toml: {word}" for word in unknown(texts_of_effects())]
-    everything = [str(TOP / path) for path in contents.files.values()] + [str(HERE / "effects.toml")]
+    for path, text in texts_of_effects():
+        wrong += [f"{path.relative_to(TOP)}: {word}" for word in unknown(text)]
+    everything = [str(TOP / path) for path in contents.files.values()]
+    everything += [str(path) for path in EFFECTS.glob("*.toml")]
     ran = subprocess.run(["codespell", "--ignore-words", str(HERE / "not-misspelt.txt"), *everything],
                          text=True, capture_output=True)
     wrong += ran.stdout.splitlines()

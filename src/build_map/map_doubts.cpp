@@ -100,20 +100,17 @@ std::string words_of(const FreedError& one) {
     return signed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
   };
   constexpr double kDegree = std::numbers::pi / 180.0;
-  switch (one.effect.channel) {
-    case Channel::drift:
-    case Channel::gyro:
-      return one.effect.name + " " + signed_text(60.0 * value / kDegree, 1) + " +- " +
-             fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
-    case Channel::compass:
-      return "hard iron " +
-             fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 2) + " +- " +
-             fixed_text(std::max(sd, one.sd.back()) / kDegree, 2) + " deg";
-    case Channel::turn:
-      return "turns " + percent() + " (wheelbase)";
-    default:
-      return one.effect.name + " " + percent();
+  if (facts_of(one.effect.channel).unit == "rad/s") {
+    return one.effect.name + " " + signed_text(60.0 * value / kDegree, 1) + " +- " +
+           fixed_text(60.0 * sd / kDegree, 1) + " deg/min";
   }
+  if (one.effect.channel == Channel::compass) {
+    return one.effect.name + " " +
+           fixed_text(std::hypot(value, one.effect.coefficients.back()) / kDegree, 2) + " +- " +
+           fixed_text(std::max(sd, one.sd.back()) / kDegree, 2) + " deg";
+  }
+  if (one.effect.channel == Channel::turn) return "turns " + percent() + " (wheelbase)";
+  return one.effect.name + " " + percent();
 }
 
 /// Those that stand out on their own, or all where none does.

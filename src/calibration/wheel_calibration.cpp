@@ -32,46 +32,122 @@ constexpr double kUseless = 0.1;  // a standard error of a ratio that is no cali
 /// worse.
 constexpr double kUselessGain = 0.03;
 
+constexpr const char* kNoDistance =
+    "nothing in use measures a distance; add a survey, truth, or loops between poses far apart";
+
 /// What is sought: g of a channel, with the shape 1.
 struct Constant {
   std::string name;  ///< of its effect
   Channel channel;
   std::string symbol;
+  /// What is missing where the motion does not determine it, in the user's terms...
+  const char* missing =
+      "the motion does not tell this wheel from the others; drive ahead, to the side where the "
+      "robot can, and turn";
+  const char* missing_without_distance = kNoDistance;  ///< ... and where nothing tells a distance
+  /// E_d, E_b and E_s, or the like; of a steering offset how much of the wheel's way is left.
+  double (*ratio)(double g) = [](double g) { return 1.0 + g; };
+  /// What was found on corrected rows, more, beside what was in force: of a reading, which stays as
+  /// it is, or beside it.
+  double (*joined)(double g, double more) = [](double g, double more) { return g + more; };
 };
 
+double joined_factors(double g, double more) {
+  return (1.0 + g) * (1.0 + more) - 1.0;
+}
+
+Constant turn_constant() {
+  constexpr const char* kMissing = "the robot hardly turns; drive turns, both ways";
+  return {.name = "wheelbase",
+          .channel = Channel::turn,
+          .symbol = "E_b (wheelbase / nominal)",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return 1.0 / (1.0 + g); },
+          .joined = joined_factors};
+}
+
+Constant scale_constant() {
+  return {.name = "wheel scale",
+          .channel = Channel::wheels,
+          .symbol = "E_s (true / measured travel)",
+          .missing =
+              "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
+              "wheels from a smaller wheelbase; drive straight lines",
+          .joined = joined_factors};
+}
+
+Constant diameters_constant() {
+  constexpr const char* kMissing =
+      "the drive is too short to show one wheel larger than the other; drive straight lines of "
+      "several metres";
+  return {.name = "wheel diameter ratio",
+          .channel = Channel::difference,
+          .symbol = "E_d (right wheel / left wheel)",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return (1.0 + 0.5 * g) / (1.0 - 0.5 * g); },
+          // (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
+          .joined = [](double g, double more) { return (g + more) / (1.0 + 0.25 * g * more); }};
+}
+
+Constant steering_offset_constant() {
+  constexpr const char* kMissing =
+      "the drive is too short to show where straight ahead is; drive straight lines of several "
+      "metres";
+  return {.name = "steering offset",
+          .channel = Channel::steer,
+          .symbol = "the steering's offset",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return std::cos(g); }};
+}
+
+Constant steering_gain_constant() {
+  constexpr const char* kMissing =
+      "the steering angles are too small, or too much alike, to tell it from the wheelbase; steer "
+      "far, and little, both ways";
+  return {.name = "steering gain",
+          .channel = Channel::steer_gain,
+          .symbol = "the steering's gain",
+          .missing = kMissing,
+          .missing_without_distance = kMissing};
+}
+
 std::vector<Constant> constants_of(const Robot& robot) {
-  const Constant turn{"wheelbase", Channel::turn, "E_b (wheelbase / nominal)"};
-  const Constant scale{"wheel scale", Channel::wheels, "E_s (true / measured travel)"};
   switch (robot.drive) {
     case DriveKind::differential:
-      return {{"wheel diameter ratio", Channel::difference, "E_d (right wheel / left wheel)"},
-              turn,
-              scale};
+      return {diameters_constant(), turn_constant(), scale_constant()};
     case DriveKind::tricycle:
     case DriveKind::ackermann:
-      return {{"steering offset", Channel::steer, "the steering's offset"},
-              turn,
-              scale,
-              {"steering gain", Channel::steer_gain, "the steering's gain"}};
+      return {steering_offset_constant(), turn_constant(), scale_constant(),
+              steering_gain_constant()};
     default:
       break;
   }
   std::vector<Constant> result;
-  for (const Channel channel : {Channel::wheel1, Channel::wheel2, Channel::wheel3, Channel::wheel4,
-                                Channel::wheel5, Channel::wheel6}) {
-    if (!is_of_drive(channel, robot)) break;
-    const std::string& column = robot.columns[*wheel_of(channel)];
-    result.push_back({"radius of " + column, channel, "the radius of " + column});
+  for (const ChannelFacts& one : channels()) {
+    const std::optional<std::size_t> wheel = wheel_of(one.channel);
+    if (!wheel || !is_of_drive(one.channel, robot)) continue;
+    const std::string& column = robot.columns[*wheel];
+    result.push_back({.name = "radius of " + column,
+                      .channel = one.channel,
+                      .symbol = "the radius of " + column});
   }
-  result.push_back(turn);
+  result.push_back(turn_constant());
   // With these the wheels may roll in other directions than stated, too, to first order: together
   // with the place and the heading of the truth's point all nine numbers from three wheels'
   // travels, or from as many as four can show, to (f, s, a).
   if (robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum) {
-    result.push_back({"sideways scale", Channel::sideways, "the scale of what goes sideways"});
+    result.push_back({.name = "sideways scale",
+                      .channel = Channel::sideways,
+                      .symbol = "the scale of what goes sideways",
+                      .joined = joined_factors});
   }
   if (robot.drive == DriveKind::omni3) {
-    result.push_back({"creep", Channel::creep, "the slip to the left per travel ahead"});
+    result.push_back({.name = "creep",
+                      .channel = Channel::creep,
+                      .symbol = "the slip to the left per travel ahead"});
   }
   return result;
 }
@@ -145,28 +221,13 @@ Fitted fit(const std::vector<Recording>& recordings, const Model& model, const W
   return result;
 }
 
-/// What was found on corrected rows, more, beside what was in force.
-double joined_gain(Channel channel, double g, double more) {
-  switch (channel) {
-    case Channel::difference:
-      // (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
-      return (g + more) / (1.0 + 0.25 * g * more);
-    case Channel::turn:
-    case Channel::wheels:
-    case Channel::sideways:
-      return (1.0 + g) * (1.0 + more) - 1.0;
-    default:
-      return g + more;  // of a reading, which stays as it is, or beside it
-  }
-}
-
 /// Adds what was found on corrected rows to what was in force.
 void refine(std::vector<double>& g, const Wanted& wanted, const Robot& robot,
             const Eigen::VectorXd& found) {
   const std::vector<Constant> constants = constants_of(robot);
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (wanted[k]) g[k] = joined_gain(constants[k].channel, g[k], found[at++]);
+    if (wanted[k]) g[k] = constants[k].joined(g[k], found[at++]);
   }
 }
 
@@ -185,37 +246,8 @@ void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibra
   result.model.noise.right = found->k[1];
 }
 
-/// What is missing for a constant, in the user's terms.
-std::string why_not(Channel channel, bool scale) {
-  switch (channel) {
-    case Channel::difference:
-      return "the drive is too short to show one wheel larger than the other; drive straight lines "
-             "of several metres";
-    case Channel::steer:
-      return "the drive is too short to show where straight ahead is; drive straight lines of "
-             "several metres";
-    case Channel::steer_gain:
-      return "the steering angles are too small, or too much alike, to tell it from the wheelbase; "
-             "steer far, and little, both ways";
-    case Channel::turn:
-      return "the robot hardly turns; drive turns, both ways";
-    case Channel::wheels:
-      return scale ? "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
-                     "wheels "
-                     "from a smaller wheelbase; drive straight lines"
-                   : "nothing in use measures a distance; add a survey, truth, or loops between "
-                     "poses far apart";
-    default:
-      return scale
-                 ? "the motion does not tell this wheel from the others; drive ahead, to the side "
-                   "where the robot can, and turn"
-                 : "nothing in use measures a distance; add a survey, truth, or loops between "
-                   "poses far apart";
-  }
-}
-
 std::string undetermined_text(const Constant& one, bool scale) {
-  return one.symbol + ": " + why_not(one.channel, scale);
+  return one.symbol + ": " + (scale ? one.missing : one.missing_without_distance);
 }
 
 /// The standard error from which on a constant is none.
@@ -269,20 +301,6 @@ Wanted determined(const std::vector<Recording>& recordings, const Model& model,
   return wanted;
 }
 
-/// E_d, E_b and E_s, or the like; of a steering offset how much of the wheel's way is left.
-double ratio_of(Channel channel, double g) {
-  switch (channel) {
-    case Channel::difference:
-      return (1.0 + 0.5 * g) / (1.0 - 0.5 * g);
-    case Channel::turn:
-      return 1.0 / (1.0 + g);
-    case Channel::steer:
-      return std::cos(g);
-    default:
-      return 1.0 + g;
-  }
-}
-
 /// chi^2, and the constants with their standard errors.
 void read_constants(WheelCalibration& result, const std::vector<double>& g, const Wanted& wanted,
                     const RecordingAdjustment& adjustment) {
@@ -296,7 +314,7 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
     const double sd = std::sqrt(adjustment.coefficient_covariance(at, at));
     ++at;
     const Channel channel = constants[k].channel;
-    const double ratio = ratio_of(channel, g[k]);
+    const double ratio = constants[k].ratio(g[k]);
     if (robot.drive != DriveKind::differential) {
       const bool multiplies =
           channel == Channel::turn || channel == Channel::wheels || channel == Channel::sideways;
@@ -325,7 +343,7 @@ void require_positive(const std::vector<double>& g, const Wanted& wanted,
                       const ProblemOptions& options) {
   const std::vector<Constant> constants = constants_of(model.robot);
   for (std::size_t k = 0; k < constants.size(); ++k) {
-    const double ratio = ratio_of(constants[k].channel, g[k]);
+    const double ratio = constants[k].ratio(g[k]);
     if (!wanted[k] || ratio > 0.0) continue;
     const std::string why = options.truth ? describe(heading_offset(recordings, model.robot)) : "";
     throw SolveError(fmt::format(

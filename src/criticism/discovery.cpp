@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
 #include "criticism/place_uncertainty.hpp"
+#include "effects/catalogue_record.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
@@ -10,10 +11,8 @@
 #include "validation/dead_reckoned_horizons.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 namespace trussmap {
 namespace {
@@ -278,11 +277,8 @@ class Discoverer {
 
   /// The systematic errors that nearly every robot has.
   [[nodiscard]] static bool is_common_motion(const Candidate& one) {
-    static constexpr std::array<std::string_view, 6> kCommon{
-        "wheelbase",     "travel scale", "wheel diameter ratio",
-        "heading drift", "arc loss",     "spin loss"};
-    return one.form == Form::catalogue &&
-           std::find(kCommon.begin(), kCommon.end(), one.effect.name) != kCommon.end();
+    const CatalogueRecord* record = find_record(one.effect.name);
+    return one.form == Form::catalogue && record != nullptr && record->common_motion;
   }
 
   /// The first reason counts.

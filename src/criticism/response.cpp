@@ -3,6 +3,7 @@
 #include "criticism/response.hpp"
 
 #include "criticism/response_bins.hpp"
+#include "effects/channel_record.hpp"
 #include "effects/place.hpp"
 #include "effects/place_patterns.hpp"
 #include "geometry/units.hpp"
@@ -135,18 +136,7 @@ std::string natural_variable(const Effect& effect) {
   names.erase("session");
   if (names.contains("x") || names.contains("y")) return {};
   if (!names.empty()) return *names.begin();
-  switch (effect.channel) {
-    case Channel::turn:
-    case Channel::drift:
-    case Channel::rotate:
-    case Channel::gyro:
-    case Channel::gyro_scale:
-      return "turn_rate";
-    case Channel::compass:
-      return "heading";
-    default:
-      return "speed";
-  }
+  return std::string(record_of(effect.channel).drawn_against);
 }
 
 std::vector<Vector2> effect_curve(const Effect& effect, const std::string& variable, double low,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 
+#include "effects/catalogue_record.hpp"
 #include "text/edit_distance.hpp"
 #include "text/number_text.hpp"
 
@@ -37,10 +38,13 @@ Named taken_apart(std::string_view name) {
   return {name.substr(0, open), name.substr(open + 2, name.size() - open - 3)};
 }
 
-/// Effects of a variable that once had entries of their own.
+/// What once had entries of their own.
 std::string_view present_name(std::string_view name) {
-  if (name == "tyre drift with time") return "tyre drift (t)";
-  if (name == "tyre drift with distance") return "tyre drift (distance)";
+  for (const CatalogueRecord& record : catalogue_records()) {
+    for (const FormerName& one : record.former_names) {
+      if (one.former == name) return one.present;
+    }
+  }
   return name;
 }
 
@@ -101,11 +105,27 @@ bool CatalogueEntry::of_covariate() const {
   return !pattern.empty() && pattern.front().find("{}") != std::string::npos;
 }
 
+const std::vector<CatalogueEntry>& catalogue() {
+  static const std::vector<CatalogueEntry> entries = [] {
+    std::vector<CatalogueEntry> all;
+    for (const CatalogueRecord& one : catalogue_records()) all.push_back(one.entry);
+    return all;
+  }();
+  return entries;
+}
+
 const CatalogueEntry* find_entry(std::string_view name) {
+  const CatalogueRecord* record = find_record(name);
+  if (record == nullptr) return nullptr;
+  return &catalogue()[static_cast<std::size_t>(record - catalogue_records().data())];
+}
+
+const CatalogueRecord* find_record(std::string_view name) {
   name = present_name(name);
-  for (const CatalogueEntry& entry : catalogue()) {
+  for (const CatalogueRecord& record : catalogue_records()) {
+    const CatalogueEntry& entry = record.entry;
     const bool open = entry.of_covariate() || entry.has_parameters();
-    if (entry.name == name || (open && entry.name == taken_apart(name).name)) return &entry;
+    if (entry.name == name || (open && entry.name == taken_apart(name).name)) return &record;
   }
   return nullptr;
 }

@@ -65,19 +65,15 @@ std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
 }
 
 double common_error_sd(const Effect& effect) {
-  switch (effect.channel) {
-    case Channel::difference:
-      return 0.01;
-    case Channel::turn:
-      return 0.05;
-    case Channel::drift:
-    case Channel::gyro:
-      return 0.01;
-    case Channel::compass:
-      return 0.2;
-    default:
-      throw std::invalid_argument(effect.name + " is no common error");
+  constexpr std::pair<Channel, double> kSds[] = {{Channel::difference, 0.01},
+                                                 {Channel::turn, 0.05},
+                                                 {Channel::drift, 0.01},
+                                                 {Channel::gyro, 0.01},
+                                                 {Channel::compass, 0.2}};
+  for (const auto& [channel, sd] : kSds) {
+    if (channel == effect.channel) return sd;
   }
+  throw std::invalid_argument(effect.name + " is no common error");
 }
 
 EffectParameters common_error_columns(const std::vector<Recording>& recordings, const Robot& robot,

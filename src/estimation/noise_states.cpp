@@ -228,18 +228,15 @@ class ProcessLayout {
     if (yaw || channel_ == Channel::sighting_yaw) {
       return yaw && (channel_ == Channel::sighting_yaw || channel_ == Channel::delay);
     }
-    switch (channel_) {
-      case Channel::range:
-      case Channel::range_scale:
-        return one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
-      case Channel::bearing:
-        return one.kind == MeasurementKind::direction ||
-               (one.kind == MeasurementKind::view && one.rows == 2);
-      case Channel::truth_heading:
-        return one.kind == MeasurementKind::truth;
-      default:
-        return !is_driven(one.kind);
+    if (channel_ == Channel::range || channel_ == Channel::range_scale) {
+      return one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
     }
+    if (channel_ == Channel::bearing) {
+      return one.kind == MeasurementKind::direction ||
+             (one.kind == MeasurementKind::view && one.rows == 2);
+    }
+    if (channel_ == Channel::truth_heading) return one.kind == MeasurementKind::truth;
+    return !is_driven(one.kind);
   }
 
   [[nodiscard]] ViewVector unit_view(const Measurement& one) const {

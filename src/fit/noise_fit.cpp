@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/noise_fit.hpp"
 
-#include "effects/channel_physics.hpp"
+#include "effects/channel_record.hpp"
 #include "fit/noise_fit.hpp"
 #include "fit/noise_reml.hpp"
 #include "fit/noise_screening.hpp"
@@ -312,27 +312,7 @@ class NoiseFitter {
   }
 
   [[nodiscard]] static std::string source_of(const NoiseComponent& one) {
-    switch (one.process.channel) {
-      case Channel::compass:
-        return "compass";
-      case Channel::range:
-      case Channel::range_scale:
-        return "range";
-      case Channel::bearing:
-        return "bearing";
-      case Channel::sighting_yaw:
-        return "yaw";
-      case Channel::truth_heading:
-        return "truth";
-      case Channel::gyro:
-      case Channel::gyro_scale:
-        return "gyro";
-      case Channel::fix_x:
-      case Channel::fix_y:
-        return "fix";
-      default:
-        return "wheels";
-    }
+    return std::string(record_of(one.process.channel).noise_source);
   }
 
   // ----------------------------------------

@@ -3,6 +3,8 @@
 #include "plot/effect_drawings.hpp"
 
 #include <array>
+#include <string>
+#include <string_view>
 
 namespace trussmap {
 namespace {
@@ -99,7 +101,9 @@ void teeth(Sketch& s, double x, double y) {
   s.text({x + 44, y + 8}, "play", Ink::cause, "start");
 }
 
-void backlash_of(Sketch& s, bool left, bool right) {
+void backlash(Sketch& s, std::string_view part) {
+  const bool left = part != "right";
+  const bool right = part != "left";
   s.robot(
       {70, 85}, 90,
       {.left_ink = left ? Ink::cause : Ink::plain, .right_ink = right ? Ink::cause : Ink::plain});
@@ -107,15 +111,6 @@ void backlash_of(Sketch& s, bool left, bool right) {
   if (right) s.span({106, 60}, {106, 110}, Ink::cause);
   s.text({70, 140}, "to and fro");
   teeth(s, 212, 80);
-}
-void backlash(Sketch& s) {
-  backlash_of(s, true, true);
-}
-void backlash_left(Sketch& s) {
-  backlash_of(s, true, false);
-}
-void backlash_right(Sketch& s) {
-  backlash_of(s, false, true);
 }
 
 void backlash_twist(Sketch& s) {
@@ -126,7 +121,8 @@ void backlash_twist(Sketch& s) {
 }
 
 /// The signal of an encoder, two of its ticks gone.
-void missed_ticks_of(Sketch& s, bool left) {
+void missed_ticks(Sketch& s, std::string_view part) {
+  const bool left = part == "left";
   const double side = left ? -1.0 : 1.0;
   s.robot(
       {58, 118}, 0,
@@ -144,12 +140,6 @@ void missed_ticks_of(Sketch& s, bool left) {
   }
   s.text({286, 42}, left ? "left" : "right", Ink::cause).text({286, 122}, "real", Ink::real);
 }
-void missed_left(Sketch& s) {
-  missed_ticks_of(s, true);
-}
-void missed_right(Sketch& s) {
-  missed_ticks_of(s, false);
-}
 
 void sampling_skew(Sketch& s) {
   for (const double y : {60.0, 110.0}) s.line({70, y}, {300, y}, Ink::plain);
@@ -163,7 +153,9 @@ void sampling_skew(Sketch& s) {
   s.text({185, 36}, "when each wheel is read").text({112, 152}, "later", Ink::cause);
 }
 
-void one_wheel(Sketch& s, int which) {
+/// The part is its number.
+void radius_of_wheel(Sketch& s, std::string_view part) {
+  const int which = part.empty() ? 0 : part.front() - '1';
   s.block({110, 88}, 112, 70, Ink::faint);
   const std::array<Spot, 6> places{
       {{66, 44}, {154, 44}, {66, 132}, {154, 132}, {110, 44}, {110, 132}}};
@@ -172,29 +164,10 @@ void one_wheel(Sketch& s, int which) {
     const bool it = k == which;
     s.block(at, it ? 38 : 26, it ? 20 : 14, it ? Ink::cause : Ink::plain);
   }
-  const Spot at = places[static_cast<std::size_t>(which)];
-  s.text({at.x, at.y < 80 ? at.y - 16 : at.y + 26}, "wheel " + std::to_string(which + 1),
-         Ink::cause);
+  const Spot at = places.at(static_cast<std::size_t>(which));
+  s.text({at.x, at.y < 80 ? at.y - 16 : at.y + 26}, "wheel " + std::string(part), Ink::cause);
   s.wheel(250, 130, 30, Ink::believed).wheel(250, 130, 38, Ink::cause);
   s.line({200, 130}, {300, 130}, Ink::plain).text({250, 152}, "its radius", Ink::cause);
-}
-void wheel_1(Sketch& s) {
-  one_wheel(s, 0);
-}
-void wheel_2(Sketch& s) {
-  one_wheel(s, 1);
-}
-void wheel_3(Sketch& s) {
-  one_wheel(s, 2);
-}
-void wheel_4(Sketch& s) {
-  one_wheel(s, 3);
-}
-void wheel_5(Sketch& s) {
-  one_wheel(s, 4);
-}
-void wheel_6(Sketch& s) {
-  one_wheel(s, 5);
 }
 
 constexpr EffectDrawing kDrawings[] = {{"wheel diameter ratio", wheel_diameter_ratio},
@@ -205,19 +178,11 @@ constexpr EffectDrawing kDrawings[] = {{"wheel diameter ratio", wheel_diameter_r
                                        {"load on both wheels", load_on_both},
                                        {"load on one wheel", load_on_one},
                                        {"tyre drift", tyre_drift},
-                                       {"backlash", backlash},
-                                       {"backlash of the left wheel", backlash_left},
-                                       {"backlash of the right wheel", backlash_right},
+                                       {.name = "backlash", .draw_part = backlash},
                                        {"backlash twist", backlash_twist},
-                                       {"missed ticks", missed_left},
-                                       {"missed ticks of the right wheel", missed_right},
+                                       {.name = "missed ticks", .draw_part = missed_ticks},
                                        {"sampling skew", sampling_skew},
-                                       {"radius of wheel 1", wheel_1},
-                                       {"radius of wheel 2", wheel_2},
-                                       {"radius of wheel 3", wheel_3},
-                                       {"radius of wheel 4", wheel_4},
-                                       {"radius of wheel 5", wheel_5},
-                                       {"radius of wheel 6", wheel_6}};
+                                       {.name = "radius of a wheel", .draw_part = radius_of_wheel}};
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/catalogue_record.hpp"
 #include "plot/effect_drawings.hpp"
-#include "trussmap/catalogue.hpp"
 #include "trussmap/workbench.hpp"
 
 namespace trussmap {
@@ -18,11 +18,12 @@ const EffectDrawing* drawing_named(std::string_view name) {
 }
 
 /// The catalogue's plainest effect of a channel: one that acts everywhere alike, where it has one.
-const CatalogueEntry* plainest(Channel channel) {
-  const CatalogueEntry* found = nullptr;
-  for (const CatalogueEntry& one : catalogue()) {
-    if (one.channel != channel) continue;
-    if (found == nullptr || (found->pattern.front() != "1" && one.pattern.front() == "1")) {
+const CatalogueRecord* plainest(Channel channel) {
+  const CatalogueRecord* found = nullptr;
+  for (const CatalogueRecord& one : catalogue_records()) {
+    if (one.entry.channel != channel) continue;
+    if (found == nullptr ||
+        (found->entry.pattern.front() != "1" && one.entry.pattern.front() == "1")) {
       found = &one;
     }
   }
@@ -32,13 +33,17 @@ const CatalogueEntry* plainest(Channel channel) {
 }  // namespace
 
 std::string effect_drawing(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  if (entry == nullptr) entry = plainest(effect.channel);
-  const EffectDrawing* drawing = entry == nullptr ? nullptr : drawing_named(entry->name);
+  const CatalogueRecord* record = find_record(effect.name);
+  if (record == nullptr) record = plainest(effect.channel);
+  const EffectDrawing* drawing = record == nullptr ? nullptr : drawing_named(record->drawing.of);
   if (drawing == nullptr) return "";
   Sketch sketch;
-  drawing->draw(sketch);
-  return sketch.svg(entry->name);
+  if (drawing->draw_part != nullptr) {
+    drawing->draw_part(sketch, record->drawing.part);
+  } else {
+    drawing->draw(sketch);
+  }
+  return sketch.svg(record->entry.name);
 }
 
 }  // namespace trussmap

@@ -12,8 +12,10 @@
 namespace trussmap {
 
 struct EffectDrawing {
-  std::string_view name;  ///< of the catalogue
-  void (*draw)(Sketch& sketch);
+  std::string_view name;  ///< of an effect of the catalogue, or what its file says
+  void (*draw)(Sketch& sketch) = nullptr;
+  /// Where several effects are drawn alike: of which part ("left", "right", "" = both; "1" ...).
+  void (*draw_part)(Sketch& sketch, std::string_view part) = nullptr;
 };
 
 [[nodiscard]] std::span<const EffectDrawing> drawings_of_wheels();

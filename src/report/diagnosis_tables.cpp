@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "report/diagnosis_tables.hpp"
 
+#include "effects/catalogue_record.hpp"
 #include "plot/fit_charts.hpp"
 #include "report/effect_parts.hpp"
 #include "report/noise_verdict.hpp"
@@ -9,7 +10,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/table.hpp"
 #include "wording/channel_words.hpp"
-#include "wording/explanation_texts.hpp"
+#include "wording/explanations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -182,8 +183,9 @@ PageTable tried_table(const SizedDiagnosis& sized) {
 
 std::vector<std::string> well_known(const SizedDiagnosis& sized) {
   std::vector<std::string> texts;
-  for (const char* name : {"wheel diameter ratio", "wheelbase", "travel scale", "constant creep",
-                           "compass offset", "hard iron", "range scale"}) {
+  for (const CatalogueRecord& record : catalogue_records()) {
+    if (!record.well_known) continue;
+    const std::string_view name = record.entry.name;
     for (const Finding& one : sized.diagnosis.findings) {
       if (one.effect.name != name || one.status != Status::absent) continue;
       const FindingSize& size = size_of(one, sized);

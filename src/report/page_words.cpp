@@ -8,7 +8,7 @@
 #include "trussmap/table.hpp"
 #include "trussmap/workbench.hpp"
 #include "wording/channel_words.hpp"
-#include "wording/explanation_texts.hpp"
+#include "wording/explanations.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -5,7 +5,7 @@
 #include "report/effect_parts.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
-#include "wording/explanation_texts.hpp"
+#include "wording/explanations.hpp"
 
 namespace trussmap {
 

@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/hidden_effects.hpp"
 
+#include "effects/catalogue_record.hpp"
 #include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
 #include "simulation/effect_gains.hpp"
 #include "simulation/motion_variables.hpp"
 #include "simulation/true_motion.hpp"
-#include "trussmap/catalogue.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -33,21 +32,6 @@ constexpr double kUsualLegs = 60.0;   // that the detectable sizes are for
 constexpr double kLeastShare = 0.02;  // of rows in which an effect of a place must act
 constexpr int kMostDraws = 2000;
 
-/// A recording's own scale, rotation or spacing takes these up where no survey fixes them.
-constexpr std::array<std::string_view, 5> kNeedSurvey = {
-    "travel scale", "wheel scale", "compass offset", "constant creep", "loss per start"};
-
-/// Effects whose own traces name something else: tilt looks like hard iron, and a loss larger than
-/// a row's travel makes wheels look as if they had turned round more often.
-constexpr std::array<std::string_view, 5> kMisleading = {"body tilt", "backlash", "backlash twist",
-                                                         "backlash of the left wheel",
-                                                         "backlash of the right wheel"};
-
-template <std::size_t count>
-bool is_among(const std::array<std::string_view, count>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 double four_digits(double value) {
   return std::stod(fmt::format("{:.4g}", value));
 }
@@ -62,11 +46,11 @@ class Draw {
         surveyed_(surveyed),
         variables_(motion_variables(motion, true_rates(motion), robot.geometry.wheelbase)),
         random_(random_stream(seed, Stream::hidden)) {
-    for (const CatalogueEntry& entry : catalogue()) {
+    for (const CatalogueRecord& record : catalogue_records()) {
       // Robots without markers draw from the same list as before there were any.
-      const bool of_yaws = entry.channel == Channel::sighting_yaw;
+      const bool of_yaws = record.entry.channel == Channel::sighting_yaw;
       if (of_yaws && !(robot.markers && surveyed)) continue;
-      if (is_of_drive(entry.channel, robot.geometry)) entries_.push_back(entry);
+      if (is_of_drive(record.entry.channel, robot.geometry)) records_.push_back(&record);
     }
   }
 
@@ -74,8 +58,7 @@ class Draw {
     const std::size_t wanted = uniform(0.0, 1.0) < kSecondShare ? 2 : 1;
     std::vector<Effect> drawn;
     for (int k = 0; k < kMostDraws && drawn.size() < wanted; ++k) {
-      const CatalogueEntry& entry = one_of(entries_);
-      std::optional<Effect> effect = draw(entry);
+      std::optional<Effect> effect = draw(*one_of(records_));
       if (effect && fits(*effect, drawn)) drawn.push_back(std::move(*effect));
     }
     if (drawn.empty()) throw std::invalid_argument("the recording could show no effect");
@@ -93,20 +76,16 @@ class Draw {
     return list[std::min(at, list.size() - 1)];
   }
 
-  [[nodiscard]] bool can_be_shown(const CatalogueEntry& entry) const {
-    const bool of_ranges = entry.channel == Channel::range || entry.channel == Channel::range_scale;
-    const bool of_bearings = entry.channel == Channel::bearing;
-    const bool of_gyro = entry.channel == Channel::gyro || entry.channel == Channel::gyro_scale;
-    const bool needs_survey = is_among(kNeedSurvey, entry.name);
-    const bool needs_compass = entry.channel == Channel::compass || entry.name == "constant creep";
-    // A robot that stands still as it looks shows no delay, and a late stamp shows at a glance.
-    const bool of_fixes = entry.channel == Channel::antenna ||
-                          entry.channel == Channel::antenna_left ||
-                          entry.channel == Channel::fix_delay;
-    return entry.detectable > 0.0 && entry.channel != Channel::delay && !of_fixes &&
-           !is_among(kMisleading, entry.name) && (robot_.compass || !needs_compass) &&
-           (robot_.gyro || !of_gyro) && (robot_.sees_ranges() || !of_ranges) &&
-           (robot_.sees_bearings() || !of_bearings) && (surveyed_ || !needs_survey);
+  [[nodiscard]] bool can_be_shown(const CatalogueRecord& record) const {
+    const Channel channel = record.entry.channel;
+    const bool of_ranges = channel == Channel::range || channel == Channel::range_scale;
+    const bool of_bearings = channel == Channel::bearing;
+    const bool of_gyro = channel == Channel::gyro || channel == Channel::gyro_scale;
+    const bool needs_compass = channel == Channel::compass || record.hidden.needs_compass;
+    return record.entry.detectable > 0.0 && record.hidden.drawn &&
+           (robot_.compass || !needs_compass) && (robot_.gyro || !of_gyro) &&
+           (robot_.sees_ranges() || !of_ranges) && (robot_.sees_bearings() || !of_bearings) &&
+           (surveyed_ || !record.hidden.needs_survey);
   }
 
   /// Two that cannot be told apart, or whose parts cannot, make no fair riddle.
@@ -120,13 +99,11 @@ class Draw {
   }
 
   /// The entry's effect, what is open in it drawn.
-  Effect closed(const CatalogueEntry& entry) {
+  Effect closed(const CatalogueRecord& record) {
+    const CatalogueEntry& entry = record.entry;
     if (entry.of_covariate()) {
-      if (entry.channel == Channel::compass) return catalogue_effect(entry, "lights");
-      if (entry.also_of.empty()) return catalogue_effect(entry, "payload_kg");
-      std::vector<std::string_view> names = entry.also_of;
-      names.emplace_back("temperature_C");
-      return catalogue_effect(entry, one_of(names));
+      const std::vector<std::string_view>& columns = record.hidden.columns;
+      return catalogue_effect(entry, columns.size() == 1 ? columns.front() : one_of(columns));
     }
     if (!entry.has_parameters()) return catalogue_effect(entry);
     std::vector<ShapeParameter> parameters;
@@ -142,16 +119,16 @@ class Draw {
     return catalogue_effect(entry, parameters);
   }
 
-  std::optional<Effect> draw(const CatalogueEntry& entry) {
-    if (!can_be_shown(entry)) return std::nullopt;
-    Effect effect = closed(entry);
+  std::optional<Effect> draw(const CatalogueRecord& record) {
+    if (!can_be_shown(record)) return std::nullopt;
+    const CatalogueEntry& entry = record.entry;
+    Effect effect = closed(record);
     const double angle = uniform(0.0, 2.0 * std::numbers::pi);
     const double legs = std::max(1.0, static_cast<double>(motion_.stops.size()) - 1.0);
     const double size = entry.detectable * uniform(kLeastFactor, kLargestFactor) *
                         std::max(1.0, std::sqrt(kUsualLegs / legs));
     effect.coefficients = {angle < std::numbers::pi ? -1.0 : 1.0};
-    // A loss is one: the wheels turn, the robot does not follow.
-    if (entry.channel == Channel::advance) effect.coefficients = {-1.0};
+    if (record.hidden.sign != 0) effect.coefficients = {static_cast<double>(record.hidden.sign)};
     if (effect.shape.size() == 2) effect.coefficients = {std::cos(angle), std::sin(angle)};
     const std::vector<double> g = channel_gains({effect}, variables_).at(entry.channel);
     const auto [least, most] = std::minmax_element(g.begin(), g.end());
@@ -176,7 +153,7 @@ class Draw {
   bool surveyed_;
   MotionVariables variables_;
   std::mt19937_64 random_;
-  std::vector<CatalogueEntry> entries_;  ///< of the robot's drive
+  std::vector<const CatalogueRecord*> records_;  ///< of the robot's drive
 };
 
 }  // namespace

@@ -18,19 +18,6 @@ struct Scale {
 };
 [[nodiscard]] Scale scale_of(Channel channel);
 
-struct Phrase {
-  const char* subject;  ///< followed by the size
-  const char* more;
-  const char* less;
-};
-[[nodiscard]] Phrase phrase_of(Channel channel);
-
-/// What a channel's error is called in a name: "turning error".
-[[nodiscard]] const char* noun_of(Channel channel);
-
-/// What it is called at an axis: "turning, measured too little by".
-[[nodiscard]] std::string channel_in_words(Channel channel);
-
 /// Charts and pages show % for "", degrees for rad, mm for m.
 struct ShownUnit {
   double factor = 1.0;

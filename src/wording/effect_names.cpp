@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/catalogue_record.hpp"
+#include "effects/channel_record.hpp"
 #include "effects/place.hpp"
-#include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
 
@@ -18,11 +19,6 @@ std::optional<double> threshold_of(const Effect& effect) {
   return effect.shape.size() == 1 ? effect.shape.front().parameter("speed") : std::nullopt;
 }
 
-/// The left wheel's has no wheel in its name, for the sake of models that have it.
-std::string known_name(const CatalogueEntry& entry) {
-  return entry.name == "missed ticks" ? "missed ticks of the left wheel" : std::string(entry.name);
-}
-
 }  // namespace
 
 std::string formula_of(const Effect& effect) {
@@ -30,26 +26,27 @@ std::string formula_of(const Effect& effect) {
 }
 
 std::string short_name(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  return entry == nullptr ? name_in_words(effect) : known_name(*entry);
+  const CatalogueRecord* record = find_record(effect.name);
+  return record == nullptr ? name_in_words(effect) : std::string(record->known_as);
 }
 
 std::string name_in_words(const Effect& effect) {
   const std::string& name = effect.name;
-  if (const CatalogueEntry* entry = find_entry(name)) {
+  if (const CatalogueRecord* record = find_record(name)) {
+    const CatalogueEntry& entry = record->entry;
     const std::size_t open = name.rfind(" (");
     const std::string rest =
         open == std::string::npos ? "" : name.substr(open + 2, name.size() - open - 3);
-    if (entry->of_covariate() && !rest.empty()) {
-      return fmt::format("{} with {}", entry->name, variables_in_words(rest));
+    if (entry.of_covariate() && !rest.empty()) {
+      return fmt::format("{} with {}", entry.name, variables_in_words(rest));
     }
-    if (const std::optional<double> v0 = threshold_of(effect); v0 && entry->has_parameters()) {
-      return fmt::format("{} above {} m/s", known_name(*entry), two_digits(*v0));
+    if (const std::optional<double> v0 = threshold_of(effect); v0 && entry.has_parameters()) {
+      return fmt::format("{} above {} m/s", record->known_as, two_digits(*v0));
     }
     const std::optional<Vector2> place = place_of(effect);
     const std::optional<double> r = place ? effect.shape.front().parameter("r") : std::nullopt;
-    if (r && entry->has_parameters()) {
-      return fmt::format("{} at {}, radius {} m", entry->name, place_text(*place), two_digits(*r));
+    if (r && entry.has_parameters()) {
+      return fmt::format("{} at {}, radius {} m", entry.name, place_text(*place), two_digits(*r));
     }
     return name;
   }
@@ -58,10 +55,10 @@ std::string name_in_words(const Effect& effect) {
   const std::string rest = name.substr(channel.size());
   const std::optional<Vector2> place = place_of(effect);
   if ((rest == " at a place" || rest == " within a circle") && place) {
-    return fmt::format("{} at {}", noun_of(effect.channel), place_text(*place));
+    return fmt::format("{} at {}", record_of(effect.channel).noun, place_text(*place));
   }
   if (!rest.starts_with(" with ") && !rest.starts_with(" of its own")) return name;
-  return noun_of(effect.channel) + variables_in_words(rest);
+  return std::string(record_of(effect.channel).noun) + variables_in_words(rest);
 }
 
 }  // namespace trussmap

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/channel_record.hpp"
 #include "effects/place.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
@@ -25,7 +26,7 @@ std::string with_error(double value, double sd, const char* unit) {
 
 std::string sentence(Channel channel, double value, double sd) {
   const Scale scale = scale_of(channel);
-  const Phrase phrase = phrase_of(channel);
+  const ChannelPhrase& phrase = record_of(channel).phrase;
   return fmt::format("{} {} {}", phrase.subject,
                      with_error(scale.factor * std::abs(value), scale.factor * sd, scale.unit),
                      value < 0.0 ? phrase.less : phrase.more);
@@ -47,9 +48,9 @@ std::vector<std::string> words_of(const std::string& text) {
 
 /// "too much or too little", "to the left or right", "larger or smaller than nominal": what both
 /// begin and end with is said once.
-std::string either_way(const std::string& one, const std::string& other) {
-  const std::vector<std::string> a = words_of(one);
-  const std::vector<std::string> b = words_of(other);
+std::string either_way(std::string_view one, std::string_view other) {
+  const std::vector<std::string> a = words_of(std::string(one));
+  const std::vector<std::string> b = words_of(std::string(other));
   const std::size_t most = std::min(a.size(), b.size());
   std::size_t begin = 0;
   while (begin < most && a[begin] == b[begin]) ++begin;
@@ -127,11 +128,11 @@ std::optional<std::string> curve_in_words(const Effect& effect) {
     for (std::size_t j = 0; j < bell.size(); ++j) values[j] += effect.coefficients[k] * bell[j];
   }
   const Scale scale = scale_of(effect.channel);
-  const Phrase phrase = phrase_of(effect.channel);
+  const ChannelPhrase& phrase = record_of(effect.channel).phrase;
   constexpr double kNothing = 1e-3;  // of the most
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value));
-  std::string text = phrase.subject;
+  std::string text(phrase.subject);
   for (std::size_t j = 0; j < values.size(); ++j) {
     const std::string size =
         std::abs(values[j]) < kNothing * most
@@ -165,8 +166,8 @@ std::string size_in_words(const Effect& effect, double least, double most) {
                        two_digits(100.0 * std::abs(larger)), larger < 0.0 ? "smaller" : "larger");
   }
   const Scale scale = scale_of(channel);
-  const Phrase phrase = phrase_of(channel);
-  std::string subject = phrase.subject;
+  const ChannelPhrase& phrase = record_of(channel).phrase;
+  std::string subject(phrase.subject);
   const bool event = channel == Channel::advance || channel == Channel::rotate;
   if (effect.shape.size() == 1) {
     subject = with_event_named(std::move(subject), effect.shape.front());
@@ -174,8 +175,8 @@ std::string size_in_words(const Effect& effect, double least, double most) {
   return fmt::format("{} {}{}{} {}", subject, is_plain_factor(effect) || event ? "" : "up to ",
                      two_digits(scale.factor * std::abs(extreme)), scale.unit,
                      both            ? either_way(phrase.more, phrase.less)
-                     : extreme < 0.0 ? phrase.less
-                                     : phrase.more);
+                     : extreme < 0.0 ? std::string(phrase.less)
+                                     : std::string(phrase.more));
 }
 
 std::vector<std::string> unfitted_in_words(const Model& model) {
@@ -208,7 +209,7 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
             ? std::hypot(effect.coefficients[0] * sd[0], effect.coefficients[1] * sd[1]) / size
             : 0.0;
     const Scale scale = scale_of(channel);
-    const Phrase phrase = phrase_of(channel);
+    const ChannelPhrase& phrase = record_of(channel).phrase;
     return fmt::format(
         "{} up to {} {}, and as much the other way, as {} goes round", phrase.subject,
         with_error(scale.factor * size, scale.factor * error, scale.unit), phrase.more, *round);

@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "wording/explanations.hpp"
+
+#include "effects/catalogue_record.hpp"
 #include "effects/channel_physics.hpp"
-#include "trussmap/catalogue.hpp"
 #include "trussmap/workbench.hpp"
 #include "wording/channel_words.hpp"
-#include "wording/explanation_texts.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -14,21 +15,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Of "radius of wheel 3" and its like: which one.
-constexpr std::string_view kWheels[] = {"first", "second", "third", "fourth", "fifth", "sixth"};
-
-Explanation of_wheel(std::size_t wheel) {
-  const std::string_view which = kWheels[wheel];
-  return {fmt::format("The {} wheel is larger or smaller than believed: each move in which it "
-                      "turns pulls the robot to its side.",
-                      which),
-          fmt::format("Measure how far the {} wheel rolls in ten turns, under the usual load, and "
-                      "look at its tread or rollers.",
-                      which),
-          "Straight lines ahead, back and to the sides, and full turns on the spot: each wheel has "
-          "another share in each."};
-}
 
 std::string with(std::string_view text, const std::string& covariate) {
   std::string result(text);
@@ -88,18 +74,15 @@ Explanation of_own(const Effect& effect) {
 }  // namespace
 
 Explanation explanation_of(const Effect& effect) {
-  const CatalogueEntry* entry = find_entry(effect.name);
-  if (entry == nullptr) return of_own(effect);
-  if (const auto wheel = wheel_of(entry->channel)) return of_wheel(*wheel);
-  const ExplanationText* known = explanation_text(entry->name);
-  if (known == nullptr) return of_own(effect);
+  const CatalogueRecord* record = find_record(effect.name);
+  if (record == nullptr) return of_own(effect);
+  const ExplanationText& known = record->explanation;
   const std::string covariate = goes_with(effect);
-  const auto against = [known](double value) { return value * known->sign < 0.0; };
+  const auto against = [&known](double value) { return value * known.sign < 0.0; };
   if (!effect.coefficients.empty() && std::ranges::all_of(effect.coefficients, against)) {
-    return {with(known->otherwise, covariate), "", with(known->drive, covariate), true};
+    return {with(known.otherwise, covariate), "", with(known.drive, covariate), true};
   }
-  return {with(known->does, covariate), with(known->look, covariate),
-          with(known->drive, covariate)};
+  return {with(known.does, covariate), with(known.look, covariate), with(known.drive, covariate)};
 }
 
 const CatalogueEntry* usual_entry(const Effect& effect) {

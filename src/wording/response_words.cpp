@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "effects/channel_record.hpp"
 #include "geometry/units.hpp"
 #include "trussmap/evidence.hpp"
 #include "trussmap/wording.hpp"
@@ -28,7 +29,7 @@ ResponseAxes axes_of(const Response& response) {
   const std::string name = response.variable == kPlace ? "distance from its place"
                                                        : variable_in_words(response.variable);
   return {across.name.empty() ? name : name + " [" + across.name + "]", across.factor,
-          channel_in_words(response.channel) + " [" + up.name + "]", up.factor};
+          std::string(record_of(response.channel).axis) + " [" + up.name + "]", up.factor};
 }
 
 std::string name_in_words(const TrendEvidence& trend) {

@@ -5,6 +5,8 @@
 // once more.
 #include "effects/channel_physics.hpp"
 
+#include "effects/channel_record.hpp"
+
 #include <cmath>
 #include <random>
 
@@ -217,6 +219,35 @@ TEST(Channels, ProportionsHaveOnePrior) {
                                 wheel1, wheel6, steer_gain}) {
     EXPECT_EQ(facts_of(channel).prior_sd, 0.1) << name_of(channel);
   }
+}
+
+/// A row that lacks something would show as an empty word, or as an effect that does nothing.
+TEST(Channels, HaveACompleteRowEachInTheirOrder) {
+  for (std::size_t k = 0; k < channel_records().size(); ++k) {
+    const ChannelRecord& one = channel_records()[k];
+    EXPECT_EQ(static_cast<std::size_t>(one.facts.channel), k) << one.facts.name;
+    EXPECT_FALSE(one.facts.does_what.empty() || one.noun.empty() || one.axis.empty() ||
+                 one.phrase.subject.empty() || one.phrase.more.empty() || one.phrase.less.empty())
+        << one.facts.name;
+    const bool views = one.target.kind == ActsOn::views;
+    EXPECT_EQ(views, one.view_pattern != nullptr) << one.facts.name;
+    EXPECT_EQ(views, one.target.sightings || one.target.truth || one.target.fixes)
+        << one.facts.name;
+    EXPECT_NE(one.view_pattern != nullptr,
+              one.wheel_pattern != nullptr || one.gyro_pattern != nullptr)
+        << one.facts.name;
+    EXPECT_EQ(one.gyro_pattern == nullptr, one.yaw_rate_without == nullptr) << one.facts.name;
+  }
+}
+
+TEST(Channels, OfSingleWheelsAreCalledByTheirNumber) {
+  const ChannelRecord& third = record_of(Channel::wheel3);
+  EXPECT_EQ(third.facts.name, "wheel3");
+  EXPECT_EQ(third.facts.does_what, "travel of the third wheel");
+  EXPECT_EQ(third.phrase.subject, "the third wheel rolls");
+  EXPECT_EQ(third.noun, "third wheel's error");
+  EXPECT_EQ(third.axis, "third wheel rolls further than it says by");
+  EXPECT_EQ(record_of(Channel::wheel6).noun, "sixth wheel's error");
 }
 
 TEST(Channels, HaveOneNameEach) {
