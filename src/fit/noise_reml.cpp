@@ -5,7 +5,6 @@
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"
-#include "linalg/dense.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
@@ -428,43 +427,21 @@ double NoiseReml::scatter(const Sizes& sizes) {
   return value;
 }
 
-NoiseReml::Parts NoiseReml::parts(const Sizes& sizes) {
+RestrictedLikelihood NoiseReml::likelihood(const Sizes& sizes) {
   whiten(sizes);
-  double sum = scatter(sizes);
-  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    if (left_out_[k]) continue;
-    const Measurement& one = problem_.measurements[k];
-    sum -= 2.0 * one.whitener.diagonal().head(one.rows).array().log().sum();
-  }
-  for (const NoiseState& state : problem_.noise_states) sum += 2.0 * std::log(state.sd);
+  const double within = scatter(sizes);
   RecordingState at = fit_.adjustment.state;
   at.noise.resize(0);  // states of other processes, or in other units
-  const double chi2 = system_->linearise(at, fit_.adjustment.coefficients);
-  const RecordingSystem::Step step = system_->solve_step();
-  sum += system_->log_determinant() + chi2 - step.predicted;
-  if (nuisance_.cols() == 0) return {sum, 0.0, 0.0};
-  const Eigen::MatrixXd& M = system_->border();
-  const Eigen::Index nodes = step.nodes.size();
-  Eigen::MatrixXd right(nodes + M.cols(), nuisance_.cols());
-  right.topRows(nodes) = system_->transposed_times(nuisance_);
-  right.bottomRows(M.cols()) = M.transpose() * nuisance_;
-  const Eigen::MatrixXd S =
-      nuisance_.transpose() * nuisance_ - right.transpose() * system_->solve(right);
-  Eigen::VectorXd left = system_->residuals() + system_->times(step.nodes);
-  if (M.cols() > 0) left += M * step.coefficients;
-  const Eigen::VectorXd g = nuisance_.transpose() * left;
-  const DenseLdlt factor(S);
-  return {sum, g.dot(factor.solve(g)), factor.log_determinant()};
+  return restricted_likelihood(*system_, problem_, at, fit_.adjustment.coefficients, nuisance_,
+                               within);
 }
 
 double NoiseReml::minus_two_log(const Sizes& sizes) {
-  const Parts all = parts(sizes);
-  return all.without - all.taken + all.information;
+  return likelihood(sizes).integrated();
 }
 
 double NoiseReml::minus_two_log_at_best(const Sizes& sizes) {
-  const Parts all = parts(sizes);
-  return all.without - all.taken;
+  return likelihood(sizes).at_likeliest();
 }
 
 }  // namespace trussmap

@@ -1,22 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Restricted likelihood of a fit as a function of its noise.
+// Restricted likelihood of a fit (restricted_likelihood.hpp) as a function of its noise.
 //
 //   component   white: covariance per unit of its variance, measurement by measurement
 //               process: states (noise_states.hpp), with an sd and perhaps a length
 //
-//   -2 log R = log|S| + log|X' S^-1 X| + least chi^2
-//
-// To which the scatter of the compass readings within segments is added (reading_scatter.hpp).
-//
-// With states as further unknowns that is sum log of all rows' variances + log|normal matrix| +
-// chi^2 (Henderson 1950; Harville 1977). The least chi^2 is that of the problem linearised at the
-// fit: one step of Gauss-Newton.
+// To -2 log R the scatter of the compass readings within segments is added (reading_scatter.hpp).
 #pragma once
 
 #include "estimation/noise_states.hpp"
-#include "estimation/recording_system.hpp"
+#include "estimation/restricted_likelihood.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/fit_state.hpp"
 #include "fit/reading_scatter.hpp"
@@ -107,13 +101,7 @@ class NoiseReml {
   [[nodiscard]] Matrix4 gyro_covariance(const Measurement& one, const Noise& noise) const;
   /// What no component changes.
   [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
-  /// Without nuisance; and with it, what its columns take away and log|their information|.
-  struct Parts {
-    double without = 0.0;
-    double taken = 0.0;
-    double information = 0.0;
-  };
-  [[nodiscard]] Parts parts(const Sizes& sizes);
+  [[nodiscard]] RestrictedLikelihood likelihood(const Sizes& sizes);
   void whiten(const Sizes& sizes);
 
   const FitState& fit_;
