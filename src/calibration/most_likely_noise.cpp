@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "calibration/restricted_likelihood.hpp"
+#include "calibration/most_likely_noise.hpp"
 
 #include "estimation/recording_adjustment.hpp"
 #include "estimation/restricted_likelihood.hpp"
