@@ -4,7 +4,7 @@
 
 #include "calibration/heading_offset.hpp"
 #include "calibration/measured_distance.hpp"
-#include "calibration/restricted_likelihood.hpp"
+#include "calibration/most_likely_noise.hpp"
 #include "calibration/truth_alignment.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/recording_adjustment.hpp"

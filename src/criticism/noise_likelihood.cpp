@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/noise_likelihood.hpp"
 
-#include "linalg/dense.hpp"
+#include "estimation/restricted_likelihood.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,16 +16,10 @@ NoiseLikelihood::NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nui
     : fit_(fit),
       nuisance_stated_(nuisance),
       problem_(fit.problem),
-      system_(problem_, fit.columns.border),
-      left_out_(fit.problem.measurements.size(), false) {
+      system_(problem_, fit.columns.border) {
   if (nuisance_stated_.cols() == 0) nuisance_stated_.resize(system_.rows(), 0);
   nuisance_ = nuisance_stated_;
-  std::vector<double> weights(problem_.measurements.size(), 1.0);
-  for (const int k : fit.adjustment.left_out) {
-    left_out_[idx(k)] = true;
-    weights[idx(k)] = 0.0;
-  }
-  system_.set_weights(weights);
+  system_.set_weights(weights_without(fit.adjustment.left_out, problem_.measurements.size()));
   for (const Measurement& one : problem_.measurements) {
     Matrix4 colour = Matrix4::Zero();
     colour.topLeftCorner(one.rows, one.rows) =
@@ -36,28 +30,9 @@ NoiseLikelihood::NoiseLikelihood(const FitState& fit, const Eigen::MatrixXd& nui
 }
 
 double NoiseLikelihood::minus_two_log() {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-    if (left_out_[k]) continue;
-    const Measurement& one = problem_.measurements[k];
-    sum -= 2.0 * one.whitener.diagonal().head(one.rows).array().log().sum();
-  }
-  const double chi2 = system_.linearise(fit_.adjustment.state, fit_.adjustment.coefficients);
-  const RecordingSystem::Step step = system_.solve_step();
-  sum += system_.log_determinant() + chi2 - step.predicted;
-  if (nuisance_.cols() == 0) return sum;
-  const Eigen::MatrixXd& M = system_.border();
-  const Eigen::Index nodes = step.nodes.size();
-  Eigen::MatrixXd right(nodes + M.cols(), nuisance_.cols());
-  right.topRows(nodes) = system_.transposed_times(nuisance_);
-  right.bottomRows(M.cols()) = M.transpose() * nuisance_;
-  const Eigen::MatrixXd S =
-      nuisance_.transpose() * nuisance_ - right.transpose() * system_.solve(right);
-  Eigen::VectorXd left = system_.residuals() + system_.times(step.nodes);
-  if (M.cols() > 0) left += M * step.coefficients;
-  const Eigen::VectorXd g = nuisance_.transpose() * left;
-  const DenseLdlt factor(S);
-  return sum + factor.log_determinant() - g.dot(factor.solve(g));
+  return restricted_likelihood(system_, problem_, fit_.adjustment.state,
+                               fit_.adjustment.coefficients, nuisance_)
+      .integrated();
 }
 
 double NoiseLikelihood::deviance(const NoiseLaw& law, double variance) {

@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Restricted likelihood of a fit under a noise law.
-//
-//   -2 log R(l) = log|S| + log|X' S^-1 X| + least chi^2,    S = stated covariance + l V
-//
-// The least chi^2 is that of the linearised problem: one step of Gauss-Newton.
+// Restricted likelihood of a fit (restricted_likelihood.hpp) under a noise law, whose covariance of
+// the rows is the stated one + l V.
 #pragma once
 
 #include "criticism/noise_laws.hpp"
@@ -43,7 +40,6 @@ class NoiseLikelihood {
   RecordingProblem problem_;
   RecordingSystem system_;
   std::vector<Matrix4> colour_;  ///< inverse of the stated whitener
-  std::vector<bool> left_out_;
   double stated_ = 0.0;
 };
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_descent.hpp"
 
+#include "geometry/largest_coordinate.hpp"
+#include "linalg/damped_step.hpp"
 #include "linalg/dense.hpp"
 #include "linalg/loose_nodes.hpp"
 
@@ -11,16 +13,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Largest coordinate or heading, at least 1: what rounding is relative to.
-double scale_of(const RecordingState& state) {
-  double scale = 1.0;
-  for (const Vector2& at : state.landmarks) scale = std::max(scale, at.cwiseAbs().maxCoeff());
-  for (const Pose& pose : state.poses) {
-    scale = std::max({scale, std::abs(pose.x), std::abs(pose.y), std::abs(pose.heading)});
-  }
-  return scale;
-}
 
 /// A recording problem as levenberg_marquardt wants it.
 struct Problem {
@@ -32,26 +24,22 @@ struct Problem {
 
   RecordingSystem& system;
 
-  double linearise(const State& state) { return system.linearise(state.nodes, state.coefficients); }
+  double linearise(const State& state, bool hold_headings) {
+    return system.linearise(state.nodes, state.coefficients, hold_headings);
+  }
   Step solve_step(double damping) { return system.solve_step(damping); }
-  static double predicted(const Step& step, double /*damping*/) { return step.predicted; }
   State moved(const State& state, const Step& step) {
     return {system.moved(state.nodes, step), state.coefficients + step.coefficients};
   }
-  State relaxed(const State& state) {
-    system.linearise(state.nodes, state.coefficients, true);
-    double damping = 0.0;
-    return {system.moved(state.nodes, solve_damped(*this, damping)), state.coefficients};
+  State placed(const State& state, const Step& step) {
+    return {system.moved(state.nodes, step), state.coefficients};
   }
   static bool rounding(const State& state, const Step& step) {
-    constexpr double kRounding = 1e-15;
-    const auto within = [](const Eigen::VectorXd& change, double scale) {
-      return change.size() == 0 || change.cwiseAbs().maxCoeff() <= kRounding * scale;
-    };
-    return within(step.nodes, scale_of(state.nodes)) &&
-           (step.coefficients.cwiseAbs().array() <=
-            kRounding * state.coefficients.cwiseAbs().array())
-               .all();
+    const double size =
+        std::max(largest_coordinate(state.nodes.landmarks), largest_coordinate(state.nodes.poses));
+    return is_rounding(step.nodes, size) && (step.coefficients.cwiseAbs().array() <=
+                                             kRounding * state.coefficients.cwiseAbs().array())
+                                                .all();
   }
 };
 

@@ -3,6 +3,7 @@
 #include "estimation/recording_robust.hpp"
 
 #include "estimation/pose_reckoner.hpp"
+#include "estimation/robust_weights.hpp"
 #include "linalg/dense.hpp"
 #include "statistics/thinned.hpp"
 
@@ -14,13 +15,6 @@
 
 namespace trussmap {
 namespace {
-
-/// Weight of the truncated square bent by mu (Yang et al., eq. 14).
-double bent_weight(double squared_error, double gate, double mu) {
-  if (squared_error <= mu / (mu + 1.0) * gate) return 1.0;
-  if (squared_error >= (mu + 1.0) / mu * gate) return 0.0;
-  return std::sqrt(gate * mu * (mu + 1.0) / squared_error) - mu;
-}
 
 /// A landmark without any sighting would be tied to nothing.
 void keep_one_per_landmark(const RecordingProblem& problem,
@@ -65,19 +59,15 @@ void keep_tied(const RecordingProblem& problem, const std::vector<double>& squar
   }
 }
 
-}  // namespace
-
 std::vector<double> soft_weights(const RecordingProblem& problem,
                                  const std::vector<double>& squared_errors, double gate) {
   std::vector<double> weights(squared_errors.size(), 1.0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
     if (!may_be_wrong(problem.measurements[k].kind)) continue;
-    weights[k] = std::pow(gate / (squared_errors[k] + gate), 2);
+    weights[k] = soft_weight(squared_errors[k], gate);
   }
   return weights;
 }
-
-namespace {
 
 /// Of loops, or of what else may be wrong.
 double share_of_kind_beyond(const RecordingProblem& problem,
@@ -113,6 +103,8 @@ bool are_few_beyond(const RecordingProblem& problem, const std::vector<double>& 
              std::max(most, kMostLoopsOut);
 }
 
+constexpr double kRoughTolerance = 1e-6;  // of descents on the way, whose weights change again
+
 constexpr double kSamePlace = 0.5;  // m
 
 constexpr std::size_t kMostCompared = 25;  // places of a landmark, with one another
@@ -122,6 +114,12 @@ std::ptrdiff_t votes(const std::vector<Vector2>& places, const Vector2& place) {
     return (other - place).norm() < kSamePlace;
   });
 }
+
+constexpr double kTruncated = 1e9;  // mu: the truncated square itself
+
+/// Narrowing has told most wrong ones from right ones: the bending begins in its midst, and ends
+/// where hardly any error is so near the gate (by a thousandth of it) that it counts in part.
+constexpr Bending kBending{.first = 0.1, .last = 1e3};
 
 /// The robust fit, stage by stage.
 class RobustDescent {
@@ -141,15 +139,12 @@ class RobustDescent {
   void narrow(double wanted, double most) {
     constexpr double kStep = 4.0;
     constexpr int kSteps = 4;
+    constexpr DescentOptions kRound{10, kRoughTolerance, kNegligibleDecrease};
     RobustFit best = fit_;
     best.gate = std::numeric_limits<double>::infinity();
     double gate = wanted * std::pow(kStep, kSteps);
     for (int step = 0; step <= kSteps; ++step, gate /= kStep) {
-      for (int round = 0; round < 2; ++round) {
-        system_.linearise(fit_.state, fit_.coefficients);
-        system_.set_weights(soft_weights(problem_, system_.squared_errors(), gate));
-        descend_by(10);
-      }
+      go_on_from(descend_softly(system_, problem_, position(), gate, 2, kRound));
       fit_.gate = gate;
       if (are_few_beyond(problem_, system_.squared_errors(), gate, most)) best = fit_;
     }
@@ -158,18 +153,14 @@ class RobustDescent {
 
   /// The weights are bent until each is 0 or 1.
   void harden() {
-    constexpr double kBendFaster = 1.4;
-    constexpr double kFirst = 0.1;
-    constexpr double kNearlyTruncated = 1e3;
     fit_.weights.assign(problem_.measurements.size(), 1.0);
     if (std::isfinite(fit_.gate)) {
       system_.linearise(fit_.state, fit_.coefficients);
-      double mu = kFirst;
-      while (mu < kNearlyTruncated) {
+      const auto weigh_on = [this](double mu) {
         weigh(mu);
-        descend_by(2);
-        mu *= kBendFaster;
-      }
+        return true;  // a landmark's best one keeps its weight, however wrong
+      };
+      bend(kBending, weigh_on, [this] { descend_by(2); });
       sort_out();
       look_again();
     }
@@ -178,16 +169,15 @@ class RobustDescent {
 
   /// Lets in what fits and takes out what does not, until nothing changes.
   void look_again() {
-    constexpr int kMostRounds = 5;
-    for (int round = 0; round < kMostRounds; ++round) {
+    reconsider([this](int round) {
       system_.set_weights(fit_.weights);
       descend_by(10);
       // Where chi^2 is least, and once more when the best of them are in.
       if (round < 2 && readmit()) descend_by(10);
       const std::vector<double> before = fit_.weights;
       if (std::isfinite(fit_.gate)) sort_out();
-      if (fit_.weights == before) break;
-    }
+      return fit_.weights != before;
+    });
     system_.set_weights(fit_.weights);
   }
 
@@ -195,8 +185,16 @@ class RobustDescent {
 
  private:
   void descend_by(int steps) {
-    RecordingDescent next = descend(system_, std::move(fit_.state), std::move(fit_.coefficients),
-                                    {steps, 1e-6, kNegligibleDecrease});
+    go_on_from(descend(system_, std::move(fit_.state), std::move(fit_.coefficients),
+                       {steps, kRoughTolerance, kNegligibleDecrease}));
+  }
+
+  /// Where the fit stands, to go on from.
+  [[nodiscard]] RecordingDescent position() {
+    return {std::move(fit_.state), std::move(fit_.coefficients)};
+  }
+
+  void go_on_from(RecordingDescent next) {
     fit_.state = std::move(next.state);
     fit_.coefficients = std::move(next.coefficients);
   }
@@ -253,7 +251,7 @@ class RobustDescent {
 
   /// In or out.
   void sort_out() {
-    weigh(1e9);
+    weigh(kTruncated);
     for (double& weight : fit_.weights) weight = weight > 0.0 ? 1.0 : 0.0;
     keep_tied(problem_, system_.squared_errors(), fit_.weights);
   }
@@ -273,6 +271,17 @@ class RobustDescent {
 };
 
 }  // namespace
+
+RecordingDescent descend_softly(RecordingSystem& system, const RecordingProblem& problem,
+                                RecordingDescent fit, double gate, int rounds,
+                                const DescentOptions& options) {
+  for (int round = 0; round < rounds; ++round) {
+    system.linearise(fit.state, fit.coefficients);
+    system.set_weights(soft_weights(problem, system.squared_errors(), gate));
+    fit = descend(system, std::move(fit.state), std::move(fit.coefficients), options);
+  }
+  return fit;
+}
 
 void heed_majority(const RecordingProblem& problem, RecordingState& state) {
   std::vector<std::vector<Vector2>> places(state.landmarks.size());

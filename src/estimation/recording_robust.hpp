@@ -4,13 +4,8 @@
 // Wrong sightings: a label misread, a landmark that somebody moved for a while; fixes by an echo;
 // loops that take one place for another. All that follows of sightings holds of these as well.
 //
-//   r^2    squared whitened error of a sighting
-//   c^2    the largest r^2 that a right one should have: `gate`
-//   w      a sighting's weight, 0 ... 1
-//
 // Minimises sum min(r^2, c^2) over the sightings plus the plain squares of all else, by graduated
-// non-convexity (Yang, Antonante, Tzoumas & Carlone, "Graduated non-convexity for robust spatial
-// perception", 2020), in stages:
+// non-convexity (robust_weights.hpp, which says what r^2, c^2 and the weights are), in stages:
 //
 //   heed     landmarks go to where most of their sightings have them
 //   narrow   Geman and McClure's weights, their c from 16 times as wide (in sds) down to the one
@@ -30,10 +25,12 @@
 
 namespace trussmap {
 
-/// Weights of Geman and McClure for what may be wrong, (gate/(r^2 + gate))^2, and 1 for all else.
-[[nodiscard]] std::vector<double> soft_weights(const RecordingProblem& problem,
-                                               const std::vector<double>& squared_errors,
-                                               double gate);
+/// Rounds of Geman and McClure's weights of what may be wrong (1 of all else), each at the fit of
+/// the round before. The last weights stay set in the system.
+[[nodiscard]] RecordingDescent descend_softly(RecordingSystem& system,
+                                              const RecordingProblem& problem, RecordingDescent fit,
+                                              double gate, int rounds,
+                                              const DescentOptions& options);
 
 /// Share of what may be wrong, loops apart, whose squared error is beyond a limit.
 [[nodiscard]] double share_beyond(const RecordingProblem& problem,

@@ -286,11 +286,8 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
     fit = descend(system, robust.state, robust.coefficients, kRough);
   } else if (std::isfinite(options.gate)) {
     heed_majority(part.problem, fit.state);
-    for (int round = 0; round < 4; ++round) {
-      system.linearise(fit.state, fit.coefficients);
-      system.set_weights(soft_weights(part.problem, system.squared_errors(), options.gate));
-      fit = descend(system, fit.state, fit.coefficients, {5, 1e-4, kNegligibleDecrease});
-    }
+    constexpr DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
+    fit = descend_softly(system, part.problem, std::move(fit), options.gate, 4, kRound);
   } else {
     fit = descend(system, fit.state, fit.coefficients, kRough);
   }

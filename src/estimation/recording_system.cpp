@@ -3,8 +3,10 @@
 #include "estimation/recording_system.hpp"
 
 #include "estimation/gyro_excess.hpp"
+#include "estimation/held_unknowns.hpp"
 #include "estimation/noise_states.hpp"
 #include "estimation/student_tails.hpp"
+#include "linalg/damped_step.hpp"
 #include "linalg/dense.hpp"
 #include "parallel/parallel_for.hpp"
 
@@ -120,18 +122,25 @@ int RecordingSystem::unknowns() const {
          static_cast<int>(unknown_.size());
 }
 
+/// Of poses: the first one's part that nothing measures, and headings where these are held.
+std::vector<std::uint8_t> RecordingSystem::held_nodes(bool hold_headings) const {
+  std::vector<std::uint8_t> held(idx(problem_.nodes()), held_nothing);
+  for (int node = problem_.landmark_count(); node < problem_.pose_end(); ++node) {
+    if (hold_headings) held[idx(node)] = held_heading;
+  }
+  if (gauge_.hold_heading) held[idx(problem_.pose_node(0))] |= held_heading;
+  if (gauge_.hold_position) held[idx(problem_.pose_node(0))] |= held_position;
+  return held;
+}
+
 double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
                                   bool hold_headings) {
-  const auto heading_held = [&](int node) {
-    return node >= problem_.landmark_count() && !problem_.is_orientation(node) &&
-           (hold_headings || (gauge_.hold_heading && node == problem_.pose_node(0)));
-  };
-  const auto place_held = [&](int node) {
-    return gauge_.hold_position && node == problem_.pose_node(0);
-  };
-  const auto take_held_out = [&](int node, RowsByNode& rows) {
-    if (heading_held(node)) rows.col(2).setZero();
-    if (place_held(node)) rows.leftCols<2>().setZero();
+  const std::vector<std::uint8_t> held = held_nodes(hold_headings);
+  const auto take_held_out = [&held](int node, RowsByNode& rows) {
+    if (node < 0 || held[idx(node)] == held_nothing) return;
+    for (int k = 0; k < 3; ++k) {
+      if (is_held(held[idx(node)], k)) rows.col(k).setZero();
+    }
   };
   normal_.clear();
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
@@ -181,12 +190,7 @@ double RecordingSystem::linearise(const RecordingState& state, const Eigen::Vect
     if (!J_[k].states.empty()) add_states_to_normal(k, J_[k], error);
   }
   linearise_states(noise);
-  for (int node = problem_.landmark_count(); node < problem_.pose_end(); ++node) {
-    const double place = place_held(node) ? 1.0 : 0.0;
-    const double heading = heading_held(node) ? 1.0 : 0.0;
-    if (place + heading == 0.0) continue;
-    normal_.add_diagonal<3>(node, Eigen::Vector3d(place, place, heading).asDiagonal());
-  }
+  hold_unknowns(normal_, gradient_, held);
   hold_unseen_orientations();
   double chi2 = residuals_.squaredNorm();
   B_ = transposed_times(M_);
@@ -461,15 +465,7 @@ void RecordingSystem::build_schur(double damping) {
 }
 
 RecordingSystem::Step RecordingSystem::solve_step(double damping) {
-  const Eigen::VectorXd diagonal = normal_.diagonal();
-  if (damping > 0.0) normal_.set_diagonal((1.0 + damping) * diagonal);
-  try {
-    if (normal_.unknowns() > 0) normal_.factorise();
-  } catch (const NotPositiveDefinite&) {
-    normal_.set_diagonal(diagonal);
-    throw;
-  }
-  normal_.set_diagonal(diagonal);
+  factorise_damped(normal_, damping);
   build_schur(damping);
   Step step;
   step.nodes = -gradient_;
@@ -479,9 +475,8 @@ RecordingSystem::Step RecordingSystem::solve_step(double damping) {
     step.coefficients = schur_inverse_ * (-border_gradient_ - B_.transpose() * step.nodes);
     step.nodes -= A_inverse_B_ * step.coefficients;
   }
-  step.predicted = -step.nodes.dot(gradient_) - step.coefficients.dot(border_gradient_) +
-                   damping * (step.nodes.cwiseAbs2().dot(diagonal) +
-                              step.coefficients.cwiseAbs2().dot(D_.diagonal()));
+  step.predicted = predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping) +
+                   predicted_decrease(step.coefficients, border_gradient_, D_.diagonal(), damping);
   return step;
 }
 

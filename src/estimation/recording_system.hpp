@@ -25,6 +25,7 @@
 #include "estimation/recording_problem.hpp"
 #include "linalg/block_system.hpp"
 
+#include <cstdint>
 #include <vector>
 
 namespace trussmap {
@@ -184,6 +185,7 @@ class RecordingSystem {
   void add_block(int node, const Eigen::MatrixXd& block);
   void add_block_between(int pair, const Eigen::MatrixXd& block);
   [[nodiscard]] Vector4 moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets);
+  [[nodiscard]] std::vector<std::uint8_t> held_nodes(bool hold_headings) const;
   void hold_unseen_orientations();
   void add_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void evaluate_effect_parameters(std::size_t k, const MeasurementRows& rows);

@@ -1,66 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Restricted likelihood of a fit as a function of its noise.
+// Restricted likelihood of a fit (restricted_likelihood.hpp) as a function of its noise.
 //
 //   component   white: covariance per unit of its variance, measurement by measurement
 //               process: states (noise_states.hpp), with an sd and perhaps a length
 //
-//   -2 log R = log|S| + log|X' S^-1 X| + least chi^2
-//
-// To which the scatter of the compass readings within segments is added (reading_scatter.hpp).
-//
-// With states as further unknowns that is sum log of all rows' variances + log|normal matrix| +
-// chi^2 (Henderson 1950; Harville 1977). The least chi^2 is that of the problem linearised at the
-// fit: one step of Gauss-Newton.
+// To -2 log R the scatter of the compass readings within segments is added (reading_scatter.hpp).
 #pragma once
 
 #include "estimation/noise_states.hpp"
-#include "estimation/recording_system.hpp"
+#include "estimation/restricted_likelihood.hpp"
 #include "estimation/segment_noise.hpp"
 #include "fit/fit_state.hpp"
+#include "fit/noise_components.hpp"
 #include "fit/reading_scatter.hpp"
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace trussmap {
-
-struct NoiseComponent {
-  std::string name;
-  std::string unit;
-  /// White: which of Noise it scales together; empty: a process.
-  std::vector<double Noise::*> white;
-  NoiseProcess process;
-  double stated = 0.0;  ///< sd that was stated, 0: none
-
-  [[nodiscard]] bool lasts() const { return white.empty(); }
-};
-
-/// All zero.
-[[nodiscard]] Noise silent_noise();
-/// k of both wheels, root mean square, m^(1/2).
-[[nodiscard]] double mean_wheel_noise(const Noise& noise);
-/// "compass, correlated in t".
-[[nodiscard]] std::string name_of_source(const NoiseProcess& process);
-/// The same channel and process, whatever their sizes and lengths.
-[[nodiscard]] bool is_same_source(const NoiseProcess& a, const NoiseProcess& b);
-
-/// Of the fit's equipment: the white sources of this noise, and its processes.
-[[nodiscard]] std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& noise);
-[[nodiscard]] std::vector<NoiseComponent> processes_of(const Noise& noise);
-/// What may be missing: optional white laws and processes of this equipment, lengths to start from.
-[[nodiscard]] std::vector<NoiseComponent> candidate_components(const FitState& fit,
-                                                               const Noise& noise);
-
-/// What a noise has of a component: 0 nothing.
-[[nodiscard]] double size_in(const Noise& noise, const NoiseComponent& component);
-
-/// Noise with a component's sd (and length).
-void take_into(Noise& noise, const NoiseComponent& component, double sd, double length);
 
 class NoiseReml {
  public:
@@ -107,13 +68,7 @@ class NoiseReml {
   [[nodiscard]] Matrix4 gyro_covariance(const Measurement& one, const Noise& noise) const;
   /// What no component changes.
   [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
-  /// Without nuisance; and with it, what its columns take away and log|their information|.
-  struct Parts {
-    double without = 0.0;
-    double taken = 0.0;
-    double information = 0.0;
-  };
-  [[nodiscard]] Parts parts(const Sizes& sizes);
+  [[nodiscard]] RestrictedLikelihood likelihood(const Sizes& sizes);
   void whiten(const Sizes& sizes);
 
   const FitState& fit_;

@@ -16,11 +16,12 @@
 // A problem offers
 //
 //   State, Step
-//   double linearise(state)      chi^2, and H and g there
-//   Step solve_step(damping)     throws NotPositiveDefinite where H + m D is not
-//   double predicted(step, damping)   what the quadratic model says the step takes off chi^2
+//   double linearise(state, hold_headings)   chi^2, and H and g there, of positions alone or of all
+//   Step solve_step(damping)     throws NotPositiveDefinite where H + m D is not; its `predicted`
+//   is
+//                                what the quadratic model says that it takes off chi^2
 //   State moved(state, step)
-//   State relaxed(state)         the best positions for the state's headings; may linearise
+//   State placed(state, step)    the same of a step with headings held: of nothing but positions
 //   bool rounding(state, step)   the step is nothing but rounding
 #pragma once
 
@@ -36,11 +37,11 @@ namespace trussmap {
 template <typename Problem>
 concept LeastSquaresProblem = requires(Problem& problem, const typename Problem::State& state,
                                        const typename Problem::Step& step, double damping) {
-  { problem.linearise(state) } -> std::same_as<double>;
+  { problem.linearise(state, true) } -> std::same_as<double>;
   { problem.solve_step(damping) } -> std::same_as<typename Problem::Step>;
-  { problem.predicted(step, damping) } -> std::same_as<double>;
+  { step.predicted } -> std::convertible_to<double>;
   { problem.moved(state, step) } -> std::same_as<typename Problem::State>;
-  { problem.relaxed(state) } -> std::same_as<typename Problem::State>;
+  { problem.placed(state, step) } -> std::same_as<typename Problem::State>;
   { problem.rounding(state, step) } -> std::same_as<bool>;
 };
 
@@ -61,6 +62,10 @@ struct DescentResult {
 /// The step for the first damping from `damping` on with which the system can be solved.
 template <LeastSquaresProblem Problem>
 typename Problem::Step solve_damped(Problem& problem, double& damping);
+
+/// The best positions for the state's headings. The problem is left linearised elsewhere.
+template <LeastSquaresProblem Problem>
+typename Problem::State relaxed(Problem& problem, const typename Problem::State& state);
 
 /// The problem is left linearised at the result.
 template <LeastSquaresProblem Problem>
@@ -99,17 +104,24 @@ typename Problem::Step solve_damped(Problem& problem, double& damping) {
 }
 
 template <LeastSquaresProblem Problem>
+typename Problem::State relaxed(Problem& problem, const typename Problem::State& state) {
+  problem.linearise(state, true);
+  double damping = 0.0;
+  return problem.placed(state, solve_damped(problem, damping));
+}
+
+template <LeastSquaresProblem Problem>
 DescentResult<typename Problem::State> levenberg_marquardt(Problem& problem,
                                                            typename Problem::State start,
                                                            const DescentOptions& options) {
   using namespace damping_rule;
   DescentResult<typename Problem::State> result{std::move(start)};
-  result.chi2 = problem.linearise(result.state);
+  result.chi2 = problem.linearise(result.state, false);
   double damping = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {
     stop_if_asked();
     const typename Problem::Step step = solve_damped(problem, damping);
-    const double predicted = problem.predicted(step, damping);
+    const double predicted = step.predicted;
     const bool rounding = problem.rounding(result.state, step);
     if (rounding && damping == 0.0) {
       result.converged = true;
@@ -117,10 +129,10 @@ DescentResult<typename Problem::State> levenberg_marquardt(Problem& problem,
     }
     bool last = damping == 0.0 && predicted <= options.tolerance * result.chi2 + options.negligible;
     typename Problem::State next = problem.moved(result.state, step);
-    double chi2 = problem.linearise(next);
+    double chi2 = problem.linearise(next, false);
     if (!last && result.chi2 - chi2 < kPoor * predicted) {
-      next = problem.relaxed(next);
-      chi2 = problem.linearise(next);
+      next = relaxed(problem, next);
+      chi2 = problem.linearise(next, false);
     }
     const double decrease = result.chi2 - chi2;
     if (decrease >= 0.0) {
@@ -133,7 +145,7 @@ DescentResult<typename Problem::State> levenberg_marquardt(Problem& problem,
         damping = raised(damping);
       }
     } else {
-      problem.linearise(result.state);
+      problem.linearise(result.state, false);
       last = last || rounding || predicted <= kBottom * result.chi2 + options.negligible;
       if (damping >= kMost) {
         break;

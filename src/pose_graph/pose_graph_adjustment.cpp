@@ -270,8 +270,7 @@ std::vector<Eigen::MatrixXd> marginal_covariances(const PoseGraph& graph,
       unit.middleRows(H.offset(vertex), size).setIdentity();
       covariance = H.solve(unit).middleRows(H.offset(vertex), size);
       for (int k = 0; k < size; ++k) {  // what is pinned within a free vertex is known exactly
-        const std::uint8_t bit = k < 2 ? held_position : held_heading;
-        if ((held[idx(vertex)] & bit) != 0) covariance(k, k) = 0.0;
+        if (is_held(held[idx(vertex)], k)) covariance(k, k) = 0.0;
       }
     }
     result.push_back(covariance);

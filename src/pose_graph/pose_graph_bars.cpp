@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What each bar adds to chi^2, forces and stiffness: the inner loop of the adjustment.
-#include "pose_graph/pose_graph_gauge.hpp"
+#include "estimation/held_unknowns.hpp"
 #include "pose_graph/pose_graph_system.hpp"
 
 #include <cmath>
@@ -77,9 +77,8 @@ void PoseGraphSystem::add_stiffness(const Bar3& bar, int pair, Matrix3& B, doubl
     mask(bar.from, near_block);
     mask(bar.to, B);
     for (int k = 0; k < 3; ++k) {
-      const std::uint8_t bit = k < 2 ? held_position : held_heading;
-      if ((pinned_[idx(bar.from)] & bit) != 0) coupling.row(k).setZero();
-      if ((pinned_[idx(bar.to)] & bit) != 0) coupling.col(k).setZero();
+      if (is_held(pinned_[idx(bar.from)], k)) coupling.row(k).setZero();
+      if (is_held(pinned_[idx(bar.to)], k)) coupling.col(k).setZero();
     }
   }
   normal_.add_diagonal(bar.from, near_block);
@@ -137,8 +136,7 @@ double PoseGraphSystem::add_bar(const Bar2& bar, int pair, const std::vector<Pos
 template <int N>
 void PoseGraphSystem::mask(int vertex, Eigen::Matrix<double, N, N>& diagonal) const {
   for (int k = 0; k < N; ++k) {
-    const std::uint8_t bit = k < 2 ? held_position : held_heading;
-    if ((pinned_[idx(vertex)] & bit) == 0) continue;
+    if (!is_held(pinned_[idx(vertex)], k)) continue;
     diagonal.row(k).setZero();
     diagonal.col(k).setZero();
   }
@@ -150,21 +148,6 @@ void PoseGraphSystem::add_force(int vertex, const Eigen::Vector3d& force) {
 
 void PoseGraphSystem::add_force(int vertex, const Vector2& force) {
   if (normal_.size(vertex) > 0) gradient_.segment<2>(normal_.offset(vertex)) += force;
-}
-
-/// A pinned unknown gets the equation 1 * step = 0.
-void PoseGraphSystem::hold_pinned() {
-  Eigen::VectorXd diagonal;
-  for (int v = 0; v < static_cast<int>(pinned_.size()); ++v) {
-    for (int k = 0; k < normal_.size(v); ++k) {
-      const std::uint8_t bit = k < 2 ? held_position : held_heading;
-      if ((pinned_[idx(v)] & bit) == 0) continue;
-      if (diagonal.size() == 0) diagonal = normal_.diagonal();
-      diagonal[normal_.offset(v) + k] = 1.0;
-      gradient_[normal_.offset(v) + k] = 0.0;
-    }
-  }
-  if (diagonal.size() > 0) normal_.set_diagonal(diagonal);
 }
 
 template double PoseGraphSystem::evaluate<true>(const std::vector<Pose>&);

@@ -2,49 +2,30 @@
 // SPDX-License-Identifier: MIT
 #include "pose_graph/pose_graph_descent.hpp"
 
+#include "geometry/largest_coordinate.hpp"
+#include "linalg/damped_step.hpp"
 #include "linalg/loose_nodes.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace trussmap {
 namespace {
 
-/// Largest coordinate or heading, at least 1: what rounding is relative to.
-double scale_of(const std::vector<Pose>& estimates) {
-  double scale = 1.0;
-  for (const Pose& pose : estimates) {
-    scale = std::max({scale, std::abs(pose.x), std::abs(pose.y), std::abs(pose.heading)});
-  }
-  return scale;
-}
-
 /// A pose graph as levenberg_marquardt wants it.
 struct Problem {
   using State = std::vector<Pose>;
-  using Step = Eigen::VectorXd;
+  using Step = PoseGraphSystem::Step;
 
   PoseGraphSystem& system;
 
-  double linearise(const State& state) { return system.linearise(state); }
+  double linearise(const State& state, bool hold_headings) {
+    return system.linearise(state, hold_headings);
+  }
   Step solve_step(double damping) { return system.solve_step(damping); }
-  double predicted(const Step& step, double damping) {
-    double decrease = -step.dot(system.gradient());
-    if (damping > 0.0) {
-      decrease += damping * step.cwiseAbs2().dot(system.normal_equations().diagonal());
-    }
-    return decrease;
-  }
-  State moved(const State& state, const Step& step) { return system.moved(state, step); }
-  State relaxed(const State& state) {
-    system.linearise(state, true);
-    double damping = 0.0;
-    return system.moved(state, solve_damped(*this, damping));
-  }
+  State moved(const State& state, const Step& step) { return system.moved(state, step.nodes); }
+  State placed(const State& state, const Step& step) { return moved(state, step); }
   static bool rounding(const State& state, const Step& step) {
-    constexpr double kRounding = 1e-15;
-    return step.size() == 0 || step.cwiseAbs().maxCoeff() <= kRounding * scale_of(state);
+    return is_rounding(step.nodes, largest_coordinate(state));
   }
 };
 
@@ -58,7 +39,8 @@ Descent descend(PoseGraphSystem& system, std::vector<Pose> start, const DescentO
 }
 
 std::vector<Pose> fit_positions(PoseGraphSystem& system, const std::vector<Pose>& estimates) {
-  return Problem{system}.relaxed(estimates);
+  Problem problem{system};
+  return relaxed(problem, estimates);
 }
 
 std::vector<int> find_loose_vertices(PoseGraphSystem& system, const std::vector<Pose>& estimates) {

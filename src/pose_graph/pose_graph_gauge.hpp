@@ -15,6 +15,7 @@
 // sees one point) by the solver, which notices that the factor breaks down.
 #pragma once
 
+#include "estimation/held_unknowns.hpp"
 #include "trussmap/pose_graph.hpp"
 
 #include <cstdint>
@@ -22,11 +23,8 @@
 
 namespace trussmap {
 
-/// What of a vertex is held, bit by bit.
-enum Held : std::uint8_t { held_nothing = 0, held_position = 1, held_heading = 2, held_all = 3 };
-
-/// Per vertex. Throws SolveError, naming vertices of each, if the graph falls into parts of which
-/// one has no fixed vertex.
+/// Per vertex, bits of Held. Throws SolveError, naming vertices of each, if the graph falls into
+/// parts of which one has no fixed vertex.
 [[nodiscard]] std::vector<std::uint8_t> choose_gauge(const PoseGraph& graph);
 
 /// Number of unknowns that are left.

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "estimation/robust_weights.hpp"
 #include "linalg/connected_parts.hpp"
 #include "pose_graph/pose_graph_chain.hpp"
 #include "pose_graph/pose_graph_descent.hpp"
@@ -14,8 +15,7 @@
 namespace trussmap {
 namespace {
 
-constexpr double kBend = 1.4;  // per round
-constexpr int kRounds = 60;
+constexpr int kRounds = 60;  // of weights: mu grows by 1.4^60 = 6e8, which is the truncated square
 constexpr DescentOptions kRound{10, 1e-6};
 
 bool is_loop_closure(const PoseEdge& edge) {
@@ -37,17 +37,17 @@ class Graduation {
     double largest = 0.0;
     for (const std::size_t k : closures_) largest = std::max(largest, square(k, estimates));
     if (largest <= gate_) return estimates;
-    double mu = gate_ / (2.0 * largest - gate_);
-    for (int round = 0; round < kRounds; ++round, mu *= kBend) {
+    const auto weigh = [&](double mu) {
       bool graded = false;
       for (const std::size_t k : closures_) {
-        weights[k] = weight(square(k, estimates), mu);
+        weights[k] = bent_weight(square(k, estimates), gate_, mu);
         graded = graded || (weights[k] > 0.0 && weights[k] < 1.0);
       }
       system_.set_weights(weights);
-      estimates = descend(system_, std::move(estimates), kRound).estimates;
-      if (!graded && round > 0) break;
-    }
+      return graded;
+    };
+    bend({.first = first_bend(largest, gate_), .most_rounds = kRounds}, weigh,
+         [&] { estimates = descend(system_, std::move(estimates), kRound).estimates; });
     return estimates;
   }
 
@@ -80,12 +80,6 @@ class Graduation {
     const PoseEdge& at = graph_.pose_edges[edge];
     const Eigen::Vector3d e = edge_error(at, estimates[idx(at.from)], estimates[idx(at.to)]);
     return e.dot(at.information * e);
-  }
-
-  [[nodiscard]] double weight(double square, double mu) const {
-    if (square <= mu / (mu + 1.0) * gate_) return 1.0;
-    if (square >= (mu + 1.0) / mu * gate_) return 0.0;
-    return std::sqrt(gate_ * mu * (mu + 1.0) / square) - mu;
   }
 
   const PoseGraph& graph_;
@@ -145,7 +139,6 @@ std::string describe(const PoseGraph& graph, const std::vector<int>& left_out) {
 }  // namespace
 
 RobustAdjustment adjust_robustly(const PoseGraph& graph, const RobustOptions& options) {
-  constexpr int kReconsiderations = 5;
   RobustAdjustment result;
   result.adjustment = adjust(graph, options.adjustment);
   Graduation graduation(graph, options.gate);
@@ -156,13 +149,12 @@ RobustAdjustment adjust_robustly(const PoseGraph& graph, const RobustOptions& op
   const bool all_is_better = graduation.truncated(from_all) <= graduation.truncated(from_odometry);
   const std::vector<Pose>& best = all_is_better ? from_all : from_odometry;
   std::vector<int> left_out = dispensable(graph, graduation.outside(best));
-  // The fit of what is kept may find room for an edge that was out, and the reverse.
-  for (int round = 0; round < kReconsiderations; ++round) {
+  reconsider([&](int) {
     result.left_out = left_out;
     result.adjustment = adjust(without(graph, left_out), options.adjustment);
     left_out = dispensable(graph, graduation.outside(result.adjustment.estimates));
-    if (left_out == result.left_out) break;
-  }
+    return left_out != result.left_out;
+  });
   if (!result.left_out.empty()) {
     result.adjustment.warnings.insert(result.adjustment.warnings.begin(),
                                       describe(graph, result.left_out));

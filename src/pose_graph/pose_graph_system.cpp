@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "pose_graph/pose_graph_system.hpp"
 
-#include "pose_graph/pose_graph_gauge.hpp"
+#include "estimation/held_unknowns.hpp"
+#include "linalg/damped_step.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -96,30 +97,18 @@ double PoseGraphSystem::linearise(const std::vector<Pose>& estimates, bool hold_
   normal_.clear();
   gradient_.setZero(normal_.unknowns());
   const double chi2 = evaluate<true>(estimates);
-  hold_pinned();
+  hold_unknowns(normal_, gradient_, pinned_);
   return chi2;
 }
 
-const Eigen::VectorXd& PoseGraphSystem::solve_step(double damping) {
-  step_ = -gradient_;
-  if (normal_.unknowns() == 0) return step_;
-  if (damping > 0.0) {
-    const Eigen::VectorXd diagonal = normal_.diagonal();
-    // What has no stiffness at all cannot be damped by a share of it.
-    const double floor = 1e-9 * diagonal.maxCoeff();
-    normal_.set_diagonal(diagonal + damping * diagonal.cwiseMax(floor));
-    try {
-      normal_.factorise();
-    } catch (...) {
-      normal_.set_diagonal(diagonal);
-      throw;
-    }
-    normal_.set_diagonal(diagonal);
-  } else {
-    normal_.factorise();
-  }
-  normal_.solve_in_place(step_);
-  return step_;
+PoseGraphSystem::Step PoseGraphSystem::solve_step(double damping) {
+  constexpr double kLeastStiffness = 1e-9;  // of the largest, to be damped by
+  Step step{-gradient_};
+  if (normal_.unknowns() == 0) return step;
+  factorise_damped(normal_, damping, kLeastStiffness);
+  normal_.solve_in_place(step.nodes);
+  step.predicted = predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping);
+  return step;
 }
 
 std::vector<Pose> PoseGraphSystem::moved(const std::vector<Pose>& estimates,

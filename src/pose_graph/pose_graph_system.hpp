@@ -40,9 +40,13 @@ class PoseGraphSystem {
   /// Multiplies the information of every edge, in the order of pairs(), from now on.
   void set_weights(const std::vector<double>& weights);
 
+  struct Step {
+    Eigen::VectorXd nodes;   ///< dX, in the normal equations' order
+    double predicted = 0.0;  ///< decrease of chi^2 by the linear model
+  };
   /// Solves (H + damping diag H) dX = -g (a diagonal of at least 1e-9 of its largest). Throws
   /// NotPositiveDefinite. May be called again with another damping for the same linearisation.
-  const Eigen::VectorXd& solve_step(double damping = 0.0);
+  [[nodiscard]] Step solve_step(double damping = 0.0);
 
   /// Twice the energy that a small displacement of all unknowns would store, to first order:
   /// sum (dX_j - T dX_i)' B (dX_j - T dX_i), bar by bar, which keeps digits that dX' H dX loses.
@@ -89,7 +93,6 @@ class PoseGraphSystem {
   void add_stiffness(const Bar3& bar, int pair, Matrix3& B, double dx, double dy);
   void add_force(int vertex, const Eigen::Vector3d& force);
   void add_force(int vertex, const Vector2& force);
-  void hold_pinned();
   template <int N>
   void mask(int vertex, Eigen::Matrix<double, N, N>& diagonal) const;
 
@@ -105,7 +108,6 @@ class PoseGraphSystem {
   std::vector<int> vertex_of_;
   BlockSystem normal_;
   Eigen::VectorXd gradient_;
-  Eigen::VectorXd step_;
 };
 
 }  // namespace trussmap

@@ -150,7 +150,7 @@ TEST(PoseGraphSystem, WithHeadingsHeldOneStepIsTheBestOfAllPositions) {
   PoseGraphSystem system(graph, held);
   std::vector<Pose> at = random_estimates(3.0, 1.0, 4);
   system.linearise(at, true);
-  const std::vector<Pose> best = system.moved(at, system.solve_step());
+  const std::vector<Pose> best = system.moved(at, system.solve_step().nodes);
   for (int k = 0; k < 4; ++k) EXPECT_EQ(best[idx(k)].heading, at[idx(k)].heading);
   system.linearise(best, true);
   EXPECT_LT(system.gradient().norm(), 1e-11);

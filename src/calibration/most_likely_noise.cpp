@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "calibration/restricted_likelihood.hpp"
+#include "calibration/most_likely_noise.hpp"
 
 #include "estimation/recording_adjustment.hpp"
-#include "estimation/recording_system.hpp"
+#include "estimation/restricted_likelihood.hpp"
 
 #include <cmath>
 
@@ -16,15 +16,13 @@ namespace {
 /// -2 log of the restricted likelihood, but for constants.
 double restricted_loss(const RecordingProblem& problem, const EffectParameters& parameters,
                        const RecordingState& start) {
-  const RecordingAdjustment best = adjust_from(start, problem, parameters);
-  double loss = best.chi2;
-  for (const Measurement& one : problem.measurements) {
-    for (int k = 0; k < one.rows; ++k) loss -= 2.0 * std::log(std::abs(one.whitener(k, k)));
-  }
+  RecordingAdjustmentOptions options;
+  options.landmark_uncertainties = false;
+  const RecordingAdjustment best = adjust_from(start, problem, parameters, options);
   RecordingSystem system(problem, parameters);
   system.linearise(best.state, best.coefficients);
   system.factorise();
-  return loss + system.log_determinant();
+  return best.chi2 + log_determinants(system, problem);
 }
 
 /// Minimum near `start`, in turns along the sum and the difference of the two coordinates.
