@@ -50,7 +50,7 @@ struct ModelRecordings {
 /// Each as with_wheels makes it.
 void take_wheels(std::vector<Recording>& recordings, const Robot& robot);
 
-/// Reads them, and thins out frames whose errors last from one to the next (lasting_errors.hpp).
+/// Reads them, and thins out frames whose errors last from one to the next (fit_model.hpp).
 /// Throws InputError, with the model file's line where an effect cannot be applied.
 [[nodiscard]] ModelRecordings read_model_recordings(const ModelRecordingsOptions& options);
 

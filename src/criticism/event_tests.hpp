@@ -21,7 +21,7 @@
 // Where several places are tried, the best counts, and its p-value is times the number of
 // independent tests that they are worth (Galwey 2009). Scores are judged against the dispersion
 // that the event leaves, phi = max(1, (chi^2 - score)/(dof - own)). What sits in one measurement's
-// rows costs no solve (truss/selected_inverse.hpp); only landmarks' steps and sessions do.
+// rows costs no solve (linalg/selected_inverse.hpp); only landmarks' steps and sessions do.
 //
 // One event shows in several places: a wrong sighting in the legs on both sides, a bump at a leg's
 // end in the next one's turn. The one of least p-value - the likeliest for its freedom - comes

@@ -300,11 +300,16 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   std::copy(fit.state.poses.begin(), fit.state.poses.end(), layer.poses().begin());
   const double lost = share_beyond(part.problem, system.squared_errors(), options.gate);
   if (fit.coefficients.size() == 0) return lost;
-  system.factorise();
+  const KnownCoefficients prior = prior_of(layer.border());
+  try {
+    system.factorise();
+  } catch (const NotPositiveDefinite&) {  // rounding has eaten what the stretch says of them
+    layer.coefficients() = {fit.coefficients, prior.covariance};
+    return lost;
+  }
   // A misfit makes them less certain, but never less than they were at first.
   const double dispersion =
       std::max(1.0, fit.chi2 / std::max(1, system.rows() - system.unknowns()));
-  const KnownCoefficients prior = prior_of(layer.border());
   Eigen::MatrixXd covariance = dispersion * system.coefficient_covariance();
   for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
     const double ratio = std::sqrt(std::min(1.0, prior.covariance(k, k) / covariance(k, k)));

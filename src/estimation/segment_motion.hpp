@@ -15,7 +15,7 @@
 //   m = heading + (sum of reading errors - S)/n
 //
 // so the covariance of (x, y, a, S) is carried from row to row like that of (x, y, a): a reading
-// adds the present heading error to S. Rows are arcs (odometry/arc.hpp), in closed form.
+// adds the present heading error to S. Rows are arcs (trussmap/arc.hpp), in closed form.
 //
 // Physical effects change rows in a pattern per coefficient: what one unit of it adds to the row's
 // forward travel, sideways slip and turn, and to the compass reading at the row's end. Their exact

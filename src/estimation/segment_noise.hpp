@@ -4,7 +4,7 @@
 // The noise of a segment, row by row, linearised where it is believed to be.
 //
 //   s_k, n_k   recorded step of row k (x, y, turn in the row's frame), and what it lacks: the true
-//              step is s_k + n_k, n_k ~ N(0, Q_k), Q_k as odometry/arc.hpp
+//              step is s_k + n_k, n_k ~ N(0, Q_k), Q_k as trussmap/arc.hpp
 //   h(n)       the segment's four numbers (segment_motion.hpp) of the steps s + n
 //   z          the same numbers as the unknowns have them:  z = h(n) - (0, 0, 0, mean reading
 //   error)

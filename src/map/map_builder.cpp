@@ -65,6 +65,8 @@ void check_tied(const LandmarkGraph& map) {
 
 void check_landmark(int number, int count) {
   if (number >= 0 && number < count) return;
+  if (count == 0)
+    throw std::invalid_argument("the map has no landmark yet, expected start() before");
   throw std::invalid_argument(
       joined("the map has no landmark number ", number, ", expected 0 to ", count - 1));
 }

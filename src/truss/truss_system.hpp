@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The equations of a plane truss, K u = f over the joints that are not held: assembled, factorised
-// and solved here, for single load cases (trussmap/truss.hpp), for measured trusses
-// (measured_truss.hpp) and as the start of a live factor (map/exact_increments.hpp).
+// and solved here, for single load cases (trussmap/truss.hpp) and for measured trusses
+// (measured_truss.hpp).
 //
 //   K   sum over bars of [B -B; -B B], two unknowns per free joint
 //

@@ -12,6 +12,7 @@
 #include "trussmap/wording.hpp"
 
 #include <cmath>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -346,6 +347,15 @@ INSTANTIATE_TEST_SUITE_P(
         Practice{"g", {{"answer", Channel::turn, {"abs(turn_rate)"}, {-0.045}}}}, Practice{"h", {}},
         Practice{"i", {}}, Practice{"j", {{"answer", Channel::compass, {"turn_rate"}, {-0.036}}}}),
     [](const auto& which) { return which.param.folder; });
+
+/// Between two rows the clock was set on by 55 years: what is left of the rest still makes a fit.
+TEST(ModelFit, AClockThatWasSetOnLeavesAFit) {
+  TRUSSMAP_NEEDS_SHARED("data/reports");
+  const std::filesystem::path folder = testing::shared("data/reports/time-in-ntp");
+  const FitState fit = fit_recordings({read_recording(folder)}, read_model(folder / "model.toml"));
+  EXPECT_EQ(landmark_places(fit).size(), 9U);
+  EXPECT_TRUE(std::isfinite(fit.adjustment.chi2));
+}
 
 TEST(SlowModelFit, IntervalsCoverAndChi2IsWhatChanceMakesIt) {
   // 500 recordings, seeds 1 to 500, effects in turn. A coverage of 95 % comes out with an sd of

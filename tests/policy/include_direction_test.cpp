@@ -4,7 +4,7 @@
 // Rooms build on each other in one direction, and what is behind their doors stays there. Every
 // #include of the project is read:
 //
-//   src/ROOM          rooms further up in kRooms, and public headers of these
+//   src/ROOM          rooms further up in the table of rooms, and public headers of these
 //   include/trussmap  public headers and the libraries that users have to have
 //   apps, bench       public headers alone
 #include "policy/source_files.hpp"
@@ -28,13 +28,22 @@ namespace fs = std::filesystem;
 using testing::source_files;
 using testing::text_of;
 
-/// From the foundations up; a room includes from itself and from those before it.
-const std::vector<std::string> kRooms = {
-    "parallel",   "geometry", "text",       "files",     "statistics",  "linalg",
-    "recording",  "effects",  "odometry",   "truss",     "map",         "store",
-    "estimation", "fit",      "pose_graph", "build_map", "calibration", "validation",
-    "criticism",  "fleet",    "workbench",  "wording",   "check",       "simulation",
-    "experiment", "plot",     "report",     "io",        "distributed"};
+/// From the foundations up; a room includes from itself and from those before it: the table of
+/// docs/reading-the-code.md.
+const std::vector<std::string>& rooms() {
+  static const std::vector<std::string> all = [] {
+    static const std::regex kRow(R"(\n\| `(\w+)` \|)");
+    std::string text = text_of("docs/reading-the-code.md");
+    text.erase(0, text.find("| room | subject |"));
+    text.erase(text.find("\n\n"));
+    std::vector<std::string> found;
+    for (std::sregex_iterator row(text.begin(), text.end(), kRow), end; row != end; ++row) {
+      found.push_back((*row)[1].str());
+    }
+    return found;
+  }();
+  return all;
+}
 
 /// Rooms that must not know of all before them. A simulator that shared the estimators' formulas
 /// would prove nothing about them; the truss is structural mechanics and knows no robots.
@@ -128,7 +137,7 @@ std::vector<Include> includes_of(const std::string& text) {
 }
 
 bool is_room(const std::string& name) {
-  return std::find(kRooms.begin(), kRooms.end(), name) != kRooms.end();
+  return std::find(rooms().begin(), rooms().end(), name) != rooms().end();
 }
 
 /// "planar" of "trussmap/planar.hpp".
@@ -140,8 +149,8 @@ std::optional<std::string> door_of(const std::string& target) {
 
 bool may_include(const std::string& room, const std::string& other) {
   if (const auto only = kOnly.find(room); only != kOnly.end()) return only->second.contains(other);
-  return std::find(kRooms.begin(), kRooms.end(), other) <=
-         std::find(kRooms.begin(), kRooms.end(), room);
+  return std::find(rooms().begin(), rooms().end(), other) <=
+         std::find(rooms().begin(), rooms().end(), room);
 }
 
 /// The room that an include comes from, if it is ours.
@@ -250,7 +259,7 @@ TEST(IncludeDirection, ApplicationsUsePublicHeadersAlone) {
 std::vector<std::string> map_library_sources() {
   static const std::regex kSources(R"(target_sources\(trussmap_map PRIVATE([^)]*)\))");
   std::vector<std::string> found;
-  for (const std::string& room : kRooms) {
+  for (const std::string& room : rooms()) {
     const fs::path list = fs::path("src") / room / "CMakeLists.txt";
     if (!fs::exists(fs::path(TRUSSMAP_SOURCE_DIR) / list)) continue;
     const std::string text = text_of(list);

@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <optional>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -48,6 +50,45 @@ TEST(SourceText, EverySourceNamesItsLicence) {
                                             "tests",   "cmake", "python/src"};
   for (const fs::path& file : source_files(folders, {".hpp", ".cpp", ".cmake", ".sh"})) {
     EXPECT_TRUE(names_licence(text_of(file))) << file << " lacks the two SPDX lines at its top";
+  }
+}
+
+/// Files that the comments of a source name, with their lines.
+std::vector<std::pair<int, std::string>> files_in_comments(const std::string& text) {
+  static const std::regex kFile(R"((^|[^\w./<-])((\w[\w-]*/)*\w[\w-]*\.(hpp|cpp|md|py))\b)");
+  std::vector<std::pair<int, std::string>> found;
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    const std::size_t begin = line.find("//");
+    if (begin == std::string::npos) continue;
+    const std::string comment = line.substr(begin);
+    for (std::sregex_iterator one(comment.begin(), comment.end(), kFile), end; one != end; ++one) {
+      found.emplace_back(number, (*one)[2].str());
+    }
+  }
+  return found;
+}
+
+// What stands in capitals is a name for any.
+TEST(SourceText, CommentsNameFilesThatAreThere) {
+  const std::vector<std::string> folders = {"include", "src",   "apps", "tests", "docs",
+                                            "bench",   "cmake", "maps", "python"};
+  std::set<std::string> there;  // by each end of its path
+  for (const fs::path& file : source_files(folders)) {
+    std::string end;
+    for (auto part = file.end(); part != file.begin();) {
+      --part;
+      end = end.empty() ? part->string() : part->string() + "/" + end;
+      there.insert(end);
+    }
+  }
+  static const std::regex kAnyName("[A-Z]{3,}");
+  for (const fs::path& file : source_files(folders, {".hpp", ".cpp"})) {
+    for (const auto& [line, name] : files_in_comments(text_of(file))) {
+      if (std::regex_search(name, kAnyName)) continue;
+      EXPECT_TRUE(there.contains(name)) << file << ":" << line << ": there is no " << name;
+    }
   }
 }
 
