@@ -54,7 +54,8 @@ else()  # their users link what they need
   set(map_requires "eigen3 lapack")
   set(map_libs "-ltrussmap_map -lcholmod -pthread")
 endif()
-# All of it, and maps alone.
+# All of it, and maps alone. Wherever an installation is taken to, its files find it.
+file(RELATIVE_PATH up "/prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/prefix")
 function(trussmap_pkgconfig name pkgconfig_requires pkgconfig_libs)
   configure_file(cmake/trussmap.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

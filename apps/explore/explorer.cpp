@@ -36,7 +36,7 @@ Arrival Explorer::drive(int way) {
   for (const DrivenRow& row : driven.rows) {
     motion = then(motion, arc_motion({row.left, row.right}, world_.options().wheelbase, {k, k}));
   }
-  const Arrival arrival = map_.arrive(driven.landmark, motion);
+  Arrival arrival = map_.arrive(driven.landmark, motion);
   way_ += motion.displacement.position().norm();
   here_ = arrival.landmark;
   stand_here();

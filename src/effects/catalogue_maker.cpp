@@ -115,10 +115,13 @@ class Fields {
     for (const auto& [key, node] : table_) {
       const std::string name(key.str());
       if (asked_.contains(name)) continue;
-      std::string known;
-      for (const std::string& one : asked_) known += (known.empty() ? "" : ", ") + one;
-      refuse(file_, key.source(),
-             "unknown key \"" + name + "\"" + in_table() + ", expected one of " + known);
+      std::string text = "unknown key \"" + name + "\"" + in_table() + ", expected one of";
+      const char* between = " ";
+      for (const std::string& one : asked_) {
+        text.append(between).append(one);
+        between = ", ";
+      }
+      refuse(file_, key.source(), text);
     }
   }
 
@@ -141,8 +144,7 @@ class Fields {
     asked_.insert(key);
     const toml::node* node = table_.get(key);
     if (node == nullptr) return std::nullopt;
-    const std::optional<T> found =
-        std::is_same_v<T, double> ? node->value<T>() : node->value_exact<T>();
+    std::optional<T> found = std::is_same_v<T, double> ? node->value<T>() : node->value_exact<T>();
     if (!found) refuse(file_, node->source(), wrong(key, expected));
     return found;
   }
@@ -302,7 +304,7 @@ class EffectReader {
   std::string drawing() {
     Fields fields = top_.table("drawing");
     const std::string of = fields.text_or_none("of");
-    const std::string result =
+    std::string result =
         "{" + in_cpp(of.empty() ? name_ : of) + ", " + in_cpp(fields.text_or_none("part")) + "}";
     fields.done();
     return result;
@@ -317,11 +319,11 @@ class EffectReader {
                   "\"columns\" in [hidden] is missing, expected what of a simulated "
                   "recording to put for {}, or why it is \"never\" drawn");
     }
-    const std::string result = "{.drawn = " + flag_in_cpp(drawn) +
-                               ", .needs_survey = " + flag_in_cpp(fields.flag("needs_survey")) +
-                               ", .needs_compass = " + flag_in_cpp(fields.flag("needs_compass")) +
-                               ", .sign = " + std::to_string(fields.sign()) +
-                               ", .columns = " + in_cpp(columns) + "}";
+    std::string result = "{.drawn = " + flag_in_cpp(drawn) +
+                         ", .needs_survey = " + flag_in_cpp(fields.flag("needs_survey")) +
+                         ", .needs_compass = " + flag_in_cpp(fields.flag("needs_compass")) +
+                         ", .sign = " + std::to_string(fields.sign()) +
+                         ", .columns = " + in_cpp(columns) + "}";
     fields.done();
     return result;
   }
@@ -357,6 +359,7 @@ MadeEffect read_effect(const fs::path& path) {
 /// By their ranks, of which each has its own.
 std::vector<MadeEffect> read_all(const std::vector<fs::path>& paths) {
   std::vector<MadeEffect> effects;
+  effects.reserve(paths.size());
   for (const fs::path& one : paths) effects.push_back(read_effect(one));
   std::sort(effects.begin(), effects.end(),
             [](const MadeEffect& a, const MadeEffect& b) { return a.rank < b.rank; });
