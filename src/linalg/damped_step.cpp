@@ -11,7 +11,11 @@ void factorise_damped(BlockSystem& A, double damping, double least) {
     return;
   }
   const Eigen::VectorXd diagonal = A.diagonal();
-  A.set_diagonal(diagonal + damping * diagonal.cwiseMax(least * diagonal.maxCoeff()));
+  if (least > 0.0) {
+    A.set_diagonal(diagonal + damping * diagonal.cwiseMax(least * diagonal.maxCoeff()));
+  } else {
+    A.set_diagonal((1.0 + damping) * diagonal);
+  }
   try {
     A.factorise();
   } catch (...) {
