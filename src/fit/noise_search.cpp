@@ -72,7 +72,7 @@ LikeliestNoise likeliest_noise(const NoiseSearch& search, const Eigen::VectorXd&
     Eigen::VectorXd way = -(inverse * slope);
     way *= std::min(1.0, kFarthest / std::max(way.cwiseAbs().maxCoeff(), kStill));
     if (-slope.dot(way) < search.least_gain) break;
-    const LikeliestNoise next = step_along(search, at, std::move(way));
+    LikeliestNoise next = step_along(search, at, std::move(way));
     if (!(next.loss < at.loss)) break;
     if (at.loss - next.loss < search.least_gain) return next;
     const Eigen::VectorXd after = slopes(search.loss, next);
