@@ -172,7 +172,7 @@ TEST(EveryScale, LegsInTheRobotsOwnAxesTakeOver) {
   builder.start("0");
   const std::vector<Drive> legs = drives(500, 6);
   for (const Drive& one : legs) builder.arrive(one.to, one.leg);
-  const std::string here = builder.map().landmark(builder.here()).name;
+  const std::string here = builder.name(builder.here());
   MapBuilder copy = gone_on(builder, every_scale());
   for (MapBuilder* one : {&builder, &copy}) {
     one->start(here);

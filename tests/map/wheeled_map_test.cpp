@@ -187,7 +187,7 @@ Mistaken drive_mistaken(std::uint64_t seed, double share, double gate, bool comp
     std::string name = landmark_name(mesh, tours.walk[k + 1]);
     if (std::uniform_real_distribution<>()(mistakes) < share) {
       const int other = std::uniform_int_distribution<>(0, builder.landmarks() - 1)(mistakes);
-      const std::string& taken_for = builder.map().landmark(other).name;
+      const std::string& taken_for = builder.name(other);
       if (other != builder.here() && taken_for != name) {
         name = taken_for;
         ++result.wrong;
