@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -77,7 +78,7 @@ LikeliestNoise likeliest_noise(const NoiseSearch& search, const Eigen::VectorXd&
     if (at.loss - next.loss < search.least_gain) return next;
     const Eigen::VectorXd after = slopes(search.loss, next);
     update(inverse, next.x - at.x, after - slope);
-    at = next;
+    at = std::move(next);
     slope = after;
   }
   return at;

@@ -72,20 +72,21 @@ Matrix2 MapBuilder::State::known_between(int i, int j) {
   }
 }
 
-/// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map.
+/// Squared misfit of a traversal between two landmarks, in standard deviations of it and the map;
+/// finite.
 double MapBuilder::State::squared_misfit(int i, int j, const Traversal& leg) {
   const Vector2 misfit = leg.displacement - (at(j) - at(i));
-  const double of_leg = misfit.dot(leg.covariance.inverse() * misfit);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  const double of_leg = std::min(misfit.dot(leg.covariance.inverse() * misfit), kMost);
   if (m_.gate.lets_in(of_leg)) return of_leg;  // the map's own uncertainty makes it less still
   const Matrix2 of_map = known_between(i, j);
-  return misfit.dot((leg.covariance + of_map).inverse() * misfit);
+  return std::min(misfit.dot((leg.covariance + of_map).inverse() * misfit), kMost);
 }
 
 Arrival MapBuilder::State::travel_gated(const std::string& landmark, const MeasuredLeg& leg) {
   m_.left_out.reserve(m_.left_out.size() + 1);
   const int to = *m_.graph.find(landmark);
-  const double misfit =
-      std::min(squared_misfit(leg.from, to, leg.in_map), std::numeric_limits<double>::max());
+  const double misfit = squared_misfit(leg.from, to, leg.in_map);
   ArrivalGate gate = m_.gate;
   gate.remember(misfit);
   Arrival arrival;
@@ -106,23 +107,23 @@ Arrival MapBuilder::State::travel_gated(const std::string& landmark, const Measu
   return arrival;
 }
 
-bool MapBuilder::State::lacks_route_to(const std::string& landmark) const {
+/// An arrival, perhaps past a landmark that was left out. Then nobody drove from here to there: the
+/// map gets no route that it does not have.
+Arrival MapBuilder::State::reach(const std::string& landmark, const MeasuredLeg& leg,
+                                 bool past_left_out) {
   const std::optional<int> to = m_.graph.find(landmark);
-  return to && *to != m_.here && !m_.graph.route_between(m_.here, *to);
+  const bool lacks_route = to && *to != m_.here && !m_.graph.route_between(m_.here, *to);
+  return past_left_out && lacks_route ? pass_to(*to, leg) : travel(landmark, leg);
 }
 
-/// By way of a landmark that was left out to one of the map: nobody drove from here to there, so
-/// that the map gets no route, but where the robot is it knows again.
-Arrival MapBuilder::State::pass_to(const std::string& landmark, const MeasuredLeg& leg) {
-  Arrival arrival;
-  arrival.landmark = other_landmark(landmark).value();
-  arrival.misfit = leg.in_map.displacement - (at(arrival.landmark) - at(m_.here));
-  const double misfit = std::min(squared_misfit(m_.here, arrival.landmark, leg.in_map),
-                                 std::numeric_limits<double>::max());
+/// Without a route, but where the robot is it knows again, if that fits.
+Arrival MapBuilder::State::pass_to(int landmark, const MeasuredLeg& leg) {
+  const double misfit = squared_misfit(m_.here, landmark, leg.in_map);
   ArrivalGate gate = m_.gate;
   gate.remember(misfit);
-  const bool fits = gate.lets_in(misfit);
-  arrival.kind = fits ? Arrival::Kind::found_again : Arrival::Kind::left_out;
+  Arrival arrival = left_out_at(landmark);
+  if (gate.lets_in(misfit)) arrival.kind = Arrival::Kind::found_again;
+  arrival.misfit = leg.in_map.displacement - (at(landmark) - at(m_.here));
   m_.gate = std::move(gate);
   return arrival;
 }

@@ -28,8 +28,7 @@ Arrival MapBuilder::State::arrive(const std::string& landmark, const Traversal& 
   }
   MeasuredLeg measured;
   measured.in_map = whole;
-  Arrival arrival = m_.carried && lacks_route_to(landmark) ? pass_to(landmark, measured)
-                                                           : travel(landmark, measured);
+  Arrival arrival = reach(landmark, measured, m_.carried.has_value());
   m_.said = arrival.landmark;
   if (arrival.kind == Arrival::Kind::left_out) {
     m_.carried = whole;
@@ -84,9 +83,8 @@ Arrival MapBuilder::State::drive(const std::string& landmark, const Motion& moti
   const std::optional<int> known = other_landmark(landmark);
   const Chord chord = chord_of(m_.seen, motion, seen);
   const HeadingEstimate before = heading_for(known, chord);
-  const MeasuredLeg leg = reckoned(before, chord, m_.reading.has_value());
-  const bool passes = m_.carried_motion && lacks_route_to(landmark);
-  const Arrival arrival = passes ? pass_to(landmark, leg) : travel(landmark, leg);
+  Arrival arrival = reach(landmark, reckoned(before, chord, m_.reading.has_value()),
+                          m_.carried_motion.has_value());
   m_.said = arrival.landmark;
   if (arrival.kind == Arrival::Kind::left_out) {
     m_.carried_motion = CarriedMotion{motion, seen, std::nullopt};
@@ -96,8 +94,11 @@ Arrival MapBuilder::State::drive(const std::string& landmark, const Motion& moti
   }
   settle_frame();
   m_.heading = heading_after(known.has_value(), arrival.landmark, chord, before, seen);
-  m_.earlier.reset();
-  if (!passes) m_.earlier = EarlierChord{m_.here, chord.beta};
+  if (arrival.kind == Arrival::Kind::found_again) {
+    m_.earlier.reset();  // there is no route to make a corner with
+  } else {
+    m_.earlier = EarlierChord{m_.here, chord.beta};
+  }
   m_.here = arrival.landmark;
   m_.seen = seen;
   m_.reading.reset();

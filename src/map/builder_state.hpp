@@ -111,8 +111,8 @@ class __attribute__((visibility("hidden"))) MapBuilder::State {
   [[nodiscard]] double squared_misfit(int i, int j, const Traversal& leg);
   void bring_back(std::size_t place, const MeasuredLeg& leg, Arrival& arrival);
   void take_back_in(Arrival& arrival);
-  [[nodiscard]] bool lacks_route_to(const std::string& landmark) const;
-  Arrival pass_to(const std::string& landmark, const MeasuredLeg& leg);
+  Arrival reach(const std::string& landmark, const MeasuredLeg& leg, bool past_left_out);
+  Arrival pass_to(int landmark, const MeasuredLeg& leg);
   void take_late(const std::string& landmark, const MeasuredLeg& leg, Arrival& arrival);
   [[nodiscard]] bool fits_from_said(int to, const Motion& motion, const LandmarkOffset& seen) const;
   Arrival drive(const std::string& landmark, const Motion& motion, const LandmarkOffset& seen);

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 namespace trussmap {
-namespace {}  // namespace
 
 Unit unit_of(TomlFields& table, const char* key, const char* otherwise,
              const std::vector<Quantity>& allowed) {
