@@ -3,6 +3,7 @@
 #include "estimation/common_errors.hpp"
 
 #include "effects/simple_shapes.hpp"
+#include "geometry/units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,8 @@
 
 namespace trussmap {
 namespace {
+
+constexpr double kTurnPerTime = 0.01;  // rad/s: a drift's and a gyro bias's weak prior
 
 /// The heading that a reading shows, with a sin + b cos of hard iron in it.
 double heading_under(double reading, double a, double b) {
@@ -42,21 +45,33 @@ std::vector<EffectPattern> hard_iron(const std::vector<Recording>& recordings, d
   return result;
 }
 
+/// Whether some row lasts so long (its clock was set, or the robot stood for the night) that a turn
+/// per time may have gone round in it: its column is no straight line then.
+bool may_go_round_in_a_row(const Recording& recording) {
+  const Drive& drive = recording.drive;
+  const double most = 0.5 * kFullTurn / kTurnPerTime;
+  for (std::size_t row = 1; row < drive.rows(); ++row) {
+    if (drive.t[row] - drive.t[row - 1] > most) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
   // The catalogue's names and shapes, written out: who only builds maps does without it.
   std::vector<Effect> result{
       {"wheel diameter ratio", Channel::difference, {constant_shape()}, {0.0}},
-      {"wheelbase", Channel::turn, {constant_shape()}, {0.0}},
-      {"heading drift", Channel::drift, {constant_shape()}, {0.0}}};
+      {"wheelbase", Channel::turn, {constant_shape()}, {0.0}}};
+  const bool lasting = std::any_of(recordings.begin(), recordings.end(), may_go_round_in_a_row);
+  if (!lasting) result.push_back({"heading drift", Channel::drift, {constant_shape()}, {0.0}});
   const bool compass =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_compass(); });
   const bool gyro =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const Recording& recording) { return recording.drive.has_gyro(); });
-  if (gyro) result.push_back({"gyro bias", Channel::gyro, {constant_shape()}, {0.0}});
+  if (gyro && !lasting) result.push_back({"gyro bias", Channel::gyro, {constant_shape()}, {0.0}});
   if (compass) {
     result.push_back(
         {"hard iron", Channel::compass, {sine_of("heading"), cosine_of("heading")}, {0.0, 0.0}});
@@ -67,8 +82,8 @@ std::vector<Effect> common_errors(const std::vector<Recording>& recordings) {
 double common_error_sd(const Effect& effect) {
   constexpr std::pair<Channel, double> kSds[] = {{Channel::difference, 0.01},
                                                  {Channel::turn, 0.05},
-                                                 {Channel::drift, 0.01},
-                                                 {Channel::gyro, 0.01},
+                                                 {Channel::drift, kTurnPerTime},
+                                                 {Channel::gyro, kTurnPerTime},
                                                  {Channel::compass, 0.2}};
   for (const auto& [channel, sd] : kSds) {
     if (channel == effect.channel) return sd;

@@ -250,15 +250,41 @@ bool has_compass(const RecordingProblem& problem) {
       [](const Measurement& one) { return one.kind == MeasurementKind::segment && one.rows == 4; });
 }
 
+bool has_loops(const RecordingProblem& problem) {
+  return std::any_of(problem.measurements.begin(), problem.measurements.end(),
+                     [](const Measurement& one) { return one.kind == MeasurementKind::loop; });
+}
+
+/// Roughly: what is beyond the gate is held out, or weighs less.
+RecordingDescent descend_roughly(RecordingSystem& system, const RecordingProblem& problem,
+                                 const StartOptions& options, RecordingDescent fit) {
+  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
+  if (std::isfinite(options.gate) && has_loops(problem)) {
+    system.linearise(fit.state, fit.coefficients);
+    RobustFit robust{fit.state, fit.coefficients, {}, options.gate};
+    robust.weights.reserve(problem.measurements.size());
+    for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
+      const bool out =
+          may_be_wrong(problem.measurements[k].kind) && system.squared_errors()[k] > options.gate;
+      robust.weights.push_back(out ? 0.0 : 1.0);
+    }
+    robust = look_again(system, problem, std::move(robust));
+    return descend(system, robust.state, robust.coefficients, kRough);
+  }
+  if (std::isfinite(options.gate)) {
+    heed_majority(problem, fit.state);
+    constexpr DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
+    return descend_softly(system, problem, std::move(fit), options.gate, 4, kRound);
+  }
+  return descend(system, fit.state, fit.coefficients, kRough);
+}
+
 /// Adjusts the poses laid down so far, the landmarks they see and the coefficients. Returns the
 /// share of the sightings that are beyond the gate then.
 double adjust_stretch(const RecordingProblem& session, const StartOptions& options, int count,
                       Layer& layer) {
   const ProblemPart part = part_of(session, 0, count, &layer.landmarks());
-  const bool loops =
-      std::any_of(part.problem.measurements.begin(), part.problem.measurements.end(),
-                  [](const Measurement& one) { return one.kind == MeasurementKind::loop; });
-  if (part.landmarks.empty() && !loops) return 0.0;
+  if (part.landmarks.empty() && !has_loops(part.problem)) return 0.0;
   RecordingDescent fit;
   for (const int landmark : part.landmarks) {
     fit.state.landmarks.push_back(*layer.landmarks()[idx(landmark)]);
@@ -272,24 +298,11 @@ double adjust_stretch(const RecordingProblem& session, const StartOptions& optio
   fit.coefficients = layer.coefficients().values;
   RecordingSystem system(part.problem, layer.border());
   system.set_slack(RecordingSystem::kRoughSlack);
-  constexpr DescentOptions kRough{30, 1e-4, kNegligibleDecrease};
-  if (std::isfinite(options.gate) && loops) {
-    system.linearise(fit.state, fit.coefficients);
-    RobustFit robust{fit.state, fit.coefficients, {}, options.gate};
-    robust.weights.reserve(part.problem.measurements.size());
-    for (std::size_t k = 0; k < part.problem.measurements.size(); ++k) {
-      const bool out = may_be_wrong(part.problem.measurements[k].kind) &&
-                       system.squared_errors()[k] > options.gate;
-      robust.weights.push_back(out ? 0.0 : 1.0);
-    }
-    robust = look_again(system, part.problem, std::move(robust));
-    fit = descend(system, robust.state, robust.coefficients, kRough);
-  } else if (std::isfinite(options.gate)) {
-    heed_majority(part.problem, fit.state);
-    constexpr DescentOptions kRound{5, 1e-4, kNegligibleDecrease};
-    fit = descend_softly(system, part.problem, std::move(fit), options.gate, 4, kRound);
-  } else {
-    fit = descend(system, fit.state, fit.coefficients, kRough);
+  try {
+    fit = descend_roughly(system, part.problem, options, fit);
+  } catch (
+      const NotPositiveDefinite&) {  // rounding leaves no step to take: it stays as it was laid
+    return share_beyond(part.problem, system.squared_errors(), options.gate);
   }
   for (std::size_t k = 0; k < part.landmarks.size(); ++k) {
     layer.landmarks()[idx(part.landmarks[k])] = fit.state.landmarks[k];

@@ -296,6 +296,7 @@ void Loading::take_state(const RowReader& row) {
   memory_.here = number_at(row, 0, -1, count, "a state");
   memory_.said = number_at(row, 1, -1, count, "a state");
   if (!row.is_null(2)) {
+    if (memory_.here < 0) refuse("a leg from nowhere");
     memory_.carried = Traversal{vector_at(row, 2, "a leg"), matrix_at(row, 4, "a leg")};
   }
   memory_.frame = static_cast<Frame>(number_at(row, 7, 0, 3, "a frame"));
