@@ -38,6 +38,8 @@ struct Motion {
 
 /// Exact displacement along the arc (eq. 13).
 [[nodiscard]] Pose arc_displacement(const WheelTravel& travel, double wheelbase);
+/// The same of an arc of signed length `path` (m) that turns by `turn` (rad).
+[[nodiscard]] Pose arc_displacement(double path, double turn);
 
 /// Cov(U) of eq. 17 in the axes of the arc's start. `wheelbase` > 0, else std::invalid_argument.
 [[nodiscard]] Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase,

@@ -55,7 +55,7 @@ std::vector<DriveError> drive_errors(const std::vector<Recording>& recordings, c
     }
     const TruthRow& from = truth.front();
     const TruthRow& to = truth.back();
-    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot.wheelbase);
+    const Pose end = reckoned(drive, pose_of(from), from.t, to.t, model.robot);
     DriveError one;
     one.end = (end.position() - Vector2(to.x, to.y)).norm();
     one.heading = wrap_angle(end.heading - to.heading);

@@ -37,7 +37,7 @@ void add_pairs(MeanDirections& sum, const Recording& recording, const Robot& rob
     const double at = path_at(drive, path, row.t);
     if (from && at - start < kWay) continue;
     if (from) {
-      const Vector2 driven = reckoned(drive, {}, from->t, row.t, robot.wheelbase).position();
+      const Vector2 driven = reckoned(drive, {}, from->t, row.t, robot).position();
       const Vector2 moved(row.x - from->x, row.y - from->y);
       const double distance = moved.norm();
       if (driven.norm() > kStraightest * kWay && distance > kStraightest * kWay) {

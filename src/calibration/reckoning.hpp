@@ -4,6 +4,7 @@
 // Dead reckoning by the wheels alone, from a pose at one time of a drive to another time.
 #pragma once
 
+#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "trussmap/planar.hpp"
@@ -13,10 +14,10 @@ namespace trussmap {
 
 /// `from` <= `to`, s; times outside of the drive are cut to it.
 [[nodiscard]] inline Pose reckoned(const Drive& drive, Pose pose, double from, double to,
-                                   double wheelbase) {
+                                   const Robot& robot) {
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    pose = compose(
-        pose, displacement_of(travel_of(drive, row), row.part * drive.slip(row.row), wheelbase));
+    pose = compose(pose, displacement_of(body_motion(travel_of(drive, row), robot,
+                                                     row.part * drive.slip(row.row))));
   }
   return pose;
 }

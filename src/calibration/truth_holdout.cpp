@@ -53,7 +53,7 @@ Recording cut(const Recording& whole, double from, double to) {
 }
 
 /// The heading at truth row `at` by all rows of the second before it.
-double settled_heading(const Recording& recording, std::size_t at, double wheelbase) {
+double settled_heading(const Recording& recording, std::size_t at, const Robot& robot) {
   constexpr double kSecond = 1.0;  // s
   const TruthRow& last = recording.truth[at];
   double sum = 0.0;
@@ -61,7 +61,7 @@ double settled_heading(const Recording& recording, std::size_t at, double wheelb
   for (std::size_t k = at; recording.truth[k].t > last.t - kSecond; --k) {
     const TruthRow& row = recording.truth[k];
     if (row.t < recording.drive.start()) break;
-    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t, wheelbase);
+    const Pose there = reckoned(recording.drive, pose_of(row), row.t, last.t, robot);
     sum += wrap_angle(there.heading - last.heading);
     ++rows;
     if (k == 0) break;
@@ -128,9 +128,9 @@ ArrivalErrors arrival_errors(const std::vector<Recording>& recordings,
     const Recording& recording = corrected[idx(leg.session)];
     const TruthRow& from = recording.truth[leg.from];
     const TruthRow& to = recording.truth[leg.to];
-    const double heading = settled_heading(recording, leg.from, model.robot.wheelbase);
+    const double heading = settled_heading(recording, leg.from, model.robot);
     const Pose end =
-        reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot.wheelbase);
+        reckoned(recording.drive, {from.x, from.y, heading}, from.t, to.t, model.robot);
     result.distances.push_back((end.position() - Vector2(to.x, to.y)).norm());
   }
   return result;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "check/column_mistakes.hpp"
 
-#include "effects/wheel_kinematics.hpp"
+#include "drive/wheel_kinematics.hpp"
 
 #include <algorithm>
 #include <cmath>

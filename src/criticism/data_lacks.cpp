@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/data_lacks.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "recording/legs.hpp"
-#include "recording/row_variables.hpp"
 
 #include <algorithm>
 #include <array>
@@ -50,8 +51,7 @@ void add(const Recording& recording, const Robot& robot, Contents& contents) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double begin = row == 0 ? drive.start() : drive.t[row - 1];
     const double duration = drive.t[row] - begin;
-    const double path = 0.5 * (drive.left[row] + drive.right[row]);
-    const double turn = (drive.right[row] - drive.left[row]) / robot.wheelbase;
+    const auto [path, aside, turn] = body_motion(drive, row, robot);
     heading += turn;
     contents.time += duration;
     contents.path += std::abs(path);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/driven_variables.hpp"
 
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 
 #include <algorithm>
 #include <set>

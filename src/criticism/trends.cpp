@@ -3,9 +3,10 @@
 #include "criticism/trends.hpp"
 
 #include "criticism/tested_candidate.hpp"
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
+#include "drive/wheels_and_gyro.hpp"
 #include "effects/place_patterns.hpp"
-#include "odometry/wheels_and_gyro.hpp"
-#include "recording/row_variables.hpp"
 #include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
 
@@ -82,7 +83,8 @@ double faintest_turn(const FitState& fit) {
                                   : row_noise(drive, row, 1.0, duration, robot, noise).heading;
       if (variance == 0.0) continue;
       const double window = std::max(duration, 0.5 * kRateWindow);
-      deviations.push_back(std::sqrt(variance / duration / window) / (two ? robot.wheelbase : 1.0));
+      const double sd = std::sqrt(variance / duration / window);
+      deviations.push_back(two ? body_motion({0.0, sd}, robot).turn : sd);
     }
   }
   if (deviations.empty()) return 0.0;

@@ -37,37 +37,10 @@ bool is_of_drive(Channel channel, const Robot& robot) {
   return of_drive == nullptr || of_drive(robot);
 }
 
-RowTravel shown_travel(const Drive& drive, std::size_t row) {
-  RowTravel travel{drive.left[row], drive.right[row], drive.duration(row)};
-  travel.sideways = drive.slip(row);
-  travel.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
-  travel.row = row;
-  return travel;
-}
-
-RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase) {
-  if (drive.gyro.empty()) return shown_travel(drive, row);
-  RowTravel travel = row_travel(drive.gyro[row], drive.duration(row), wheelbase);
-  travel.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
-  travel.row = row;
-  return travel;
-}
-
-RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase) {
-  RowTravel travel{gyro.left, gyro.right, duration};
-  travel.gyro_turn = (gyro.right - gyro.left) / wheelbase + gyro.excess;
-  travel.gyro_along = gyro.along;
-  travel.gyro_share = gyro.turn;
-  travel.gyro_reads = std::isfinite(gyro.variance);
-  travel.sideways = gyro.sideways;
-  travel.gyro_aside = gyro.aside;
-  return travel;
-}
-
-DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, double wheelbase) {
+DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row) {
   const ChannelRecord& physics = record_of(channel);
   DrivePattern pattern;
-  if (physics.wheel_pattern != nullptr) pattern = physics.wheel_pattern(g, row, wheelbase);
+  if (physics.wheel_pattern != nullptr) pattern = physics.wheel_pattern(g, row);
   if (!row.gyro_reads) return pattern;
   const double gyro = physics.gyro_pattern == nullptr ? 0.0 : physics.gyro_pattern(g, row);
   pattern.excess = gyro - pattern.turn;
@@ -80,15 +53,6 @@ DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row, doub
 ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate) {
   const auto pattern = record_of(channel).view_pattern;
   return pattern == nullptr ? ViewPattern() : pattern(g, speed, turn_rate);
-}
-
-RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase) {
-  const DrivePattern more = drive_pattern(channel, g, row, wheelbase);
-  RowTravel nominal = row;
-  nominal.left = row.left + more.advance - 0.5 * wheelbase * more.turn;
-  nominal.right = row.right + more.advance + 0.5 * wheelbase * more.turn;
-  nominal.sideways = row.sideways + more.slip;
-  return nominal;
 }
 
 double yaw_rate_without(Channel channel, double g, double yaw_rate) {

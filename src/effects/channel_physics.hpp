@@ -32,17 +32,15 @@
 //   fix_delay           -speed f ahead, -turn rate f          its instant
 //   fix_x, fix_y        f along the map's axes                its instant
 //
-// Path and turn are those of a row's wheels: (left + right)/2 and (right - left)/wheelbase. The
-// simulator finds readings by turning the physics round; it shares no formula with this file.
+// Path and turn are those of a row's wheels (drive/body_motion.hpp). The simulator finds readings
+// by turning the physics round; it shares no formula with this file.
 #pragma once
 
+#include "drive/row_motion.hpp"
 #include "trussmap/channel.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
-
-#include <cstddef>
-#include <vector>
 
 namespace trussmap {
 
@@ -50,30 +48,9 @@ namespace trussmap {
 enum class ActsOn { drives, readings, views };
 [[nodiscard]] ActsOn acts_on(Channel channel);
 
-/// What the wheels show over one row, and the gyro beside them.
-struct RowTravel {
-  double left = 0.0;        ///< m, signed travel
-  double right = 0.0;       ///< m
-  double duration = 0.0;    ///< s
-  double gyro_turn = 0.0;   ///< rad
-  double gyro_along = 0.0;  ///< as GyroShare::along
-  double gyro_share = 0.0;  ///< as GyroShare::turn
-  bool gyro_reads = false;
-  double sideways = 0.0;                             ///< m to the left
-  double gyro_aside = 0.0;                           ///< as GyroShare::aside
-  const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
-  std::size_t row = 0;                               ///< of the drive
-};
-
 /// Whether the robot's drive has what the channel acts on: one of its wheels, its steering, a way
 /// to the side, a left and a right wheel.
 [[nodiscard]] bool is_of_drive(Channel channel, const Robot& robot);
-
-/// A row as its wheels show it, or wheels and gyro together.
-[[nodiscard]] RowTravel shown_travel(const Drive& drive, std::size_t row);
-/// A row as wheels and gyro each show it, whether or not the gyro was taken in.
-[[nodiscard]] RowTravel row_travel(const Drive& drive, std::size_t row, double wheelbase);
-[[nodiscard]] RowTravel row_travel(const GyroShare& gyro, double duration, double wheelbase);
 
 /// What is added to a whole row.
 struct DrivePattern {
@@ -107,8 +84,7 @@ struct ViewPattern {
 
 /// What g of this channel adds to a row; with g = f, the column of a coefficient. Nothing where the
 /// channel acts on views. Where the gyro reads, the row moves by what wheels and gyro say together.
-[[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowTravel& row,
-                                         double wheelbase);
+[[nodiscard]] DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row);
 /// The same for a view, truth row or fix at this speed (m/s) and turn rate (rad/s).
 [[nodiscard]] ViewPattern view_pattern(Channel channel, double g, double speed, double turn_rate);
 
@@ -125,9 +101,6 @@ struct ViewPattern {
 /// delay, truth_heading and what acts on fixes.
 [[nodiscard]] bool is_recordable(Channel channel);
 
-/// The wheels' travels as they would be if the nominal model held, for a recordable channel that
-/// acts on drives.
-[[nodiscard]] RowTravel without(Channel channel, double g, const RowTravel& row, double wheelbase);
 /// A yaw rate [rad/s] freed from g of the channel gyro or gyro_scale.
 [[nodiscard]] double yaw_rate_without(Channel channel, double g, double yaw_rate);
 /// A sighting freed from g of the channel range, range_scale, bearing or sighting_yaw.

@@ -5,6 +5,7 @@
 // further channel is a row of channel_table.cpp and an enumerator.
 #pragma once
 
+#include "drive/row_motion.hpp"
 #include "effects/channel_physics.hpp"
 #include "trussmap/channel.hpp"
 
@@ -38,8 +39,8 @@ struct ChannelRecord {
   bool (*of_drive)(const Robot& robot) = nullptr;
   // What g adds, nullptr: nothing. To what the wheels say of a row, or to its compass reading; to
   // the gyro's turn, rad; to a view, truth row or fix.
-  DrivePattern (*wheel_pattern)(double g, const RowTravel& row, double wheelbase) = nullptr;
-  double (*gyro_pattern)(double g, const RowTravel& row) = nullptr;
+  DrivePattern (*wheel_pattern)(double g, const RowMotion& row) = nullptr;
+  double (*gyro_pattern)(double g, const RowMotion& row) = nullptr;
   ViewPattern (*view_pattern)(double g, double speed, double turn_rate) = nullptr;
   /// The yaw rate [rad/s] that the gyro would have read without g; nullptr: what it read.
   double (*yaw_rate_without)(double g, double yaw_rate) = nullptr;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The table of channels: a row each. Physics as in channel_physics.hpp.
+#include "drive/body_motion.hpp"
+#include "drive/row_motion.hpp"
+#include "drive/steered_motion.hpp"
 #include "effects/channel_record.hpp"
 
 #include <algorithm>
@@ -23,21 +26,13 @@ bool has_two_wheels(const Robot& robot) {
   return robot.drive == DriveKind::differential;
 }
 
-bool steers(const Robot& robot) {
-  return robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann;
-}
-
 bool goes_sideways(const Robot& robot) {
   return robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum ||
          (robot.drive == DriveKind::wheels && !robot.matrix.row(1).isZero(0.0));
 }
 
-double path_of(const RowTravel& row) {
-  return 0.5 * (row.left + row.right);
-}
-
-double turn_of(const RowTravel& row, double wheelbase) {
-  return (row.right - row.left) / wheelbase;
+DrivePattern as_pattern(const BodyMotion& motion) {
+  return {.advance = motion.forward, .slip = motion.sideways, .turn = motion.turn};
 }
 
 /// What so much more of one column's reading adds.
@@ -48,7 +43,7 @@ DrivePattern more_of(const WheelColumn& column, std::size_t row, double reading)
 
 /// What more of the steering angle adds, as a function of it.
 template <typename More>
-DrivePattern steering_pattern(const RowTravel& row, const More& more) {
+DrivePattern steering_pattern(const RowMotion& row, const More& more) {
   if (row.wheels == nullptr) return {};
   for (const WheelColumn& column : *row.wheels) {
     if (column.steers) return more_of(column, row.row, more(column.reading[row.row]));
@@ -66,8 +61,10 @@ std::vector<ChannelRecord> single_records() {
   using enum Channel;
   return {
       {.facts = {travel, "travel", "", 0.1, "forward travel"},
-       .wheel_pattern = [](double g, const RowTravel& row,
-                           double) { return DrivePattern{.advance = g * path_of(row)}; },
+       .wheel_pattern =
+           [](double g, const RowMotion& row) {
+             return DrivePattern{.advance = g * row.body.forward};
+           },
        .phrase = {"the robot travels", "further than its wheels say",
                   "less far than its wheels say"},
        .noun = "travel error",
@@ -75,8 +72,8 @@ std::vector<ChannelRecord> single_records() {
       {.facts = {left, "left", "", 0.1, "travel of the left wheel"},
        .of_drive = has_two_wheels,
        .wheel_pattern =
-           [](double g, const RowTravel& row, double wheelbase) {
-             return DrivePattern{.advance = 0.5 * g * row.left, .turn = -g * row.left / wheelbase};
+           [](double g, const RowMotion& row) {
+             return as_pattern(row.by_wheels(g * row.left, 0.0));
            },
        .phrase = {"the left wheel rolls", "further than it says", "less far than it says"},
        .noun = "left wheel's error",
@@ -84,69 +81,63 @@ std::vector<ChannelRecord> single_records() {
       {.facts = {right, "right", "", 0.1, "travel of the right wheel"},
        .of_drive = has_two_wheels,
        .wheel_pattern =
-           [](double g, const RowTravel& row, double wheelbase) {
-             return DrivePattern{.advance = 0.5 * g * row.right, .turn = g * row.right / wheelbase};
+           [](double g, const RowMotion& row) {
+             return as_pattern(row.by_wheels(0.0, g * row.right));
            },
        .phrase = {"the right wheel rolls", "further than it says", "less far than it says"},
        .noun = "right wheel's error",
        .axis = "right wheel rolls further than it says by"},
       {.facts = {wheels, "wheels", "", 0.1, "travel of both wheels"},
-       .wheel_pattern =
-           [](double g, const RowTravel& row, double wheelbase) {
-             return DrivePattern{.advance = g * path_of(row),
-                                 .slip = g * row.sideways,
-                                 .turn = g * turn_of(row, wheelbase)};
-           },
+       .wheel_pattern = [](double g, const RowMotion& row) { return as_pattern(g * row.body); },
        .phrase = {"both wheels are", "larger than nominal", "smaller than nominal"},
        .noun = "error of both wheels",
        .axis = "both wheels larger than nominal by"},
       {.facts = {difference, "difference", "", 0.1, "right wheel's travel over left's"},
        .of_drive = has_two_wheels,
        .wheel_pattern =
-           [](double g, const RowTravel& row, double wheelbase) {
+           [](double g, const RowMotion& row) {
              return DrivePattern{.advance = 0.25 * g * (row.right - row.left),
-                                 .turn = g * path_of(row) / wheelbase};
+                                 .turn = row.by_wheels(0.0, g * row.body.forward).turn};
            },
        .phrase = {"the right wheel is", "larger than the left", "smaller than the left"},
        .noun = "difference of the wheels",
        .axis = "right wheel larger than the left by"},
       {.facts = {turn, "turn", "", 0.1, "rotation"},
        .wheel_pattern =
-           [](double g, const RowTravel& row, double wheelbase) {
-             return DrivePattern{.turn = g * turn_of(row, wheelbase)};
-           },
+           [](double g, const RowMotion& row) { return DrivePattern{.turn = g * row.body.turn}; },
        .drawn_against = "turn_rate",
        .phrase = {"the robot turns", "more than its wheels say", "less than its wheels say"},
        .noun = "turning error",
        .axis = "robot turns more than measured by"},
       {.facts = {drift, "drift", "rad/s", 0.01, "rotation with time"},
-       .wheel_pattern = [](double g, const RowTravel& row,
-                           double) { return DrivePattern{.turn = g * row.duration}; },
+       .wheel_pattern = [](double g,
+                           const RowMotion& row) { return DrivePattern{.turn = g * row.duration}; },
        .drawn_against = "turn_rate",
        .phrase = {"the heading drifts by", "to the left", "to the right"},
        .noun = "heading drift",
        .axis = "heading drifts to the left by"},
       {.facts = {advance, "advance", "m", 0.02, "travel per event"},
-       .wheel_pattern = [](double g, const RowTravel&,
-                           double) { return DrivePattern{.advance = g}; },
+       .wheel_pattern = [](double g, const RowMotion&) { return DrivePattern{.advance = g}; },
        .phrase = {"each event moves the robot", "forward", "back"},
        .noun = "travel error per event",
        .axis = "robot moves forward per event by"},
       {.facts = {rotate, "rotate", "rad", 0.05, "rotation per event"},
-       .wheel_pattern = [](double g, const RowTravel&, double) { return DrivePattern{.turn = g}; },
+       .wheel_pattern = [](double g, const RowMotion&) { return DrivePattern{.turn = g}; },
        .drawn_against = "turn_rate",
        .phrase = {"each event turns the robot by", "to the left", "to the right"},
        .noun = "turning error per event",
        .axis = "robot turns left per event by"},
       {.facts = {creep, "creep", "", 0.1, "slip to the left, per travel"},
        .recordable = false,
-       .wheel_pattern = [](double g, const RowTravel& row,
-                           double) { return DrivePattern{.slip = g * path_of(row)}; },
+       .wheel_pattern =
+           [](double g, const RowMotion& row) {
+             return DrivePattern{.slip = g * row.body.forward};
+           },
        .phrase = {"the robot slips by", "of its travel to the left", "of its travel to the right"},
        .noun = "sideways slip",
        .axis = "slip to the left, of the travel"},
       {.facts = {gyro, "gyro", "rad/s", 0.1, "yaw rate that the gyro reads"},
-       .gyro_pattern = [](double g, const RowTravel& row) { return -g * row.duration; },
+       .gyro_pattern = [](double g, const RowMotion& row) { return -g * row.duration; },
        .yaw_rate_without = [](double g, double yaw_rate) { return yaw_rate - g; },
        .noise_source = "gyro",
        .drawn_against = "turn_rate",
@@ -154,7 +145,7 @@ std::vector<ChannelRecord> single_records() {
        .noun = "gyro bias",
        .axis = "gyro reads too much by"},
       {.facts = {gyro_scale, "gyro_scale", "", 0.1, "turn that the gyro reads, in proportion"},
-       .gyro_pattern = [](double g, const RowTravel& row) { return g * row.gyro_turn; },
+       .gyro_pattern = [](double g, const RowMotion& row) { return g * row.gyro_turn; },
        .yaw_rate_without = [](double g, double yaw_rate) { return yaw_rate * (1.0 + g); },
        .noise_source = "gyro",
        .drawn_against = "turn_rate",
@@ -178,8 +169,7 @@ std::vector<ChannelRecord> single_records() {
        .axis = "sensor to the left by"},
       {.facts = {compass, "compass", "rad", 0.5, "compass reading"},
        .target = kReadings,
-       .wheel_pattern = [](double g, const RowTravel&,
-                           double) { return DrivePattern{.compass = g}; },
+       .wheel_pattern = [](double g, const RowMotion&) { return DrivePattern{.compass = g}; },
        .noise_source = "compass",
        .drawn_against = "heading",
        .phrase = {"the compass reads", "too much", "too little"},
@@ -263,24 +253,28 @@ std::vector<ChannelRecord> single_records() {
        .axis = "fixes too far along y by"},
       {.facts = {sideways, "sideways", "", 0.1, "travel to the left"},
        .of_drive = goes_sideways,
-       .wheel_pattern = [](double g, const RowTravel& row,
-                           double) { return DrivePattern{.slip = g * row.sideways}; },
+       .wheel_pattern =
+           [](double g, const RowMotion& row) {
+             return DrivePattern{.slip = g * row.body.sideways};
+           },
        .phrase = {"the robot moves to the side", "more than its wheels say",
                   "less than its wheels say"},
        .noun = "error of the way to the side",
        .axis = "robot moves sideways more than measured by"},
       {.facts = {steer, "steer", "rad", 0.1, "steering angle"},
-       .of_drive = steers,
-       .wheel_pattern = [](double g, const RowTravel& row,
-                           double) { return steering_pattern(row, [g](double) { return g; }); },
+       .of_drive = has_steering,
+       .wheel_pattern =
+           [](double g, const RowMotion& row) {
+             return steering_pattern(row, [g](double) { return g; });
+           },
        .phrase = {"the steered wheel points", "further to the left than it says",
                   "further to the right than it says"},
        .noun = "steering offset",
        .axis = "steering further left than measured by"},
       {.facts = {steer_gain, "steer_gain", "", 0.1, "steering angle, in proportion"},
-       .of_drive = steers,
+       .of_drive = has_steering,
        .wheel_pattern =
-           [](double g, const RowTravel& row, double) {
+           [](double g, const RowMotion& row) {
              return steering_pattern(row, [g](double angle) { return g * angle; });
            },
        .phrase = {"the steered wheel turns", "further than it says", "less far than it says"},
@@ -298,11 +292,11 @@ std::vector<ChannelRecord> single_records() {
 /// Whether the n-th of a drive's own wheels rolls; one that is steered has the channel wheels.
 template <std::size_t n>
 bool has_wheel(const Robot& robot) {
-  return !has_two_wheels(robot) && !steers(robot) && n < robot.columns.size();
+  return !has_two_wheels(robot) && !has_steering(robot) && n < robot.columns.size();
 }
 
 template <std::size_t n>
-DrivePattern wheel_pattern(double g, const RowTravel& row, double) {
+DrivePattern wheel_pattern(double g, const RowMotion& row) {
   if (row.wheels == nullptr || n >= row.wheels->size()) return {};
   const WheelColumn& column = (*row.wheels)[n];
   return column.steers ? DrivePattern() : more_of(column, row.row, g * column.reading[row.row]);

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "effects/corrected_recording.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/row_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/steering.hpp"
 #include "geometry/index.hpp"
-#include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
 #include <cmath>
@@ -26,7 +28,8 @@ void free_sightings(Channel channel, const std::vector<double>& g, Recording& re
   }
 }
 
-void apply(Channel channel, const std::vector<double>& g, double wheelbase, Recording& recording) {
+void apply(Channel channel, const std::vector<double>& g, const Robot& robot,
+           Recording& recording) {
   // A tracker's affair, or a receiver's.
   if (channel == Channel::truth_heading || acts_on_fixes(channel)) return;
   // A drive that goes sideways has a place for what it slips.
@@ -44,7 +47,7 @@ void apply(Channel channel, const std::vector<double>& g, double wheelbase, Reco
     case ActsOn::views:
       return free_sightings(channel, g, recording);
     case ActsOn::drives:
-      return free_drive(channel, g, wheelbase, recording.drive);
+      return free_drive(channel, g, robot, recording.drive);
   }
 }
 
@@ -68,12 +71,10 @@ std::vector<double> gains_of(const Effect& effect, const RowVariables& variables
   return g;
 }
 
-void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive) {
+void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot, Drive& drive) {
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const RowTravel nominal = without(channel, g[row], shown_travel(drive, row), wheelbase);
-    drive.left[row] = nominal.left;
-    drive.right[row] = nominal.right;
-    if (!drive.sideways.empty()) drive.sideways[row] = nominal.sideways;
+    const DrivePattern more = drive_pattern(channel, g[row], shown_motion(drive, row, robot));
+    add_motion(drive, row, {more.advance, more.slip, more.turn}, robot);
     if (drive.has_gyro())
       drive.yaw_rate[row] = yaw_rate_without(channel, g[row], drive.yaw_rate[row]);
   }
@@ -96,7 +97,7 @@ Recording corrected_recording(const Recording& recording, const Model& model,
     if (is_steering(effect.channel)) continue;
     try {
       const std::vector<double> g = gains_of(effect, variables, session, recording.drive.rows());
-      apply(effect.channel, g, model.robot.wheelbase, corrected);
+      apply(effect.channel, g, model.robot, corrected);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
     }

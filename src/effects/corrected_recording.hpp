@@ -27,7 +27,7 @@ void require_shapes(const Effect& effect);
                                            int session, std::size_t rows);
 
 /// Takes g, per row, of a recordable channel that acts on drives out of what wheels and gyro show.
-void free_drive(Channel channel, const std::vector<double>& g, double wheelbase, Drive& drive);
+void free_drive(Channel channel, const std::vector<double>& g, const Robot& robot, Drive& drive);
 
 /// `variables` are this recording's. Throws std::invalid_argument, naming the effect: one of the
 /// other channels, a shape that cannot be evaluated, coefficients that do not match. Effects

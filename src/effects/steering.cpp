@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "effects/steering.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/steered_motion.hpp"
 #include "effects/corrected_recording.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -52,7 +53,6 @@ Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effect
   }
   std::string names;
   const std::vector<double> more = added_angles(drive, effects, variables, session, names);
-  const double half = 0.5 * robot.wheelbase;
   drive.steered.reserve(drive.rows());
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const double travel = drive.wheels[0].reading[row];
@@ -65,8 +65,7 @@ Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effect
     }
     // What replicas and noise made of the row stays.
     const Eigen::Vector3d added = after.motion - steered_motion(robot, travel, angle).motion;
-    drive.left[row] += added[0] - half * added[2];
-    drive.right[row] += added[0] + half * added[2];
+    add_travel(drive, row, wheel_travel({added[0], 0.0, added[2]}, robot));
     drive.steered.push_back({added[0], added[2]});
     for (std::size_t k = 0; k < 2; ++k) {
       const Eigen::Vector3d& by = after.by_reading[k];
@@ -74,28 +73,6 @@ Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effect
     }
   }
   return drive;
-}
-
-SteeredMotion steered_motion(const Robot& robot, double travel, double angle) {
-  SteeredMotion body;
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  if (robot.drive == DriveKind::tricycle) {
-    body.by_reading = {Eigen::Vector3d(c, 0.0, s / robot.length),
-                       Eigen::Vector3d(-travel * s, 0.0, travel * c / robot.length)};
-    body.motion = travel * body.by_reading[0];
-    return body;
-  }
-  const double k = s / (c * robot.length);
-  const double k_by_angle = 1.0 / (c * c * robot.length);
-  const double share = 1.0 / (1.0 - robot.wheel_left * k);  // of the centre's way in the wheel's
-  const double share_by_angle = share * share * robot.wheel_left * k_by_angle;
-  body.by_reading = {Eigen::Vector3d(share, 0.0, share * k),
-                     Eigen::Vector3d(travel * share_by_angle, 0.0,
-                                     travel * (share_by_angle * k + share * k_by_angle))};
-  body.motion = travel * body.by_reading[0];
-  body.possible = c > 0.0 && share > 0.0;
-  return body;
 }
 
 }  // namespace trussmap

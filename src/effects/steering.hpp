@@ -10,15 +10,11 @@
 // row as it was steered.
 #pragma once
 
-#include "recording/row_variables.hpp"
 #include "trussmap/channel.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
 
-#include <array>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace trussmap {
 
@@ -34,15 +30,5 @@ namespace trussmap {
 /// was taken in before.
 [[nodiscard]] Drive steered(Drive drive, const Robot& robot, const std::vector<Effect>& effects,
                             const RowVariables& variables, int session);
-
-/// How a robot moves in a row by the travel of the wheel that is measured [m] and the angle at
-/// which its steered wheel stands [rad].
-struct SteeredMotion {
-  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< forward, sideways [m], turn [rad]
-  std::array<Eigen::Vector3d, 2> by_reading;         ///< by travel and by angle
-  bool possible = true;                              ///< the measured wheel has a way ahead
-};
-/// Of a tricycle or an ackermann drive (DriveKind).
-[[nodiscard]] SteeredMotion steered_motion(const Robot& robot, double travel, double angle);
 
 }  // namespace trussmap

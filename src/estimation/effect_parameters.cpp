@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/effect_parameters.hpp"
 
+#include "drive/row_motion.hpp"
+
 namespace trussmap {
 
 std::vector<int> unknown_coefficients(const EffectParameters& border) {
@@ -40,8 +42,7 @@ EffectPattern plain_effect(Channel channel, const std::vector<Recording>& record
     const Drive& drive = recording.drive;
     std::vector<DrivePattern>& patterns = result.drives.emplace_back();
     for (std::size_t row = 0; row < drive.rows(); ++row) {
-      const RowTravel shown = row_travel(drive, row, robot.wheelbase);
-      patterns.push_back(drive_pattern(channel, 1.0, shown, robot.wheelbase));
+      patterns.push_back(drive_pattern(channel, 1.0, row_motion(drive, row, robot)));
     }
   }
   return result;

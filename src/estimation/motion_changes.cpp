@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/motion_changes.hpp"
 
+#include "drive/body_motion.hpp"
+
 #include <cmath>
 
 namespace trussmap {
@@ -24,7 +26,7 @@ std::vector<Run> runs_of(const Drive& drive, const std::vector<SegmentRow>& rows
   std::vector<Run> runs;
   double begin = 0.0;
   for (const SegmentRow& row : rows) {
-    const double about_centre = std::abs(0.5 * robot.wheelbase * row.turn);
+    const double about_centre = std::abs(wheel_travel({0.0, 0.0, row.turn}, robot).right);
     if (row.path != 0.0 || row.turn != 0.0) {
       const bool spin = about_centre > std::abs(row.path);
       if (runs.empty() || runs.back().spin != spin) runs.push_back({spin, 0.0, 0.0, begin});

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/noise_states.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/row_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/student_tails.hpp"
 #include "recording/legs.hpp"
-#include "recording/row_variables.hpp"
 
 #include <algorithm>
 #include <array>
@@ -102,8 +104,7 @@ std::vector<Vector4> unit_columns(const Drive& drive, const std::vector<SegmentR
   for (std::size_t row = 0; row < rows.size(); ++row) {
     if (reads && std::isnan(rows[row].reading)) continue;
     const std::size_t at = rows[row].row;
-    const DrivePattern unit =
-        drive_pattern(channel, 1.0, row_travel(drive, at, robot.wheelbase), robot.wheelbase);
+    const DrivePattern unit = drive_pattern(channel, 1.0, row_motion(drive, at, robot));
     c[row] = influences[row] * Vector4(unit.advance, unit.slip, unit.turn, unit.compass);
   }
   return c;
@@ -115,8 +116,7 @@ std::vector<Vector4> unit_excesses(const Drive& drive, const std::vector<Segment
   std::vector<Vector4> c(rows.size(), Vector4::Zero());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const std::size_t at = rows[row].row;
-    const DrivePattern unit =
-        drive_pattern(channel, 1.0, row_travel(drive, at, robot.wheelbase), robot.wheelbase);
+    const DrivePattern unit = drive_pattern(channel, 1.0, row_motion(drive, at, robot));
     c[row] = rows[row].part * unit.excess * weights[row];
   }
   return c;
@@ -243,9 +243,9 @@ class ProcessLayout {
     const Drive& drive = recording(one.session).drive;
     const std::size_t row = row_at(drive, pose(one.from).t);
     const double duration = std::max(drive.duration(row), 1e-9);
-    const double path = 0.5 * (drive.left[row] + drive.right[row]);
-    const double turn = (drive.right[row] - drive.left[row]) / layer_.robot_.wheelbase;
-    ViewVector unit = view_pattern(channel_, 1.0, path / duration, turn / duration).vector();
+    const BodyMotion motion = body_motion(drive, row, layer_.robot_);
+    ViewVector unit =
+        view_pattern(channel_, 1.0, motion.forward / duration, motion.turn / duration).vector();
     if (one.kind != MeasurementKind::cartesian_view) return unit;
     // Of a near landmark the offset is measured: its error lies along the sight.
     const Vector2 away = -one.value.head<2>().normalized();

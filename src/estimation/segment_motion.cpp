@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/segment_motion.hpp"
 
+#include "drive/body_motion.hpp"
 #include "odometry/row_reckoner.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
 
@@ -81,11 +81,11 @@ std::vector<SegmentRow> segment_rows(const Drive& drive, double from, double to,
                                      const Robot& robot) {
   std::vector<SegmentRow> rows;
   for (const DriveRow& row : rows_between(drive, from, to)) {
-    const WheelTravel travel = travel_of(drive, row);
+    const BodyMotion motion =
+        body_motion(travel_of(drive, row), robot, row.part * drive.slip(row.row));
     const double reading = drive.has_compass() && row.ends ? drive.heading[row.row] : kAbsent;
-    rows.push_back({row.row, row.part, 0.5 * (travel.left + travel.right),
-                    (travel.right - travel.left) / robot.wheelbase, row.duration, reading,
-                    row.part * drive.slip(row.row)});
+    rows.push_back(
+        {row.row, row.part, motion.forward, motion.turn, row.duration, reading, motion.sideways});
   }
   return rows;
 }
@@ -182,9 +182,8 @@ Matrix4 segment_covariance(const Drive& drive, const std::vector<SegmentRow>& ro
   Pose pose;
   int readings = 0;
   for (const SegmentRow& row : rows) {
-    const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
     const Matrix3 T = pose_rotation(pose.heading);
-    const Pose step = displacement_of(travel, row.slip, robot.wheelbase);
+    const Pose step = displacement_of({row.path, row.slip, row.turn});
     Matrix4 F = Matrix4::Identity();
     F.block<2, 1>(0, 2) = quarter_turn(T.topLeftCorner<2, 2>() * step.position());
     P = F * P * F.transpose();

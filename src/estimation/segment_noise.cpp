@@ -3,7 +3,7 @@
 #include "estimation/segment_noise.hpp"
 
 #include "estimation/noise_states.hpp"
-#include "odometry/wheels_and_gyro.hpp"
+#include "odometry/row_reckoner.hpp"
 #include "parallel/parallel_for.hpp"
 
 #include <algorithm>

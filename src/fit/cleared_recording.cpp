@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit/cleared_recording.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/wheels_and_gyro.hpp"
 #include "effects/steering.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/effect_columns.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
@@ -41,15 +42,14 @@ DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offse
 }
 
 void clear_drive(const Recording& recorded, const EffectParameters& border,
-                 const Eigen::VectorXd& offsets, std::size_t session, double wheelbase,
+                 const Eigen::VectorXd& offsets, std::size_t session, const Robot& robot,
                  ClearedRecording& result) {
   const Drive& drive = recorded.drive;
   Drive& clear = result.recording.drive;
   result.slip.assign(drive.rows(), 0.0);
   for (std::size_t row = 0; row < drive.rows(); ++row) {
     const DrivePattern more = sum_at(border, offsets, session, row);
-    clear.left[row] = drive.left[row] + more.advance - 0.5 * wheelbase * more.turn;
-    clear.right[row] = drive.right[row] + more.advance + 0.5 * wheelbase * more.turn;
+    add_motion(clear, row, {more.advance, 0.0, more.turn}, robot);
     result.slip[row] = more.slip;
     if (!drive.gyro.empty()) clear.gyro[row].excess = drive.gyro[row].excess + more.excess;
     if (drive.has_compass()) clear.heading[row] = drive.heading[row] - more.compass;
@@ -79,10 +79,10 @@ void clear_sightings(const Recording& recorded, const EffectParameters& border,
 }
 
 void clear(const std::vector<Recording>& timed, const EffectParameters& border,
-           const Eigen::VectorXd& offsets, double wheelbase,
+           const Eigen::VectorXd& offsets, const Robot& robot,
            std::vector<ClearedRecording>& result) {
   for (std::size_t s = 0; s < timed.size(); ++s) {
-    clear_drive(timed[s], border, offsets, s, wheelbase, result[s]);
+    clear_drive(timed[s], border, offsets, s, robot, result[s]);
     clear_sightings(timed[s], border, offsets, static_cast<int>(s), result[s]);
   }
 }
@@ -140,7 +140,7 @@ std::vector<ClearedRecording> cleared(const std::vector<Recording>& recorded, co
       offsets[static_cast<Eigen::Index>(k)] =
           effects[one.effect].coefficients[one.place] - columns.border[k].reference;
     }
-    clear(timed, columns.border, offsets, model.robot.wheelbase, result);
+    clear(timed, columns.border, offsets, model.robot, result);
   }
   for (std::size_t s = 0; s < timed.size(); ++s) {
     result[s].recording.truth = recorded[s].truth;
@@ -155,7 +155,7 @@ std::vector<ClearedRecording> cleared(const FitState& fit) {
 std::vector<ClearedRecording> cleared(const FitState& fit, const Eigen::VectorXd& offsets) {
   std::vector<ClearedRecording> result;
   for (const Recording& recording : fit.recordings) result.push_back(as_recorded(recording));
-  clear(fit.recordings, fit.columns.border, offsets, fit.model.robot.wheelbase, result);
+  clear(fit.recordings, fit.columns.border, offsets, fit.model.robot, result);
   return result;
 }
 

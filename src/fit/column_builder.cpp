@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/column_builder.hpp"
 
+#include "drive/row_motion.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "estimation/student_tails.hpp"
 #include "parallel/parallel_for.hpp"
@@ -244,15 +245,14 @@ ColumnBuilder::Values ColumnBuilder::evaluated(const Evaluation& one) const {
 
 void ColumnBuilder::work_out(const Segment& segment,
                              std::span<const std::pair<Channel, double*>> wanted) const {
-  const double wheelbase = context_.robot().wheelbase;
   for (std::size_t k = segment.begin; k < segment.end; ++k) {
     const std::size_t first = 4 * (k - segment.begin);
     for (const auto& [channel, columns] : wanted) std::fill_n(columns + first, 4, 0.0);
     for (std::size_t at = training_segments_[k].begin; at < training_segments_[k].end; ++at) {
       const Row& row = (*segment_rows_)[at];
-      const RowTravel travel = context_.travel(segment.session, row.row);
+      const RowMotion motion = context_.motion(segment.session, row.row);
       for (const auto& [channel, columns] : wanted) {
-        const DrivePattern unit = drive_pattern(channel, 1.0, travel, wheelbase);
+        const DrivePattern unit = drive_pattern(channel, 1.0, motion);
         Eigen::Map<Vector4>(columns + first) +=
             segment.gyro ? Vector4(unit.excess * row.excess()) : row.times(unit);
       }

@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/corrected_odometry.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/row_motion.hpp"
+#include "drive/wheel_kinematics.hpp"
+#include "drive/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/steering.hpp"
-#include "effects/wheel_kinematics.hpp"
 #include "fit/effect_columns.hpp"
 #include "fit/online_terms.hpp"
 #include "odometry/row_reckoner.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -42,7 +44,6 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
       : robot_(model.robot),
         noise_(model.noise),
         inputs_(std::move(inputs)),
-        variables_(robot_.wheelbase),
         covariates_(inputs_.covariates.size(), kAbsent),
         now_{RowReckoner({}, inputs_.compass)} {
     if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
@@ -66,10 +67,10 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
     take_wheels(row);
     const GyroShare gyro = gyro_share(one_row_, 0, row.yaw_rate, row.duration, robot_, noise_);
     const ReckonedRow recorded = as_recorded(row, gyro);
-    const RowWay wheels{gyro.left, gyro.right, gyro.sideways};
-    const RowWay both = kinematics_
-                            ? RowWay{recorded.travel.left, recorded.travel.right, recorded.sideways}
-                            : wheels;
+    const WheelWay wheels{gyro.left, gyro.right, gyro.sideways};
+    const BodyMotion both = kinematics_
+                                ? body_motion(recorded.travel, robot_, recorded.sideways)
+                                : body_motion({wheels.left, wheels.right}, robot_, wheels.sideways);
     const CausalRow facts = variables_.next(wheels, both, row.duration);
     // Shapes that speak of the pose see it first as the row says, then as corrected.
     const bool twice =
@@ -89,7 +90,7 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
     last_ = facts;
     std::copy(covariates.begin(), covariates.end(), covariates_.begin());
     now_ = after;
-    return {{displacement_of(clear.travel, clear.slip + clear.sideways, robot_.wheelbase),
+    return {{displacement_of(body_motion(clear.travel, robot_, clear.slip + clear.sideways)),
              covariance_of(clear, robot_, noise_)},
             now_.reckoner.at()};
   }
@@ -265,20 +266,20 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
                       std::span<const double> covariates, const Reckoning& after) {
     const Pose middle = middle_of(after);
     const Pose end = after.map_pose(after.reckoner.at().pose);
-    const double wheelbase = robot_.wheelbase;
-    RowTravel shown = row_travel(gyro, row.duration, wheelbase);
+    RowMotion shown = row_motion(gyro, row.duration, robot_);
     if (kinematics_) shown.wheels = &one_row_.wheels;
     DrivePattern more;
     drives_.fill(facts, middle, covariates);
     for (const OnlineTerm& term : drives_.all()) {
-      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term), shown, wheelbase);
+      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term), shown);
       more.advance += term.coefficient * unit.advance;
       more.slip += term.coefficient * unit.slip;
       more.turn += term.coefficient * unit.turn;
     }
     ReckonedRow clear = row;
-    clear.travel = {row.travel.left + more.advance - 0.5 * wheelbase * more.turn,
-                    row.travel.right + more.advance + 0.5 * wheelbase * more.turn};
+    const WheelTravel turned = wheel_travel({0.0, 0.0, more.turn}, robot_);
+    clear.travel = {row.travel.left + more.advance + turned.left,
+                    row.travel.right + more.advance + turned.right};
     clear.slip = more.slip;
     clear.noise = noise_of(clear, gyro);
     if (std::isnan(row.reading)) return clear;

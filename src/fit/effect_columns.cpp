@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "fit/effect_columns.hpp"
 
+#include "drive/row_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "effects/corrected_recording.hpp"
 #include "effects/steering.hpp"
-#include "recording/row_variables.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ RowVariables event_variables(const Recording& recording, const Robot& robot,
     instants.push_back(event.t);
     poses.push_back(pose_at(recording.drive, path, event.t));
   }
-  return instant_variables(recording.drive, robot.wheelbase, instants, poses, session);
+  return instant_variables(recording.drive, robot, instants, poses, session);
 }
 
 }  // namespace
@@ -56,21 +57,20 @@ ShapeContext::ShapeContext(const std::vector<Recording>& recordings, const Robot
                            const std::vector<SessionPath>& paths)
     : recordings_(recordings), robot_(robot), paths_(paths) {}
 
-RowTravel ShapeContext::travel(std::size_t session, std::size_t row) const {
+RowMotion ShapeContext::motion(std::size_t session, std::size_t row) const {
   const Drive& drive = recordings_[session].drive;
-  RowTravel travel = row_travel(drive, row, robot_.wheelbase);
+  RowMotion motion = row_motion(drive, row, robot_);
   const SessionPath& path = paths_[session];
-  if (path.missing.empty()) return travel;
+  if (path.missing.empty()) return motion;
   Vector2 lacks = path.missing[row];
-  if (travel.gyro_reads && !path.excess.empty()) {
+  if (motion.gyro_reads && !path.excess.empty()) {
     // The noise of an excess is the wheels' in part, and the gyro's for the rest.
     const double excess = path.excess[row];
-    travel.gyro_turn += lacks[1] - (1.0 - travel.gyro_share) * excess;
-    lacks += excess * Vector2(travel.gyro_along, travel.gyro_share);
+    motion.gyro_turn += lacks[1] - (1.0 - motion.gyro_share) * excess;
+    lacks += excess * Vector2(motion.gyro_along, motion.gyro_share);
   }
-  travel.left += lacks[0] - 0.5 * robot_.wheelbase * lacks[1];
-  travel.right += lacks[0] + 0.5 * robot_.wheelbase * lacks[1];
-  return travel;
+  motion.add({lacks[0], 0.0, lacks[1]}, robot_);
+  return motion;
 }
 
 const RowVariables& ShapeContext::variables(std::size_t session, Instant at) const {
@@ -79,14 +79,13 @@ const RowVariables& ShapeContext::variables(std::size_t session, Instant at) con
   if (found != variables_.end()) return found->second;
   const Recording& one = recordings_[session];
   const SessionPath& path = paths_[session];
-  const double wheelbase = robot_.wheelbase;
   const int number = static_cast<int>(session);
   const auto made = [&]() -> RowVariables {
     switch (at) {
       case Instant::middle:
-        return row_variables(one.drive, wheelbase, path.start, path.ends, number);
+        return row_variables(one.drive, robot_, path.start, path.ends, number);
       case Instant::end:
-        return instant_variables(one.drive, wheelbase, one.drive.t, path.ends, number);
+        return instant_variables(one.drive, robot_, one.drive.t, path.ends, number);
       case Instant::sighting:
         return event_variables(one, robot_, path, one.sightings, number);
       case Instant::truth:
@@ -160,8 +159,7 @@ Column make_column(Channel channel, const Shape& shape, int session, const Shape
     std::vector<DrivePattern>& patterns = column.pattern.drives.emplace_back();
     patterns.reserve(values[s].size());
     for (std::size_t row = 0; row < values[s].size(); ++row) {
-      patterns.push_back(drive_pattern(channel, values[s][row], context.travel(s, row),
-                                       context.robot().wheelbase));
+      patterns.push_back(drive_pattern(channel, values[s][row], context.motion(s, row)));
     }
   }
   column.largest = adds_to_rows(channel, shape)
@@ -217,8 +215,7 @@ double size_of_additions(Channel channel, const Shape& shape, int session,
   for (std::size_t s = 0; s < values.size(); ++s) {
     if (session >= 0 && s != idx(session)) continue;
     for (std::size_t row = 0; row < values[s].size(); ++row) {
-      const DrivePattern unit =
-          drive_pattern(gain, 1.0, context.travel(s, row), context.robot().wheelbase);
+      const DrivePattern unit = drive_pattern(gain, 1.0, context.motion(s, row));
       added += std::abs(values[s][row]);
       moved += std::abs(gain == Channel::travel ? unit.advance : unit.turn);
     }
@@ -284,8 +281,8 @@ std::vector<double> retimed(const std::vector<double>& instants, const Recording
   for (const Effect& effect : effects) {
     if (effect.channel != delay) continue;
     const std::vector<double> coefficients = coefficients_of(effect, sessions);
-    const RowVariables variables = instant_variables(recording.drive, robot.wheelbase, instants,
-                                                     nowhere, static_cast<int>(session));
+    const RowVariables variables =
+        instant_variables(recording.drive, robot, instants, nowhere, static_cast<int>(session));
     for (std::size_t k = 0; k < effect.shape.size(); ++k) {
       const std::vector<double> f =
           in_words_of(effect, [&] { return effect.shape[k].values(variables); });
@@ -306,9 +303,8 @@ std::vector<Recording> steered(const std::vector<Recording>& recordings,
     const bool led = s < paths.size() && paths[s].ends.size() == drive.rows();
     const int session = static_cast<int>(s);
     const RowVariables variables =
-        led ? row_variables(drive, robot.wheelbase, paths[s].start, paths[s].ends, session)
-            : row_variables(drive, robot.wheelbase, Pose(), std::vector<Pose>(drive.rows()),
-                            session);
+        led ? row_variables(drive, robot, paths[s].start, paths[s].ends, session)
+            : row_variables(drive, robot, Pose(), std::vector<Pose>(drive.rows()), session);
     drive = steered(std::move(drive), robot, effects, variables, session);
   }
   return result;

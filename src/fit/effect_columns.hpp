@@ -15,9 +15,10 @@
 // sightings and truth, or of fixes, moved back (retimed), and the wheels steered (steered).
 #pragma once
 
+#include "drive/row_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "estimation/effect_parameters.hpp"
 #include "fit/fitted_path.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/channel.hpp"
 
 #include <map>
@@ -67,7 +68,7 @@ class ShapeContext {
   /// Makes the variables of all sessions at these instants.
   void prepare(Instant at) const;
   /// A row's travels, its noise taken out.
-  [[nodiscard]] RowTravel travel(std::size_t session, std::size_t row) const;
+  [[nodiscard]] RowMotion motion(std::size_t session, std::size_t row) const;
 
   [[nodiscard]] const std::vector<Recording>& recordings() const { return recordings_; }
   [[nodiscard]] const Robot& robot() const { return robot_; }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_state.hpp"
 
+#include "drive/wheels_and_gyro.hpp"
 #include "effects/steering.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/recording_descent.hpp"
@@ -10,7 +11,6 @@
 #include "estimation/student_tails.hpp"
 #include "fit/cleared_recording.hpp"
 #include "fit/noise_free.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>

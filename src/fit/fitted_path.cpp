@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fitted_path.hpp"
 
+#include "drive/row_variables.hpp"
 #include "parallel/parallel_for.hpp"
-#include "recording/row_variables.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,10 +59,9 @@ std::vector<Vector2> estimated_noise(const std::vector<SegmentRow>& rows, const 
     A.col(1) = influences[k].block<3, 1>(0, 2);
     const double left = std::abs(rows[k].part * drive.wheel_left(rows[k].row)) + kLeastShare;
     const double right = std::abs(rows[k].part * drive.wheel_right(rows[k].row)) + kLeastShare;
+    const ArcNoise wheels = wheel_arc_noise({left, right}, robot.wheelbase, {1.0, 1.0});
     Matrix2 Q;
-    Q << 0.25 * (left + right), 0.5 * (right - left) / robot.wheelbase,
-        0.5 * (right - left) / robot.wheelbase,
-        (left + right) / (robot.wheelbase * robot.wheelbase);
+    Q << wheels.along, wheels.shared, wheels.shared, wheels.heading;
     if (!drive.gyro.empty()) {
       const GyroShare& gyro = drive.gyro[rows[k].row];
       Q = (Q - Vector2(gyro.along, gyro.turn) * Q.row(1)).eval();

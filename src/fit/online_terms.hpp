@@ -4,7 +4,7 @@
 // Coefficients with their shapes, for one row at a time: a shape's variables are looked up once.
 #pragma once
 
-#include "recording/causal_variables.hpp"
+#include "drive/causal_variables.hpp"
 #include "trussmap/channel.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"

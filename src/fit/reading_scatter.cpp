@@ -22,12 +22,12 @@ constexpr double kLeastVariance = 1e-12;
 bool shows_in_readings(const NoiseProcess& process) {
   if (process.process == ProcessKind::white) return false;
   if (process.channel == Channel::compass) return is_chain(process.process);
-  const RowTravel some{0.5, 1.0, 1.0};
+  const RowMotion some = row_motion({0.5, 1.0}, 0.0, 1.0, Robot());
   return acts_on(process.channel) == ActsOn::drives &&
-         drive_pattern(process.channel, 1.0, some, 1.0).turn != 0.0;
+         drive_pattern(process.channel, 1.0, some).turn != 0.0;
 }
 
-ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot.wheelbase) {
+ReadingScatter::ReadingScatter(const FitState& fit) {
   const Eigen::VectorXd offsets = offsets_of(fit);
   Noise wheels_alone;
   wheels_alone.left = fit.model.noise.left;
@@ -52,7 +52,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) : wheelbase_(fit.model.robot
       turned += motion.displacement.heading;
       const WheelTravel travel{row.part * drive.left[row.row], row.part * drive.right[row.row]};
       Row next;
-      next.travel = {travel.left, travel.right, row.duration};
+      next.motion = row_motion(travel, 0.0, row.duration, fit.model.robot);
       next.way = std::abs(row.path);
       next.turn = std::abs(row.turn);
       next.wheels = arc_covariance(travel, row.duration, fit.model.robot, wheels_alone)(2, 2);
@@ -168,14 +168,13 @@ double ReadingScatter::filtered(const ReadingNoise& noise) const {
         const NoiseProcess& one = processes[idx(p)];
         const int at = p + 1;
         const bool by_way = goes_with_distance(one.process);
-        const double lag = by_way ? row.way : row.travel.duration;
+        const double lag = by_way ? row.way : row.motion.duration;
         if (is_correlated(one.process) && (by_way || lag != last)) {
           keeps[at] = std::exp(-lag / one.length);
         }
         const double keep = keeps[at];
         if (seen[at] == 0.0) {
-          const double turn =
-              drive_pattern(one.channel, 0.5 * (1.0 + keep), row.travel, wheelbase_).turn;
+          const double turn = drive_pattern(one.channel, 0.5 * (1.0 + keep), row.motion).turn;
           x[0] += turn * x[at];
           P.row(0) += turn * P.row(at);
           P.col(0) += turn * P.col(at);
@@ -186,7 +185,7 @@ double ReadingScatter::filtered(const ReadingNoise& noise) const {
         P.col(at) *= keep;
         P(at, at) += one.sd * one.sd * (is_correlated(one.process) ? 1.0 - keep * keep : lag);
       }
-      last = row.travel.duration;
+      last = row.motion.duration;
       if (std::isnan(row.y)) continue;
       const Column gain = P * seen;
       const double variance = seen.dot(gain) + white;

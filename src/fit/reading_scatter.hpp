@@ -20,6 +20,7 @@
 // differences, to which the mean adds what it knows besides.
 #pragma once
 
+#include "drive/row_motion.hpp"
 #include "fit/fit_state.hpp"
 
 #include <vector>
@@ -60,13 +61,13 @@ class ReadingScatter {
   };
   struct Row {
     double y = 0.0;  ///< rad; NaN: no reading
-    RowTravel travel;
+    RowMotion motion;
     double way = 0.0;     ///< m
     double turn = 0.0;    ///< rad, not signed
     double wheels = 0.0;  ///< variance that the wheels' k give the turn, rad^2
 
     [[nodiscard]] double turn_variance(const TurnLaws& laws) const {  ///< rad^2
-      return laws.wheels * wheels + laws.per_s * laws.per_s * travel.duration +
+      return laws.wheels * wheels + laws.per_s * laws.per_s * motion.duration +
              laws.per_rad * laws.per_rad * turn;
     }
   };
@@ -82,7 +83,6 @@ class ReadingScatter {
   /// y as well, and would be taken for a habit.
   void free_of_habits(const std::vector<std::vector<Habits>>& habits, const Noise& believed);
 
-  double wheelbase_ = 0.0;
   std::vector<std::vector<Row>> segments_;
 };
 

@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "fit/replicated_recording.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
+#include "drive/unsteered.hpp"
+#include "drive/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/corrected_recording.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/noise_free.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "recording/floor_code.hpp"
-#include "recording/row_variables.hpp"
-#include "recording/unsteered.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,8 +133,7 @@ class Replicator {
           Vector2& missing = paths_[s].missing[row];
           // Who rests goes on resting; the other rows take its share in the next round.
           if (!drive.rests(row)) {
-            drive.left[row] += missing[0] - 0.5 * robot.wheelbase * missing[1];
-            drive.right[row] += missing[0] + 0.5 * robot.wheelbase * missing[1];
+            add_travel(drive, row, wheel_travel({missing[0], 0.0, missing[1]}, robot));
           }
           missing.setZero();
         }
@@ -259,7 +259,7 @@ class Replicator {
   void part_wheels_and_gyro(std::size_t s) {
     Drive& drive = timed_[s].drive;
     const auto patterns = drive_patterns(border_, s);
-    const double wheelbase = fit_.model.robot.wheelbase;
+    const Robot& robot = fit_.model.robot;
     for (std::size_t row = 0; row < drive.gyro.size(); ++row) {
       const GyroShare& gyro = drive.gyro[row];
       if (!std::isfinite(gyro.variance)) continue;
@@ -268,12 +268,12 @@ class Replicator {
         if (patterns[k] == nullptr) continue;
         excess += offsets_[static_cast<Eigen::Index>(k)] * (*patterns[k])[row].excess;
       }
-      const double apart = 0.5 * wheelbase * gyro.turn * excess;
-      drive.left[row] += gyro.along * excess - apart;
-      drive.right[row] += gyro.along * excess + apart;
+      const double along = gyro.along * excess;
+      const double apart = wheel_travel({0.0, 0.0, gyro.turn}, robot).right * excess;
+      add_travel(drive, row, {along - apart, along + apart});
       if (!drive.sideways.empty()) drive.sideways[row] += gyro.aside * excess;
       const double duration = drive.duration(row);
-      const double turn = (drive.right[row] - drive.left[row]) / wheelbase - excess;
+      const double turn = body_motion(drive, row, robot).turn - excess;
       drive.yaw_rate[row] = (turn + drawn(noise_.gyro * std::sqrt(duration))) / duration;
     }
     drive.gyro.clear();
@@ -291,28 +291,27 @@ class Replicator {
     for (int k = 0; k < 3; ++k) {
       more += drawn(std::sqrt(std::max(axes.eigenvalues()[k], 0.0))) * axes.eigenvectors().col(k);
     }
-    const double half = 0.5 * fit_.model.robot.wheelbase;
-    drive.left[row] += more[0] - half * more[2];
-    drive.right[row] += more[0] + half * more[2];
+    add_travel(drive, row, wheel_travel({more[0], 0.0, more[2]}, fit_.model.robot));
     if (!drive.sideways.empty()) drive.sideways[row] += more[1];
   }
 
   void disturb_drive(std::size_t s) {
     Drive& drive = timed_[s].drive;
     const auto patterns = drive_patterns(border_, s);
-    const double half = 0.5 * fit_.model.robot.wheelbase;
+    const Robot& robot = fit_.model.robot;
     for (std::size_t row = 0; row < drive.rows(); ++row) {
       double& left = drive.left[row];
       double& right = drive.right[row];
       const double duration = drive.duration(row);
-      const double turned = std::abs(right - left) / (2.0 * half);
+      const double turn = std::abs(body_motion(drive, row, robot).turn);
       const double heading =
           drawn(std::sqrt(noise_.heading_per_s * noise_.heading_per_s * duration +
-                          noise_.heading_per_rad * noise_.heading_per_rad * turned));
+                          noise_.heading_per_rad * noise_.heading_per_rad * turn));
       const double travel = drawn(noise_.travel_per_s * std::sqrt(duration));
       if (drive.wheels.empty()) {
-        left += drawn(noise_.left * std::sqrt(std::abs(left))) + travel - half * heading;
-        right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + half * heading;
+        const WheelTravel turned = wheel_travel({0.0, 0.0, heading}, robot);
+        left += drawn(noise_.left * std::sqrt(std::abs(left))) + travel + turned.left;
+        right += drawn(noise_.right * std::sqrt(std::abs(right))) + travel + turned.right;
       } else {
         disturb_columns(drive, row);
       }
@@ -343,7 +342,7 @@ class Replicator {
   /// Steering as it was read: a fit takes its effects in before all else.
   void take_drive(Drive& own, Drive&& timed) const {
     std::vector<WheelColumn> wheels = std::move(own.wheels);
-    own = unsteered(std::move(timed), fit_.model.robot.wheelbase);
+    own = unsteered(std::move(timed), fit_.model.robot);
     own.wheels = std::move(wheels);
   }
 
@@ -392,7 +391,7 @@ class Replicator {
         }
         return;
       case ActsOn::drives:
-        free_drive(process.channel, g, fit_.model.robot.wheelbase, drive);
+        free_drive(process.channel, g, fit_.model.robot, drive);
         return;
       case ActsOn::views:
         see_through(process, g, timed_[s]);

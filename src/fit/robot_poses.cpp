@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
 #include "fit/cleared_recording.hpp"
 #include "fit/fit_state.hpp"
 #include "geometry/index.hpp"
 #include "odometry/row_reckoner.hpp"
-#include "odometry/wheels_and_gyro.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/error.hpp"
 
@@ -27,8 +27,8 @@ Matrix3 turned(const Matrix3& covariance, double angle) {
 Motion row_motion(const Drive& drive, std::size_t row, double from, double to, const Model& model) {
   const double begin = row == 0 ? drive.start() : drive.t[row - 1];
   const double part = (to - from) / (drive.t[row] - begin);
-  const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
-  return {displacement_of(travel, part * drive.slip(row), model.robot.wheelbase),
+  return {displacement_of(body_motion({part * drive.left[row], part * drive.right[row]},
+                                      model.robot, part * drive.slip(row))),
           row_covariance(drive, row, part, to - from, model.robot, model.noise)};
 }
 

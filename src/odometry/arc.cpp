@@ -40,8 +40,11 @@ double g2(double x) {
 }  // namespace
 
 Pose arc_displacement(const WheelTravel& travel, double wheelbase) {
-  const double path = 0.5 * (travel.left + travel.right);
-  const double turn = (travel.right - travel.left) / wheelbase;
+  return arc_displacement(0.5 * (travel.left + travel.right),
+                          (travel.right - travel.left) / wheelbase);
+}
+
+Pose arc_displacement(double path, double turn) {
   const double chord = path * sinc(0.5 * turn);
   return {chord * std::cos(0.5 * turn), chord * std::sin(0.5 * turn), turn};
 }

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/dead_reckoning.hpp"
 
+#include "drive/body_motion.hpp"
+#include "drive/wheels_and_gyro.hpp"
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "recording/floor_code.hpp"
 
 #include <cmath>
@@ -25,7 +26,7 @@ std::optional<ArcNoise> noise_of_row(const Drive& drive, const DriveRow& row, co
 ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robot,
                    const Noise& noise) {
   ArcNoise sources = wheel_arc_noise(travel, robot.wheelbase, WheelNoise{noise.left, noise.right});
-  const double turn = (travel.right - travel.left) / robot.wheelbase;
+  const double turn = body_motion(travel, robot).turn;
   sources.along += noise.travel_per_s * noise.travel_per_s * duration;
   sources.heading += noise.heading_per_s * noise.heading_per_s * duration +
                      noise.heading_per_rad * noise.heading_per_rad * std::abs(turn);
@@ -34,9 +35,8 @@ ArcNoise arc_noise(const WheelTravel& travel, double duration, const Robot& robo
 
 Matrix3 arc_covariance(const WheelTravel& travel, double duration, const Robot& robot,
                        const Noise& noise) {
-  return arc_covariance(0.5 * (travel.left + travel.right),
-                        (travel.right - travel.left) / robot.wheelbase,
-                        arc_noise(travel, duration, robot, noise));
+  const BodyMotion motion = body_motion(travel, robot);
+  return arc_covariance(motion.forward, motion.turn, arc_noise(travel, duration, robot, noise));
 }
 
 LandmarkOffset landmark_offset(const Sighting& sighting, const Noise& noise) {
@@ -56,8 +56,7 @@ InitialHeading initial_heading(const Drive& drive, double t, const Robot& robot,
   double variance = 0.0;
   for (const DriveRow& row : rows_between(drive, t, drive.t.back())) {
     if (!drive.has_compass()) break;
-    const WheelTravel travel = travel_of(drive, row);
-    turn += (travel.right - travel.left) / robot.wheelbase;
+    turn += body_motion(travel_of(drive, row), robot).turn;
     variance += row_covariance(drive, row.row, row.part, row.duration, robot, noise)(2, 2);
     const double reading = drive.heading[row.row];
     if (!std::isnan(reading)) {
@@ -112,8 +111,8 @@ PoseEstimate dead_reckon(const PoseEstimate& start, const Drive& drive, double f
   }
   estimate.pose = start.pose;
   for (const DriveRow& row : rows) {
-    estimate.pose = compose(estimate.pose,
-                            displacement_of(travel_of(drive, row), slip_in(row), robot.wheelbase));
+    estimate.pose = compose(
+        estimate.pose, displacement_of(body_motion(travel_of(drive, row), robot, slip_in(row))));
   }
   return estimate;
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/effect_correction.hpp"
 
+#include "drive/row_variables.hpp"
 #include "effects/corrected_recording.hpp"
-#include "recording/row_variables.hpp"
 
 namespace trussmap {
 namespace {
@@ -26,7 +26,7 @@ std::vector<Recording> without_effects(const std::vector<Recording>& recordings,
       const std::vector<Pose> path = dead_reckoned_path(corrected.drive, model.robot, model.noise);
       corrected =
           corrected_recording(recording, model,
-                              row_variables(recording.drive, model.robot.wheelbase,
+                              row_variables(recording.drive, model.robot,
                                             start_pose(corrected.drive, model), path, session),
                               session);
     }

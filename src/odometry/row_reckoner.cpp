@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/row_reckoner.hpp"
 
+#include "drive/wheels_and_gyro.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,14 +30,24 @@ void correct_heading(PoseEstimate& estimate, double reading, double variance) {
 
 Matrix3 covariance_of(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
   if (!row.noise) return arc_covariance(row.travel, row.duration, robot, noise);
-  return slanting_covariance(Vector2(0.5 * (row.travel.left + row.travel.right), row.sideways),
-                             (row.travel.right - row.travel.left) / robot.wheelbase, *row.noise);
+  const BodyMotion motion = body_motion(row.travel, robot);
+  return slanting_covariance(Vector2(motion.forward, row.sideways), motion.turn, *row.noise);
 }
 
-Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase) {
-  if (slip == 0.0) return arc_displacement(travel, wheelbase);
-  return slanting_displacement({0.5 * (travel.left + travel.right), slip},
-                               (travel.right - travel.left) / wheelbase);
+Pose displacement_of(const BodyMotion& motion) {
+  if (motion.sideways == 0.0) return arc_displacement(motion.forward, motion.turn);
+  return slanting_displacement({motion.forward, motion.sideways}, motion.turn);
+}
+
+Matrix3 row_covariance(const Drive& drive, std::size_t row, double part, double duration,
+                       const Robot& robot, const Noise& noise) {
+  const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
+  if (drive.gyro.empty() && drive.wheels.empty()) {
+    return arc_covariance(travel, duration, robot, noise);
+  }
+  const BodyMotion motion = body_motion(travel, robot, part * drive.slip(row));
+  return slanting_covariance(Vector2(motion.forward, motion.sideways), motion.turn,
+                             row_noise(drive, row, part, duration, robot, noise));
 }
 
 double reading_variance(const Noise& noise) {
@@ -64,7 +76,8 @@ double white_equivalent(const Noise& noise, double duration, double way) {
 }
 
 void RowReckoner::take(const ReckonedRow& row, const Robot& robot, const Noise& noise) {
-  const Pose displacement = displacement_of(row.travel, row.slip + row.sideways, robot.wheelbase);
+  const Pose displacement =
+      displacement_of(body_motion(row.travel, robot, row.slip + row.sideways));
   if (compass_ || row.noise) {
     at_ = moved(at_, displacement, covariance_of(row, robot, noise));
     if (!std::isnan(row.reading)) {

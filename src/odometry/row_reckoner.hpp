@@ -9,6 +9,7 @@
 //   with a gyro, or with other wheels than two   row by row
 #pragma once
 
+#include "drive/body_motion.hpp"
 #include "odometry/merge.hpp"
 #include "trussmap/arc.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -17,9 +18,12 @@
 
 namespace trussmap {
 
-/// What wheels show, and a slip to the left besides (m) that is spread evenly along the same arc;
-/// in the frame of its start.
-[[nodiscard]] Pose displacement_of(const WheelTravel& travel, double slip, double wheelbase);
+/// In the frame of its start.
+[[nodiscard]] Pose displacement_of(const BodyMotion& motion);
+/// What its end is unsure by, as arc_covariance, of a row or the part of it that lasts `duration`
+/// s.
+[[nodiscard]] Matrix3 row_covariance(const Drive& drive, std::size_t row, double part,
+                                     double duration, const Robot& robot, const Noise& noise);
 
 /// Variance of a single compass reading, rad^2: white noise and what lasts.
 [[nodiscard]] double reading_variance(const Noise& noise);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/further_columns.hpp"
 
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>

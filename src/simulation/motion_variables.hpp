@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The variables that shapes speak of, as a true motion has them. The names are those of
-// recording/row_variables.hpp; how they are found is the simulator's own.
+// drive/row_variables.hpp; how they are found is the simulator's own.
 //
 //   middle   at the middle of each row, for all that acts on the motion
 //   instant  heading, x, y, t, distance at the end of each row, for readings taken then; the rest

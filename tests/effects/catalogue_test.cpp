@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/catalogue.hpp"
 
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 #include "text/edit_distance.hpp"
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include "effects/channel_physics.hpp"
 
 #include "effects/channel_record.hpp"
+#include "effects/corrected_recording.hpp"
 
 #include <cmath>
 #include <random>
@@ -16,9 +17,10 @@ namespace trussmap {
 namespace {
 
 constexpr double kWheelbase = 0.4;
+const Robot kRobot{.wheelbase = kWheelbase};
 
 /// What the robot did in a row, given what its wheels say: ds, slip, dtheta, reading less heading.
-Eigen::Vector4d motion(Channel channel, double g, const RowTravel& row) {
+Eigen::Vector4d motion(Channel channel, double g, const RowMotion& row) {
   double left = row.left;
   double right = row.right;
   if (channel == Channel::left || channel == Channel::wheels) left *= 1.0 + g;
@@ -64,9 +66,9 @@ Eigen::Vector2d reading(const ViewPattern& pattern) {
           direction(view) - pattern.heading + pattern.bearing};
 }
 
-RowTravel any_row(std::mt19937_64& random) {
+RowMotion any_row(std::mt19937_64& random) {
   std::uniform_real_distribution<double> travel(-0.2, 0.3);
-  return {travel(random), travel(random), 0.1};
+  return row_motion({travel(random), travel(random)}, 0.0, 0.1, kRobot);
 }
 
 bool of_gyro(Channel channel) {
@@ -79,17 +81,17 @@ TEST_P(EveryChannel, AddsToARowWhatTheTableSays) {
   std::mt19937_64 random(2);
   bool acts = false;
   for (int k = 0; k < 50; ++k) {
-    const RowTravel row = any_row(random);
+    const RowMotion row = any_row(random);
     const double step = 1e-3;
     const Eigen::Vector4d expected =
         (motion(GetParam(), step, row) - motion(GetParam(), -step, row)) / (2.0 * step);
-    const DrivePattern found = drive_pattern(GetParam(), 1.0, row, kWheelbase);
+    const DrivePattern found = drive_pattern(GetParam(), 1.0, row);
     EXPECT_LT(
         (Eigen::Vector4d(found.advance, found.slip, found.turn, found.compass) - expected).norm(),
         1e-12);
     acts = acts || expected.norm() > 0.0;
     // Linear in g: the column is the physics.
-    const DrivePattern twice = drive_pattern(GetParam(), -2.0, row, kWheelbase);
+    const DrivePattern twice = drive_pattern(GetParam(), -2.0, row);
     EXPECT_DOUBLE_EQ(twice.advance, -2.0 * found.advance);
     EXPECT_DOUBLE_EQ(twice.turn, -2.0 * found.turn);
   }
@@ -103,7 +105,7 @@ TEST_P(EveryChannel, AddsToARowWithAGyroWhatBothSay) {
   const Channel channel = GetParam();
   std::mt19937_64 random(3);
   for (int k = 0; k < 20; ++k) {
-    RowTravel row = any_row(random);
+    RowMotion row = any_row(random);
     row.gyro_reads = true;
     row.gyro_turn = 0.21;
     row.gyro_along = 0.004;
@@ -120,7 +122,7 @@ TEST_P(EveryChannel, AddsToARowWithAGyroWhatBothSay) {
       return all;
     };
     const Eigen::Matrix<double, 5, 1> expected = (said(step) - said(-step)) / (2.0 * step);
-    const DrivePattern found = drive_pattern(channel, 1.0, row, kWheelbase);
+    const DrivePattern found = drive_pattern(channel, 1.0, row);
     Eigen::Matrix<double, 5, 1> all;
     all << found.advance, found.slip, found.turn, found.compass, found.excess;
     EXPECT_LT((all - expected).norm(), 1e-12);
@@ -184,11 +186,12 @@ TEST_P(EveryChannel, LeavesTheRobotsMotionWhereARecordingIsFreedFromIt) {
   if (!is_recordable(GetParam()) || acts_on(GetParam()) != ActsOn::drives) return;
   std::mt19937_64 random(3);
   for (int k = 0; k < 50; ++k) {
-    const RowTravel row = any_row(random);
-    const RowTravel nominal = without(GetParam(), 0.07, row, kWheelbase);
+    const RowMotion row = any_row(random);
+    Drive drive{{0.1, 0.2}, {row.left, row.left}, {row.right, row.right}, {}, {}};
+    free_drive(GetParam(), {0.07, 0.07}, kRobot, drive);
     const Eigen::Vector4d did = motion(GetParam(), 0.07, row);
-    EXPECT_NEAR(0.5 * (nominal.left + nominal.right), did[0], 1e-15);
-    EXPECT_NEAR((nominal.right - nominal.left) / kWheelbase, did[2], 1e-14);
+    EXPECT_NEAR(0.5 * (drive.left[1] + drive.right[1]), did[0], 1e-15);
+    EXPECT_NEAR((drive.right[1] - drive.left[1]) / kWheelbase, did[2], 1e-14);
   }
 }
 

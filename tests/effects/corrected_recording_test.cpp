@@ -4,7 +4,7 @@
 // What a model's effects make of a recording.
 #include "effects/corrected_recording.hpp"
 
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -33,8 +33,9 @@ Recording corrected(Channel channel, const Shape& shape, double coefficient) {
   model.robot.wheelbase = kWheelbase;
   model.effects.push_back({"test", channel, {shape}, {coefficient}, false});
   const Recording r = recording();
-  return corrected_recording(r, model,
-                             row_variables(r.drive, kWheelbase, {}, std::vector<Pose>(3), 0), 0);
+  return corrected_recording(
+      r, model, row_variables(r.drive, Robot{.wheelbase = kWheelbase}, {}, std::vector<Pose>(3), 0),
+      0);
 }
 
 /// Against formats.md's table, row 3: travel 0.5 m, turn 0.4 rad, 1 s.

@@ -3,8 +3,8 @@
 //
 // The simulator turns the physics round, the adjustment has it the right way round; neither knows
 // the other. Without noise they must meet at chi^2 = 0 and at the coefficients that were given.
+#include "drive/row_variables.hpp"
 #include "estimation/recording_adjustment.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -76,8 +76,7 @@ EffectParameters border_of(const Effect& effect, const Simulated& simulated) {
   const TrueMotion& motion = simulated.drive.motion;
   std::vector<Pose> path;
   for (const TrueRow& row : motion.rows) path.push_back(row.pose);
-  RowVariables variables =
-      row_variables(drive, simulated.robot.geometry.wheelbase, motion.start, path, 0);
+  RowVariables variables = row_variables(drive, simulated.robot.geometry, motion.start, path, 0);
   if (effect.channel == Channel::compass) {
     for (std::size_t row = 0; row < path.size(); ++row) {
       variables["heading"][row] = path[row].heading;

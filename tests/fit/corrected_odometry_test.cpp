@@ -4,9 +4,9 @@
 // A model's odometry row by row, against the same reckoned afterwards.
 #include "trussmap/corrected_odometry.hpp"
 
+#include "drive/causal_variables.hpp"
 #include "estimation/simulated_recordings.hpp"
 #include "fit/online_models.hpp"
-#include "recording/causal_variables.hpp"
 #include "shared_data.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/fit_model.hpp"
@@ -166,14 +166,15 @@ void expect_late_only(const Recording& recording, const Robot& robot, Channel ch
   Model model = with({own_effect(channel, shape, a)});
   model.robot = robot;
   const Drive& drive = recording.drive;
-  const RowVariables about =
-      row_variables(drive, robot.wheelbase, {}, std::vector<Pose>(drive.rows()), 0);
+  const RowVariables about = row_variables(drive, robot, {}, std::vector<Pose>(drive.rows()), 0);
   const std::vector<double>& whole = about.at(shape);
-  CausalVariables variables(robot.wheelbase);
+  CausalVariables variables;
   double most = 0.0;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    const CausalRow now = variables.next(drive.left[row], drive.right[row], drive.duration(row));
-    variables.take(drive.left[row], drive.right[row], drive.duration(row));
+    const WheelWay wheels{drive.left[row], drive.right[row]};
+    const BodyMotion body = body_motion(drive, row, robot);
+    const CausalRow now = variables.next(wheels, body, drive.duration(row));
+    variables.take(wheels, body, drive.duration(row));
     const double f = std::string(shape) == "speed" ? now.speed : now.arc_angle;
     const double path = 0.5 * std::abs(drive.left[row] + drive.right[row]);
     most += std::abs(a * (f - whole[row])) * (channel == Channel::travel ? path : 1.0);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 //
 // A model's odometry in use: places, sightings, what is refused, and the guide's example.
+#include "drive/row_variables.hpp"
 #include "fit/online_models.hpp"
 #include "policy/source_files.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/corrected_odometry.hpp"
 

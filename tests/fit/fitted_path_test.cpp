@@ -3,8 +3,8 @@
 #include "fit/fitted_path.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "drive/row_variables.hpp"
 #include "fit/fit_state.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/catalogue.hpp"
 
 #include <algorithm>

@@ -4,10 +4,10 @@
 // Drives with other wheels than two, from their columns to a fit, on drives whose truth is known.
 #include "other_drives.hpp"
 
+#include "drive/row_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_motion.hpp"
 #include "fit/effect_columns.hpp"
-#include "recording/row_variables.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/dead_reckoning.hpp"
 #include "trussmap/fit_model.hpp"
@@ -98,9 +98,8 @@ TEST(Steering, LeavesShapesAsTheyWereRead) {
   const Drive& turned = steered_ones.front().drive;
   ASSERT_NE(turned.left, recording.drive.left);
   const std::vector<Pose> path(turned.rows());
-  const double wheelbase = model.robot.wheelbase;
-  const RowVariables before = row_variables(recording.drive, wheelbase, Pose(), path, 0);
-  const RowVariables now = row_variables(turned, wheelbase, Pose(), path, 0);
+  const RowVariables before = row_variables(recording.drive, model.robot, Pose(), path, 0);
+  const RowVariables now = row_variables(turned, model.robot, Pose(), path, 0);
   for (const auto& [name, values] : before) {
     for (std::size_t row = 0; row < values.size(); ++row) {
       ASSERT_NEAR(now.at(name)[row], values[row], 1e-12) << name;
@@ -142,7 +141,7 @@ TEST(OtherDrivesColumns, AreThoseOfDifferences) {
           (12.0 * kStep);
       std::vector<DrivePattern> patterns;
       for (std::size_t row = 0; row < here.rows(); ++row) {
-        patterns.push_back(drive_pattern(channel, 1.0, shown_travel(here, row), robot.wheelbase));
+        patterns.push_back(drive_pattern(channel, 1.0, shown_motion(here, row, robot)));
       }
       const SegmentWithEffects found = segment_motion(segment_rows(here, 5.0, 17.3, robot),
                                                       {&patterns}, Eigen::VectorXd::Zero(1));

@@ -5,29 +5,28 @@
 // wheels, or wheels and gyro, show by the angles as they were read.
 #pragma once
 
+#include "drive/body_motion.hpp"
 #include "trussmap/recording.hpp"
 
-#include <array>
 #include <cstddef>
 
 namespace trussmap {
 
 /// `left` and `right` as they were, where no gyro is taken in; where one is, up to what the changed
 /// derivatives do to its weights.
-[[nodiscard]] inline Drive unsteered(Drive drive, double wheelbase) {
-  const double half = 0.5 * wheelbase;
+[[nodiscard]] inline Drive unsteered(Drive drive, const Robot& robot) {
   for (std::size_t row = 0; row < drive.steered.size(); ++row) {
     auto [ahead, turn] = drive.steered[row];
     if (!drive.gyro.empty()) {
       GyroShare& gyro = drive.gyro[row];
-      gyro.left -= ahead - half * turn;
-      gyro.right -= ahead + half * turn;
+      const WheelTravel added = wheel_travel({ahead, 0.0, turn}, robot);
+      gyro.left -= added.left;
+      gyro.right -= added.right;
       gyro.excess += turn;
       ahead -= gyro.along * turn;
       turn *= 1.0 - gyro.turn;
     }
-    drive.left[row] -= ahead - half * turn;
-    drive.right[row] -= ahead + half * turn;
+    add_travel(drive, row, wheel_travel({-ahead, 0.0, -turn}, robot));
   }
   drive.steered.clear();
   return drive;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "odometry/wheels_and_gyro.hpp"
+#include "drive/wheels_and_gyro.hpp"
 
+#include "drive/body_motion.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>
@@ -36,7 +37,8 @@ ArcNoise columns_noise(const Drive& drive, std::size_t row, double part, double 
     Q += part * variance * by * by.transpose();
   }
   const double travel = noise.travel_per_s * noise.travel_per_s * duration;
-  const double turn = std::abs(part * (drive.right[row] - drive.left[row]) / robot.wheelbase);
+  const double apart = part * (drive.right[row] - drive.left[row]);
+  const double turn = std::abs(body_motion({0.0, apart}, robot).turn);
   const double heading = noise.heading_per_s * noise.heading_per_s * duration +
                          noise.heading_per_rad * noise.heading_per_rad * turn;
   return {Q(0, 0) + travel, Q(2, 2) + heading,
@@ -66,7 +68,7 @@ GyroShare gyro_share(const WheelTravel& wheels, double yaw_rate, double duration
     share.variance = std::numeric_limits<double>::infinity();
     return share;
   }
-  share.excess = yaw_rate * duration - (share.right - share.left) / robot.wheelbase;
+  share.excess = yaw_rate * duration - body_motion(wheels, robot).turn;
   share.variance = gyro_variance(noise, duration);
   if (share.left == 0.0 && share.right == 0.0) return share;
   const double total = of_wheels.heading + share.variance;
@@ -86,8 +88,8 @@ GyroShare gyro_share(const Drive& drive, std::size_t row, double yaw_rate, doubl
 }
 
 WheelTravel together(const GyroShare& share, const Robot& robot) {
-  const double apart = 0.5 * robot.wheelbase * share.turn * share.excess;
   const double along = share.along * share.excess;
+  const double apart = wheel_travel({0.0, 0.0, share.turn}, robot).right * share.excess;
   return {share.left + along - apart, share.right + along + apart};
 }
 
@@ -140,17 +142,6 @@ ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double dura
                    const Robot& robot, const Noise& noise) {
   const ArcNoise wheels = wheels_noise(drive, row, part, duration, robot, noise);
   return drive.gyro.empty() ? wheels : noise_together(drive.gyro[row], wheels, duration, noise);
-}
-
-Matrix3 row_covariance(const Drive& drive, std::size_t row, double part, double duration,
-                       const Robot& robot, const Noise& noise) {
-  const WheelTravel travel{part * drive.left[row], part * drive.right[row]};
-  if (drive.gyro.empty() && drive.wheels.empty()) {
-    return arc_covariance(travel, duration, robot, noise);
-  }
-  return slanting_covariance(Vector2(0.5 * (travel.left + travel.right), part * drive.slip(row)),
-                             (travel.right - travel.left) / robot.wheelbase,
-                             row_noise(drive, row, part, duration, robot, noise));
 }
 
 double excess_variance(const Drive& drive, std::size_t row, double part, double duration,

@@ -11,7 +11,8 @@
 //   here          [ . . . . . . . . row ]
 #pragma once
 
-#include "recording/row_variables.hpp"
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -35,8 +36,8 @@ struct CausalRow {
   double distance = 0.0, distance_end = 0.0;  ///< m
 };
 
-/// What a row moves by.
-struct RowWay {
+/// What a row's wheels show.
+struct WheelWay {
   double left = 0.0;      ///< m
   double right = 0.0;     ///< m
   double sideways = 0.0;  ///< m to the left
@@ -44,20 +45,12 @@ struct RowWay {
 
 class CausalVariables {
  public:
-  explicit CausalVariables(double wheelbase) : wheelbase_(wheelbase) {}
-
-  /// What this row would be as the next one: travels in m, duration in s.
-  [[nodiscard]] CausalRow next(double left, double right, double duration) const {
-    return next({left, right}, {left, right}, duration);
-  }
-  /// The kind of motion by the wheels alone, rates and distance by what wheels and gyro say
-  /// together.
-  [[nodiscard]] CausalRow next(const RowWay& wheels, const RowWay& together, double duration) const;
+  /// What this row, of `duration` s, would be as the next one: the kind of motion by the wheels
+  /// alone, rates and distance by what wheels and gyro say together.
+  [[nodiscard]] CausalRow next(const WheelWay& wheels, const BodyMotion& together,
+                               double duration) const;
   /// Takes it in.
-  void take(double left, double right, double duration) {
-    take({left, right}, {left, right}, duration);
-  }
-  void take(const RowWay& wheels, const RowWay& together, double duration);
+  void take(const WheelWay& wheels, const BodyMotion& together, double duration);
 
  private:
   struct Past {
@@ -69,7 +62,6 @@ class CausalVariables {
   /// The first row of the window that ends with a row of this kind and middle.
   [[nodiscard]] std::size_t window(MotionKind kind, double middle) const;
 
-  double wheelbase_;
   std::vector<Past> past_;  ///< from first_ on: the last second of one kind of motion
   std::size_t first_ = 0;   ///< those before it are forgotten
   std::optional<MotionKind> kind_;

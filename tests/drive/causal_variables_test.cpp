@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The variables of shapes as a robot knows them when a row ends.
-#include "recording/causal_variables.hpp"
+#include "drive/causal_variables.hpp"
 
 #include <cmath>
 #include <vector>
@@ -32,12 +32,22 @@ Drive plain_drive() {
   return drive;
 }
 
+const Robot kRobot{.wheelbase = kWheelbase};
+
+/// By two wheels, without a gyro.
+CausalRow next(const CausalVariables& variables, double left, double right, double duration) {
+  return variables.next({left, right}, body_motion({left, right}, kRobot), duration);
+}
+void take(CausalVariables& variables, double left, double right, double duration) {
+  variables.take({left, right}, body_motion({left, right}, kRobot), duration);
+}
+
 std::vector<CausalRow> causal_rows(const Drive& drive) {
-  CausalVariables variables(kWheelbase);
+  CausalVariables variables;
   std::vector<CausalRow> rows;
   for (std::size_t row = 0; row < drive.rows(); ++row) {
-    rows.push_back(variables.next(drive.left[row], drive.right[row], drive.duration(row)));
-    variables.take(drive.left[row], drive.right[row], drive.duration(row));
+    rows.push_back(next(variables, drive.left[row], drive.right[row], drive.duration(row)));
+    take(variables, drive.left[row], drive.right[row], drive.duration(row));
   }
   return rows;
 }
@@ -46,8 +56,8 @@ TEST(CausalVariables, AreThoseOfTheWholeDriveButForRates) {
   const Drive drive = plain_drive();
   const std::vector<CausalRow> rows = causal_rows(drive);
   const std::vector<Pose> nowhere(drive.rows());
-  const RowVariables middle = row_variables(drive, kWheelbase, {}, nowhere, 0);
-  const RowVariables end = instant_variables(drive, kWheelbase, drive.t, nowhere, 0);
+  const RowVariables middle = row_variables(drive, kRobot, {}, nowhere, 0);
+  const RowVariables end = instant_variables(drive, kRobot, drive.t, nowhere, 0);
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     EXPECT_EQ(rows[k].kind, kinds[k]);
@@ -102,8 +112,7 @@ TEST(CausalVariables, RatesAreHalfASecondLateWhileTheyChange) {
     drive.right.push_back(0.1 * speed);
   }
   const std::vector<CausalRow> rows = causal_rows(drive);
-  const RowVariables whole =
-      row_variables(drive, kWheelbase, {}, std::vector<Pose>(drive.rows()), 0);
+  const RowVariables whole = row_variables(drive, kRobot, {}, std::vector<Pose>(drive.rows()), 0);
   for (std::size_t k = 20; k < 90; ++k) {
     EXPECT_NEAR(whole.at("speed")[k] - rows[k].speed, 0.1, 1e-9);
     EXPECT_NEAR(rows[k].acceleration, 0.2, 1e-9);
@@ -111,11 +120,11 @@ TEST(CausalVariables, RatesAreHalfASecondLateWhileTheyChange) {
 }
 
 TEST(CausalVariables, AskingChangesNothing) {
-  CausalVariables variables(kWheelbase);
-  variables.take(0.05, 0.06, 0.1);
-  const CausalRow first = variables.next(0.05, 0.05, 0.1);
-  static_cast<void>(variables.next(-1.0, 2.0, 3.0));
-  const CausalRow again = variables.next(0.05, 0.05, 0.1);
+  CausalVariables variables;
+  take(variables, 0.05, 0.06, 0.1);
+  const CausalRow first = next(variables, 0.05, 0.05, 0.1);
+  static_cast<void>(next(variables, -1.0, 2.0, 3.0));
+  const CausalRow again = next(variables, 0.05, 0.05, 0.1);
   EXPECT_EQ(first.speed, again.speed);
   EXPECT_EQ(first.t, again.t);
 }

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 
-#include "recording/unsteered.hpp"
+#include "drive/body_motion.hpp"
+#include "drive/unsteered.hpp"
 
 #include <algorithm>
 #include <array>
@@ -166,7 +167,7 @@ std::vector<double> wheel_travels(const Drive& drive, double (Drive::*wheel)(std
 }
 
 /// Everything but the pose, in the middle of each row.
-RowVariables drive_variables(const Drive& drive, double wheelbase, int session) {
+RowVariables drive_variables(const Drive& drive, const Robot& robot, int session) {
   const std::size_t rows = drive.rows();
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   const std::vector<Span> spans = windows(drive, kinds);
@@ -177,8 +178,9 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
   std::vector<double>& distance = variables["distance"];
   double driven = 0.0;
   for (std::size_t row = 0; row < rows; ++row) {
-    travel[row] = 0.5 * (drive.left[row] + drive.right[row]);
-    turn[row] = (drive.right[row] - drive.left[row]) / wheelbase;
+    const BodyMotion motion = body_motion(drive, row, robot);
+    travel[row] = motion.forward;
+    turn[row] = motion.turn;
     t.push_back(drive.t[row] - 0.5 * drive.duration(row) - drive.start());
     distance.push_back(driven + 0.5 * drive.way(row));
     driven += drive.way(row);
@@ -198,14 +200,14 @@ RowVariables drive_variables(const Drive& drive, double wheelbase, int session) 
 
 }  // namespace
 
-RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
+RowVariables row_variables(const Drive& drive, const Robot& robot, const Pose& start,
                            const std::vector<Pose>& path, int session) {
   if (!drive.steered.empty()) {
-    return row_variables(unsteered(drive, wheelbase), wheelbase, start, path, session);
+    return row_variables(unsteered(drive, robot), robot, start, path, session);
   }
   const std::size_t rows = drive.rows();
   if (path.size() != rows) throw std::invalid_argument("a path has a pose per row of its drive");
-  RowVariables variables = drive_variables(drive, wheelbase, session);
+  RowVariables variables = drive_variables(drive, robot, session);
   std::vector<double>& heading = variables["heading"];
   std::vector<double>& x = variables["x"];
   std::vector<double>& y = variables["y"];
@@ -218,14 +220,14 @@ RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& sta
   return variables;
 }
 
-RowVariables instant_variables(const Drive& drive, double wheelbase,
+RowVariables instant_variables(const Drive& drive, const Robot& robot,
                                const std::vector<double>& instants, const std::vector<Pose>& poses,
                                int session) {
   if (poses.size() != instants.size()) throw std::invalid_argument("an instant has one pose");
   if (!drive.steered.empty()) {
-    return instant_variables(unsteered(drive, wheelbase), wheelbase, instants, poses, session);
+    return instant_variables(unsteered(drive, robot), robot, instants, poses, session);
   }
-  const RowVariables by_row = drive_variables(drive, wheelbase, session);
+  const RowVariables by_row = drive_variables(drive, robot, session);
   const std::vector<MotionKind> kinds = motion_kinds(drive);
   std::vector<std::size_t> rows;
   rows.reserve(instants.size());

@@ -20,6 +20,7 @@
 // explain.
 #pragma once
 
+#include "trussmap/model.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
 
@@ -52,13 +53,13 @@ enum class MotionKind { standing, spinning, driving };
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
 /// is not the drive's.
-[[nodiscard]] RowVariables row_variables(const Drive& drive, double wheelbase, const Pose& start,
+[[nodiscard]] RowVariables row_variables(const Drive& drive, const Robot& robot, const Pose& start,
                                          const std::vector<Pose>& path, int session);
 
 /// The same at any instants, in any order, with the pose there: what a compass reading at the end
 /// of its row, or a sighting, is made at. Rates are the mean of those of the two rows that meet at
 /// a row's end, within one kind of motion; events and covariates are those of the row.
-[[nodiscard]] RowVariables instant_variables(const Drive& drive, double wheelbase,
+[[nodiscard]] RowVariables instant_variables(const Drive& drive, const Robot& robot,
                                              const std::vector<double>& instants,
                                              const std::vector<Pose>& poses, int session);
 

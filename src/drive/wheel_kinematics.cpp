@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "effects/wheel_kinematics.hpp"
+#include "drive/wheel_kinematics.hpp"
 
-#include "effects/channel_physics.hpp"
-#include "effects/steering.hpp"
+#include "drive/body_motion.hpp"
+#include "drive/steered_motion.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -77,9 +77,10 @@ const std::vector<double>& column_named(const Recording& recording, const std::s
                         (there.empty() ? "" : ", expected one of " + there));
 }
 
-void take_body(Drive& drive, std::size_t row, const Eigen::Vector3d& motion, double wheelbase) {
-  drive.left[row] = motion[0] - 0.5 * wheelbase * motion[2];
-  drive.right[row] = motion[0] + 0.5 * wheelbase * motion[2];
+void take_body(Drive& drive, std::size_t row, const Eigen::Vector3d& motion, const Robot& robot) {
+  const WheelTravel travel = wheel_travel({motion[0], motion[1], motion[2]}, robot);
+  drive.left[row] = travel.left;
+  drive.right[row] = travel.right;
   if (!drive.sideways.empty()) drive.sideways[row] = motion[1];
 }
 
@@ -226,8 +227,7 @@ bool is_possible_reading(double reading) {
   return std::abs(reading) <= kLargest;
 }
 
-WheelKinematics::WheelKinematics(const Robot& robot)
-    : robot_(robot), steers_(is_of_drive(Channel::steer, robot)) {
+WheelKinematics::WheelKinematics(const Robot& robot) : robot_(robot), steers_(has_steering(robot)) {
   require_geometry(robot_);
   if (!steers_) matrix_ = matrix_of(robot_);
 }
@@ -251,13 +251,13 @@ bool WheelKinematics::move(Drive& drive, std::size_t row, double more) const {
       drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};
       motion += drive.wheels[k].reading[row] * by;
     }
-    take_body(drive, row, motion, robot_.wheelbase);
+    take_body(drive, row, motion, robot_);
     return true;
   }
   const SteeredMotion body =
       steered_motion(robot_, drive.wheels[0].reading[row], drive.wheels[1].reading[row] + more);
   if (!body.possible) return false;
-  take_body(drive, row, body.motion, robot_.wheelbase);
+  take_body(drive, row, body.motion, robot_);
   for (std::size_t k = 0; k < 2; ++k) {
     const Eigen::Vector3d& by = body.by_reading[k];
     drive.wheels[k].by_reading[row] = {by[0], by[1], by[2]};

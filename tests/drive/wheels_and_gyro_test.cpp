@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "odometry/wheels_and_gyro.hpp"
+#include "drive/wheels_and_gyro.hpp"
 
+#include "odometry/row_reckoner.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <cmath>

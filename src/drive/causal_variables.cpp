@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "recording/causal_variables.hpp"
+#include "drive/causal_variables.hpp"
 
 #include <cmath>
 
@@ -26,11 +26,11 @@ std::size_t CausalVariables::window(MotionKind kind, double middle) const {
   return first;
 }
 
-CausalRow CausalVariables::next(const RowWay& wheels, const RowWay& together,
+CausalRow CausalVariables::next(const WheelWay& wheels, const BodyMotion& together,
                                 double duration) const {
   CausalRow row;
-  const double travel = 0.5 * (together.left + together.right);
-  const double turn = (together.right - together.left) / wheelbase_;
+  const double travel = together.forward;
+  const double turn = together.turn;
   const double way = std::hypot(travel, together.sideways);
   row.kind = motion_kind(wheels.left, wheels.right, duration, wheels.sideways);
   row.t = t_ + 0.5 * duration;
@@ -58,7 +58,7 @@ CausalRow CausalVariables::next(const RowWay& wheels, const RowWay& together,
   return row;
 }
 
-void CausalVariables::take(const RowWay& wheels, const RowWay& together, double duration) {
+void CausalVariables::take(const WheelWay& wheels, const BodyMotion& together, double duration) {
   const CausalRow row = next(wheels, together, duration);
   first_ = window(row.kind, row.t);
   if (2 * first_ >= past_.size()) {  // rarely moves much, and allocates nothing
@@ -68,8 +68,8 @@ void CausalVariables::take(const RowWay& wheels, const RowWay& together, double 
   past_.push_back({row.kind, t_, row.t, travelled_, turned_, row.speed});
   kind_ = row.kind;
   t_ = row.t_end;
-  travelled_ += 0.5 * (together.left + together.right);
-  turned_ += (together.right - together.left) / wheelbase_;
+  travelled_ += together.forward;
+  turned_ += together.turn;
   distance_ = row.distance_end;
   sense_left_ = sense_after(sense_left_, wheels.left);
   sense_right_ = sense_after(sense_right_, wheels.right);

@@ -54,9 +54,6 @@ namespace trussmap {
 /// the wheels, and of the gyro that was taken in.
 [[nodiscard]] ArcNoise row_noise(const Drive& drive, std::size_t row, double part, double duration,
                                  const Robot& robot, const Noise& noise);
-/// Covariance of that motion, as arc_covariance.
-[[nodiscard]] Matrix3 row_covariance(const Drive& drive, std::size_t row, double part,
-                                     double duration, const Robot& robot, const Noise& noise);
 
 /// Variance of a row's excess, or of a part of it, rad^2. Infinite without a reading.
 [[nodiscard]] double excess_variance(const Drive& drive, std::size_t row, double part,

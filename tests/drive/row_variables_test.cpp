@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The variables that shapes speak of.
-#include "recording/row_variables.hpp"
+#include "drive/row_variables.hpp"
 
 #include <algorithm>
 
@@ -32,7 +32,7 @@ Drive plain_drive() {
 }
 
 RowVariables variables_of(const Drive& drive) {
-  return row_variables(drive, 0.4, {}, std::vector<Pose>(drive.rows()), 2);
+  return row_variables(drive, Robot{.wheelbase = 0.4}, {}, std::vector<Pose>(drive.rows()), 2);
 }
 
 TEST(RowVariables, AreTheReservedOnesAndTheCovariates) {

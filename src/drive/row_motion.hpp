@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// One row as its wheels show it, the gyro beside them, and what an error of each wheel does to the
+// body: what the physics of effects (effects/channel_physics.hpp) speak of.
+#pragma once
+
+#include "drive/body_motion.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace trussmap {
+
+struct RowMotion {
+  BodyMotion body;                 ///< as the wheels show it, or wheels and gyro together
+  double left = 0.0, right = 0.0;  ///< m, travels of two wheels that show this
+  double apart = 0.0;              ///< m between them
+  double duration = 0.0;           ///< s
+  double gyro_turn = 0.0;          ///< rad
+  double gyro_along = 0.0;         ///< as GyroShare::along
+  double gyro_aside = 0.0;         ///< as GyroShare::aside
+  double gyro_share = 0.0;         ///< as GyroShare::turn
+  bool gyro_reads = false;
+  const std::vector<WheelColumn>* wheels = nullptr;  ///< of the drive, where it has other wheels
+  std::size_t row = 0;                               ///< of the drive
+
+  /// What so much more of the two wheels' travels adds.
+  [[nodiscard]] BodyMotion by_wheels(double more_left, double more_right) const {
+    return {0.5 * (more_left + more_right), 0.0, (more_right - more_left) / apart};
+  }
+  /// What the wheels show.
+  void set(const WheelTravel& travel, double sideways, const Robot& robot) {
+    body = body_motion(travel, robot, sideways);
+    left = travel.left;
+    right = travel.right;
+  }
+  /// The wheels show so much more.
+  void add(const BodyMotion& more, const Robot& robot) {
+    const WheelTravel travel = wheel_travel(more, robot);
+    set({left + travel.left, right + travel.right}, body.sideways + more.sideways, robot);
+  }
+};
+
+/// Of two wheels, or of what two wheels would show.
+[[nodiscard]] inline RowMotion row_motion(const WheelTravel& travel, double sideways,
+                                          double duration, const Robot& robot) {
+  RowMotion row;
+  row.apart = robot.wheelbase;
+  row.duration = duration;
+  row.set(travel, sideways, robot);
+  return row;
+}
+
+/// A row as its wheels show it, or wheels and gyro together.
+[[nodiscard]] inline RowMotion shown_motion(const Drive& drive, std::size_t row,
+                                            const Robot& robot) {
+  RowMotion shown =
+      row_motion({drive.left[row], drive.right[row]}, drive.slip(row), drive.duration(row), robot);
+  shown.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
+  shown.row = row;
+  return shown;
+}
+
+/// Wheels and gyro each for itself.
+[[nodiscard]] inline RowMotion row_motion(const GyroShare& gyro, double duration,
+                                          const Robot& robot) {
+  RowMotion row = row_motion({gyro.left, gyro.right}, gyro.sideways, duration, robot);
+  row.gyro_turn = row.body.turn + gyro.excess;
+  row.gyro_along = gyro.along;
+  row.gyro_aside = gyro.aside;
+  row.gyro_share = gyro.turn;
+  row.gyro_reads = std::isfinite(gyro.variance);
+  return row;
+}
+/// The same of a drive's row, whether or not the gyro was taken in.
+[[nodiscard]] inline RowMotion row_motion(const Drive& drive, std::size_t row, const Robot& robot) {
+  if (drive.gyro.empty()) return shown_motion(drive, row, robot);
+  RowMotion motion = row_motion(drive.gyro[row], drive.duration(row), robot);
+  motion.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
+  motion.row = row;
+  return motion;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Kinematics of a drive with a steered wheel: tricycle and ackermann (DriveKind, model.hpp).
+#pragma once
+
+#include "trussmap/model.hpp"
+
+#include <array>
+
+#include <Eigen/Core>
+
+namespace trussmap {
+
+[[nodiscard]] inline bool has_steering(const Robot& robot) {
+  return robot.drive == DriveKind::tricycle || robot.drive == DriveKind::ackermann;
+}
+
+/// How a robot moves in a row by the travel of the wheel that is measured [m] and the angle at
+/// which its steered wheel stands [rad].
+struct SteeredMotion {
+  Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< forward, sideways [m], turn [rad]
+  std::array<Eigen::Vector3d, 2> by_reading;         ///< by travel and by angle
+  bool possible = true;                              ///< the measured wheel has a way ahead
+};
+/// Of a robot that has steering.
+[[nodiscard]] SteeredMotion steered_motion(const Robot& robot, double travel, double angle);
+
+}  // namespace trussmap
