@@ -4,6 +4,7 @@
 // trussmap convert: maps between formats, foreign recordings to recordings, recordings to bags.
 #include "commands.hpp"
 #include "convert_log.hpp"
+#include "convert_odometer.hpp"
 #include "convert_recording.hpp"
 #include "map_yaml_output.hpp"
 #include "trussmap/log_files.hpp"
@@ -31,6 +32,7 @@ struct ConvertOptions {
   std::string map;
   bool inspect = false;
   ConvertRecordingOptions bag;
+  ConvertOdometerOptions odometer;
   MapYamlOptions yaml;
 };
 
@@ -206,6 +208,11 @@ void run_convert(const ConvertOptions& options) {
   }
   if (options.out.empty()) throw UsageError("convert has nowhere to write to, expected OUT");
   check_map_yaml(out, options.yaml);
+  if (!options.odometer.second.empty()) {
+    check_folder(out);
+    convert_odometer(in, out, options.odometer);
+    return;
+  }
   if (is_recording_to_bag(in, out)) {
     convert_recording(in, out, options.map, options.bag);
     return;
@@ -292,6 +299,7 @@ void setup_convert(const Command& app) {
                    "else map.toml) with guesses");
   add_map_yaml(command, options->yaml);
   add_convert_recording(command, options->bag);
+  add_convert_odometer(command, options->odometer);
   command.callback([options] { run_convert(*options); });
 }
 

@@ -102,6 +102,15 @@ struct WheelCalibration {
                                                 const Model& model,
                                                 const CalibrationOptions& options = {});
 
+/// What a second odometer on the same robot measured while `drive` was driven, as loops for
+/// calibrate_wheels: its motions one after the other, each from row to row of its own drive and
+/// `every` s long at least, by dead reckoning with its own model. Their errors count as
+/// independent: of a motion, sd is the root mean square of those ahead and aside. Both have the
+/// same clock. Throws std::invalid_argument where the two drives have less than `every` s in
+/// common, and like with_wheels.
+[[nodiscard]] std::vector<Loop> second_odometer_loops(const Recording& second, const Model& model,
+                                                      const Drive& drive, double every = 1.0);
+
 // Validation: how well a calibration predicts legs that it has not seen.
 //
 // A leg ends at the first truth row that lies `leg` metres of driven path after its start. It is

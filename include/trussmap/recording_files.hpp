@@ -22,8 +22,10 @@
 namespace trussmap {
 
 /// Reads a folder, strictly: InputError with file and line for whatever is wrong, nothing is
-/// guessed. sightings.csv may be absent only where there is a truth.csv, fixes.csv or loops.csv.
-[[nodiscard]] Recording read_recording(const std::filesystem::path& folder);
+/// guessed. sightings.csv may be absent only where there is a truth.csv, fixes.csv or loops.csv, or
+/// where a drive alone will do.
+[[nodiscard]] Recording read_recording(const std::filesystem::path& folder,
+                                       bool drive_alone = false);
 
 /// What a covariate may be called: a letter, then letters, digits and _, and no name that shapes or
 /// columns have.

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "drive/row_variables.hpp"
 #include "geometry/index.hpp"
 #include "io/csv.hpp"
 #include "io/recording_streams.hpp"
-#include "recording/row_variables.hpp"
 #include "recording/well_formed.hpp"
 #include "text/plain_text.hpp"
 #include "trussmap/error.hpp"
@@ -315,7 +315,7 @@ std::vector<Loop> read_loops(const fs::path& file, const Drive& drive) {
 
 }  // namespace
 
-Recording read_recording(const fs::path& folder) {
+Recording read_recording(const fs::path& folder, bool drive_alone) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) {
     throw InputError(folder.string(), 0, "there is no such folder, expected a recording");
@@ -328,7 +328,7 @@ Recording read_recording(const fs::path& folder) {
     throw InputError((folder / "drive.csv").string(), 0, "is missing, a recording needs it");
   }
   const bool may_lack = has("truth.csv") || has("fixes.csv") || has("loops.csv");
-  if (!has("sightings.csv") && !may_lack) {
+  if (!has("sightings.csv") && !may_lack && !drive_alone) {
     throw InputError((folder / "sightings.csv").string(), 0,
                      "is missing, a recording without truth.csv, fixes.csv or loops.csv needs it");
   }

@@ -110,6 +110,45 @@ TEST(CalibrateCommand, WritesWhatTheFormatsPromise) {
   }
 }
 
+/// Of a drive without a place in it, by encoder wheels that drive nothing.
+TEST(CalibrateCommand, ASecondOdometerGivesTheWheels) {
+  const ScratchFolder scratch;
+  const std::string at = scratch.path().string();
+  const std::string drive = write_drive(scratch, "drive");
+  fs::remove(scratch.path() / "drive" / "truth.csv");
+  testing::DrawnRobot encoders;
+  encoders.nominal_wheelbase = 0.42;
+  encoders.k_left = encoders.k_right = 0.0003;
+  Recording second = testing::draw(testing::figure(), encoders, 8);
+  second.truth.clear();
+  const std::string convert = "convert " + drive + " " + at + "/both --second-odometer " + at;
+  write_recording(scratch.path() / "encoders", second);
+  Ran ran = run_trussmap(convert + "/encoders");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find("encoders/model.toml: is missing, expected the second odometer's"),
+            std::string::npos)
+      << ran.output;
+  scratch.write("encoders/model.toml",
+                "[robot]\nwheelbase = 0.42\n[noise]\nleft = 0.0003\nright = 0.0003\n");
+  ran = run_trussmap(convert + "/encoders --every 1e4");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.output.find("s in common, expected 10000 s at least"), std::string::npos)
+      << ran.output;
+  EXPECT_FALSE(fs::exists(scratch.path() / "both"));
+  ran = run_trussmap(convert + "/encoders");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  ran = run_trussmap("calibrate " + at + "/both --model " + write_nominal(scratch) + " --json " +
+                     at + "/c.json");
+  ASSERT_EQ(ran.status, 0) << ran.output;
+  const json found = read_json(scratch.path() / "c.json");
+  for (const auto& [key, truth] :
+       std::map<std::string, double>{{"E_d", 1.004}, {"E_b", 0.97}, {"E_s", 1.02}}) {
+    const double sd = found["sd_" + key].get<double>();
+    EXPECT_NEAR(found[key].get<double>(), truth, 3.5 * sd) << key;
+    EXPECT_LT(sd, 0.002) << key;
+  }
+}
+
 TEST(CalibrateCommand, SaysThatNothingWasHeldOut) {
   const ScratchFolder scratch;
   const std::string drive = write_drive(scratch, "drive");

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -114,6 +115,52 @@ TEST(SlowSecondOdometer, ItsOwnNoiseLeavesErrorsHonestAndTheWheelsNoiseFound) {
   // without.
   EXPECT_NEAR(noise[0], kWheels, 0.08 * kWheels);
   EXPECT_NEAR(noise[1], kWheels, 0.08 * kWheels);
+}
+
+/// The encoders' own drive, on their own clock of rows, in place of loops that were made by hand.
+TEST(SecondOdometer, ItsDriveBecomesMotionsThatGiveTheWheels) {
+  DrawnRobot encoders;
+  encoders.nominal_wheelbase = kEncoderBase;
+  Recording second = draw(figure(), encoders);
+  second.drive.heading.assign(second.drive.rows(), 0.3);  // it has a compass, which is not asked
+  Model own = model_of(0.0005);
+  own.robot.wheelbase = kEncoderBase;
+  Recording recording = draw(figure(), faulty(0.0));
+  recording.truth.clear();
+  recording.loops = second_odometer_loops(second, own, recording.drive, 0.95);
+  std::mt19937_64 random(1);
+  const std::vector<Loop> expected = seen_by_encoders(figure(), 0.0, random);
+  ASSERT_EQ(recording.loops.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    const Loop& one = recording.loops[k];
+    EXPECT_NEAR(one.t, expected[k].t, 1e-9);
+    EXPECT_NEAR(one.t2, expected[k].t2, 1e-9);
+    EXPECT_NEAR(one.dx, expected[k].dx, 1e-12);
+    EXPECT_NEAR(one.dy, expected[k].dy, 1e-12);
+    EXPECT_NEAR(one.dtheta, expected[k].dtheta, 1e-12);
+  }
+  // The second second, 0.5 m straight ahead: along and aside as Chong & Kleeman's straight line.
+  const double c2 = 0.0005 * 0.0005 * 2.0 * 0.5;
+  const double aside = 0.5 * 0.5 * c2 / (3.0 * kEncoderBase * kEncoderBase);
+  EXPECT_NEAR(recording.loops[1].sd, std::sqrt(0.5 * (c2 / 4.0 + aside)), 1e-9);
+  EXPECT_NEAR(recording.loops[1].sd_heading, std::sqrt(c2) / kEncoderBase, 1e-9);
+  WheelCalibrationOptions options;
+  options.noise = false;
+  const WheelCalibration found = calibrate_wheels({recording}, model_of(0.001), options);
+  ASSERT_TRUE(found.diameter_ratio && found.wheelbase_ratio && found.scale);
+  EXPECT_NEAR(found.diameter_ratio->value, 1.004, 2e-5);
+  EXPECT_NEAR(found.wheelbase_ratio->value, 0.97, 2e-5);
+  EXPECT_NEAR(found.scale->value, 1.02, 2e-5);
+}
+
+TEST(SecondOdometer, IsRefusedWhereTheDrivesHaveNoTimeInCommon) {
+  const Recording recording = draw(figure(), faulty(0.0));
+  Recording later = recording;
+  for (double& t : later.drive.t) t += 1000.0;
+  EXPECT_THROW(static_cast<void>(second_odometer_loops(later, Model(), recording.drive)),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(second_odometer_loops(recording, Model(), recording.drive, 0.0)),
+               std::invalid_argument);
 }
 
 TEST(SecondOdometer, LoopsThatOnlyCloseGiveNoScale) {
