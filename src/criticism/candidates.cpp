@@ -37,22 +37,87 @@ double suits(const CatalogueEntry& entry, const std::string& covariate) {
   return covariate.empty() || load || drift ? 0.0 : -0.1;
 }
 
+/// What was measured, and so can show an effect.
+struct Measured {
+  bool compass = false;
+  bool gyro = false;
+  bool views = false;
+  bool bearings = false;  ///< alone
+  bool yaws = false;
+  bool truth = false;
+  bool fixes = false;
+  bool points = false;  ///< sightings or truth
+};
+
+Measured measured_in(const RecordingProblem& problem) {
+  Measured has;
+  for (const Measurement& one : problem.measurements) {
+    has.compass |= one.kind == MeasurementKind::segment && one.rows == 4;
+    has.gyro |= one.kind == MeasurementKind::gyro;
+    has.views |= one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
+    has.bearings |= one.kind == MeasurementKind::direction;
+    has.yaws |= one.kind == MeasurementKind::sighting_yaw;
+    has.truth |= one.kind == MeasurementKind::truth;
+    has.fixes |= one.kind == MeasurementKind::fix;
+    has.points |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
+  }
+  return has;
+}
+
+bool is_possible(Channel channel, const Measured& has, const Robot& robot) {
+  if (!is_of_drive(channel, robot)) return false;
+  if (channel == Channel::compass) return has.compass;
+  if (channel == Channel::gyro || channel == Channel::gyro_scale) return has.gyro;
+  if (channel == Channel::truth_heading) return has.truth;
+  if (acts_on_fixes(channel)) return has.fixes;
+  if (channel == Channel::sighting_yaw) return has.yaws;
+  if (acts_on(channel) == ActsOn::views && !has.points) return false;
+  if (channel == Channel::bearing) return has.views || has.bearings;
+  if (channel == Channel::range || channel == Channel::range_scale) return has.views;
+  return true;
+}
+
+bool says_something(const Spread& u) {
+  if (u.sorted.empty() || !(u.most > u.least)) return false;
+  // Of a robot that never accelerates the acceleration is noise of the wheels, the very noise that
+  // an effect of it would explain. So is much of the curvature, always: only what is known of arcs
+  // (arc loss) is asked of it.
+  return u.name != "acceleration" || !(u.quantile(0.99) - u.quantile(0.01) < kLeastAcceleration);
+}
+
+Candidate plain(Channel channel, const Spread& u, Form form, std::vector<Shape> shapes,
+                const std::string& said, double log_prior) {
+  Candidate one;
+  one.effect.name = fmt::format("{} with {}", name_of(channel), said);
+  one.effect.channel = channel;
+  one.effect.shape = std::move(shapes);
+  one.form = form;
+  one.variable = u.name;
+  one.log_prior = log_prior;
+  return one;
+}
+
+/// Side by side over nearly all values; none where these are all but the same.
+std::vector<Shape> bells_over(const Spread& u) {
+  std::vector<Shape> bells;
+  const double low = u.quantile(0.03);
+  const double width = (u.quantile(0.97) - low) / 3.0;
+  if (!(width > 0.0)) return bells;
+  bells.reserve(4);
+  for (int k = 0; k < 4; ++k) {
+    bells.emplace_back(
+        "exp(-((" + u.name + "-{centre})/{width})^2)",
+        std::vector<ShapeParameter>{{"centre", rounded_within(low + k * width, width)},
+                                    {"width", rounded_within(width, width)}});
+  }
+  return bells;
+}
+
 /// Gathers the candidates.
 class Gatherer {
  public:
   Gatherer(const FitState& fit, const ShapeContext& context)
-      : fit_(fit), context_(context), area_(driven_area(fit)) {
-    for (const Measurement& one : fit.problem.measurements) {
-      has_compass_ |= one.kind == MeasurementKind::segment && one.rows == 4;
-      has_gyro_ |= one.kind == MeasurementKind::gyro;
-      has_views_ |=
-          one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
-      has_bearings_ |= one.kind == MeasurementKind::direction;
-      has_yaws_ |= one.kind == MeasurementKind::sighting_yaw;
-      has_truth_ |= one.kind == MeasurementKind::truth;
-      has_fixes_ |= one.kind == MeasurementKind::fix;
-      has_points_ |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
-    }
+      : context_(context), area_(driven_area(fit)), has_(measured_in(fit.problem)) {
     for (const std::string name :
          {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
       take_variable(name);
@@ -72,14 +137,14 @@ class Gatherer {
           Channel::wheels,  Channel::gyro,   Channel::gyro_scale, Channel::sideways,
           Channel::wheel1,  Channel::wheel2, Channel::wheel3,     Channel::wheel4,
           Channel::wheel5,  Channel::wheel6, Channel::steer,      Channel::steer_gain}) {
-      if (!is_possible(channel)) continue;
+      if (!is_possible(channel, has_, context_.robot())) continue;
       take_drive_channel(channel);
     }
     for (const Channel channel :
          {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale,
           Channel::bearing, Channel::delay, Channel::truth_heading, Channel::antenna,
           Channel::antenna_left, Channel::fix_delay, Channel::sighting_yaw}) {
-      if (!is_possible(channel)) continue;
+      if (!is_possible(channel, has_, context_.robot())) continue;
       take_view_channel(channel);
     }
     return std::move(candidates_);
@@ -88,32 +153,12 @@ class Gatherer {
  private:
   void take_variable(const std::string& name) {
     const Spread spread = spread_of(name, context_);
-    if (spread.sorted.empty() || !(spread.most > spread.least)) return;
-    // Of a robot that never accelerates the acceleration is noise of the wheels, the very noise
-    // that an effect of it would explain. So is much of the curvature, always: only what is known
-    // of arcs (arc loss) is asked of it.
-    if (name == "acceleration" &&
-        spread.quantile(0.99) - spread.quantile(0.01) < kLeastAcceleration) {
-      return;
-    }
+    if (!says_something(spread)) return;
     variables_.push_back(spread);
   }
 
   [[nodiscard]] bool is_covariate(const std::string& name) const {
     return std::find(covariates_.begin(), covariates_.end(), name) != covariates_.end();
-  }
-
-  [[nodiscard]] bool is_possible(Channel channel) const {
-    if (!is_of_drive(channel, context_.robot())) return false;
-    if (channel == Channel::compass) return has_compass_;
-    if (channel == Channel::gyro || channel == Channel::gyro_scale) return has_gyro_;
-    if (channel == Channel::truth_heading) return has_truth_;
-    if (acts_on_fixes(channel)) return has_fixes_;
-    if (channel == Channel::sighting_yaw) return has_yaws_;
-    if (acts_on(channel) == ActsOn::views && !has_points_) return false;
-    if (channel == Channel::bearing) return has_views_ || has_bearings_;
-    if (channel == Channel::range || channel == Channel::range_scale) return has_views_;
-    return true;
   }
 
   void add(Candidate one) {
@@ -127,7 +172,7 @@ class Gatherer {
 
   void take_catalogue() {
     for (const CatalogueEntry& entry : catalogue()) {
-      if (!is_possible(entry.channel)) continue;
+      if (!is_possible(entry.channel, has_, context_.robot())) continue;
       Candidate one;
       if (entry.of_covariate()) {
         std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
@@ -202,19 +247,6 @@ class Gatherer {
     }
   }
 
-  [[nodiscard]] static Candidate plain(Channel channel, const Spread& u, Form form,
-                                       std::vector<Shape> shapes, const std::string& said,
-                                       double log_prior) {
-    Candidate one;
-    one.effect.name = fmt::format("{} with {}", name_of(channel), said);
-    one.effect.channel = channel;
-    one.effect.shape = std::move(shapes);
-    one.form = form;
-    one.variable = u.name;
-    one.log_prior = log_prior;
-    return one;
-  }
-
   void take_drive_channel(Channel channel) {
     const bool wheel =
         channel == Channel::left || channel == Channel::right || channel == Channel::wheels;
@@ -287,18 +319,8 @@ class Gatherer {
       take_thresholds(threshold, n);
     }
     if (u.distinct < 6) return;
-    std::vector<Shape> bells;
-    const double low = u.quantile(0.03);
-    const double high = u.quantile(0.97);
-    const double width = (high - low) / 3.0;
-    if (!(width > 0.0)) return;
-    bells.reserve(4);
-    for (int k = 0; k < 4; ++k) {
-      bells.emplace_back(
-          "exp(-((" + n + "-{centre})/{width})^2)",
-          std::vector<ShapeParameter>{{"centre", rounded_within(low + k * width, width)},
-                                      {"width", rounded_within(width, width)}});
-    }
+    const std::vector<Shape> bells = bells_over(u);
+    if (bells.empty()) return;
     add(plain(channel, u, Form::curve, bells, "a curve of " + n, -3.0));
   }
 
@@ -331,17 +353,9 @@ class Gatherer {
     }
   }
 
-  const FitState& fit_;
   const ShapeContext& context_;
   Area area_;
-  bool has_compass_ = false;
-  bool has_gyro_ = false;
-  bool has_views_ = false;
-  bool has_bearings_ = false;  ///< alone
-  bool has_yaws_ = false;
-  bool has_truth_ = false;
-  bool has_fixes_ = false;
-  bool has_points_ = false;  ///< sightings or truth
+  Measured has_;
   std::vector<Spread> variables_;
   std::vector<std::string> covariates_;
   std::vector<Candidate> candidates_;

@@ -28,6 +28,131 @@ constexpr int kFewestWindows = 20;
 constexpr double kLess = 0.98;    // of the error after 30 s, to be better
 constexpr double kSame = 0.9999;  // cosine of what is the same effect
 
+/// m; nothing of too few windows.
+std::optional<double> shown(const HorizonError& error) {
+  if (error.windows < kFewestWindows) return std::nullopt;
+  return error.rms;
+}
+
+/// What the gate left out costs what it allows, or a fit would be the better for leaving out
+/// more.
+double chi2_of_all(const ModelFit& fit) {
+  return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
+}
+
+/// a' C^-1 a of an effect's coefficients, by the scatter that there is where that is less than
+/// the model's noise allows.
+double wald(const ModelFit& of, std::size_t effect) {
+  const FitState& fit = *of.state;
+  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  std::vector<Eigen::Index> places;
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
+    if (one.effect == effect) places.push_back(static_cast<Eigen::Index>(k));
+  }
+  if (places.empty()) return 0.0;
+  const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
+  const Eigen::VectorXd a = fit.adjustment.coefficients(places);
+  const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
+  return a.dot(DenseLdlt(C).solve(a)) / scatter;
+}
+
+/// The systematic errors that nearly every robot has.
+bool is_common_motion(const Candidate& one) {
+  const CatalogueRecord* record = find_record(one.effect.name);
+  return one.form == Form::catalogue && record != nullptr && record->common_motion;
+}
+
+/// The winner and those of its look-alikes that explain nearly as much, by their place among the
+/// findings.
+std::vector<std::size_t> contenders(const std::vector<Finding>& findings, std::size_t at) {
+  const Finding& winner = findings[at];
+  std::vector<std::size_t> chosen{at};
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    const Finding& one = findings[k];
+    if (k == at || chosen.size() > kMostRivals) continue;
+    const bool alike = std::any_of(
+        winner.look_alikes.begin(), winner.look_alikes.end(), [&](const LookAlike& other) {
+          // What is the same to first order, and acts elsewhere, may yet be told apart by a fit.
+          return other.effect.name == one.effect.name &&
+                 (other.cosine < kSame || one.effect.channel != winner.effect.channel);
+        });
+    if (alike && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(k);
+  }
+  return chosen;
+}
+
+/// A finding, added and fitted.
+struct Trial {
+  Candidate candidate;
+  ModelFit fit;
+  std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
+};
+
+bool was_fitted(const ModelFit& fit) {
+  return fit.effects.empty() || fit.effects.back().not_fitted.empty();
+}
+
+/// Of the trial that is taken: the winner's look-alikes, itself among them where another is
+/// taken. Those that were tried are as far behind as their fits are.
+std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials, std::size_t taken,
+                                 const Finding& winner) {
+  const ModelFit& fit = trials[taken].fit;
+  const double noise = std::max(1.0, fit.chi2 / std::max(1, fit.dof));
+  std::vector<LookAlike> rivals = winner.look_alikes;
+  for (LookAlike& rival : rivals) {
+    if (rival.effect.name == trials[taken].candidate.effect.name) rival.effect = winner.effect;
+    for (const Trial& trial : trials) {
+      if (trial.candidate.effect.name != rival.effect.name) continue;
+      rival.behind = (chi2_of_all(trial.fit) - chi2_of_all(fit)) / noise;
+    }
+  }
+  return rivals;
+}
+
+double arrival_of(Trial& trial, const std::vector<Recording>& recordings, const LegOptions& legs) {
+  if (!trial.held_out) {
+    try {
+      trial.held_out = predict_held_out(recordings, trial.fit, legs);
+    } catch (const SolveError&) {  // what is left without those legs does not tell the effect
+      trial.held_out = HeldOut{};
+      trial.held_out->arrival_rms = std::numeric_limits<double>::infinity();
+    }
+  }
+  return trial.held_out->arrival_rms;
+}
+
+/// Than before, of the held-out legs, and beyond what chance makes of so few.
+bool predicts_worse(const HeldOut& before, Trial& trial, const std::vector<Recording>& recordings,
+                    const LegOptions& legs) {
+  if (!(before.arrival_rms > 0.0)) return false;
+  const double arrival = arrival_of(trial, recordings, legs);
+  if (arrival <= kNoWorse * before.arrival_rms) return false;
+  return std::isinf(arrival) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
+}
+
+/// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
+std::size_t best_of(std::vector<Trial>& trials, const std::vector<Recording>& recordings,
+                    const LegOptions& legs) {
+  const auto cost = [](const Trial& one) {
+    return chi2_of_all(one.fit) - 2.0 * one.candidate.log_prior +
+           4.0 * static_cast<double>(one.candidate.effect.shape.size() +
+                                     one.candidate.parameters.size());
+  };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < trials.size(); ++k) {
+    const double gain = cost(trials[best]) - cost(trials[k]);
+    if (gain < -kDecisive) continue;
+    if (gain < kDecisive && !(arrival_of(trials[k], recordings, legs) <
+                              kBetter * arrival_of(trials[best], recordings, legs))) {
+      continue;
+    }
+    best = k;
+  }
+  return best;
+}
+
+/// Adds what is found, one effect after the other.
 class Discoverer {
  public:
   Discoverer(const std::vector<Recording>& recordings, const Model& model,
@@ -90,11 +215,6 @@ class Discoverer {
     step.reckoned_30 = shown(present_horizons().after_30);
   }
 
-  [[nodiscard]] static std::optional<double> shown(const HorizonError& error) {
-    if (error.windows < kFewestWindows) return std::nullopt;
-    return error.rms;
-  }
-
   /// Of the present fit; reckoned once.
   const HorizonErrors& present_horizons() {
     if (judged_ != result_.found.state) {
@@ -113,38 +233,6 @@ class Discoverer {
     return result_.steps.back();
   }
 
-  /// A finding, added and fitted.
-  struct Trial {
-    Candidate candidate;
-    ModelFit fit;
-    std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
-  };
-
-  double arrival_of(Trial& trial) const {
-    if (!trial.held_out) {
-      try {
-        trial.held_out = predict_held_out(recordings_, trial.fit, options_.diagnosis.legs);
-      } catch (const SolveError&) {  // what is left without those legs does not tell the effect
-        trial.held_out = HeldOut{};
-        trial.held_out->arrival_rms = std::numeric_limits<double>::infinity();
-      }
-    }
-    return trial.held_out->arrival_rms;
-  }
-
-  /// Of the held-out legs, and beyond what chance makes of so few.
-  [[nodiscard]] bool predicts_worse(Trial& trial) const {
-    const HeldOut& before = result_.steps.back().held_out;
-    if (!(before.arrival_rms > 0.0) || arrival_of(trial) <= kNoWorse * before.arrival_rms) {
-      return false;
-    }
-    return std::isinf(arrival_of(trial)) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
-  }
-
-  [[nodiscard]] static bool was_fitted(const ModelFit& fit) {
-    return fit.effects.empty() || fit.effects.back().not_fitted.empty();
-  }
-
   /// The first finding and, where it cannot be had, the next that is missing.
   bool add_best() {
     for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
@@ -152,25 +240,6 @@ class Discoverer {
       if (add(k)) return true;
     }
     return false;
-  }
-
-  /// The winner and those of its look-alikes that explain nearly as much, by their place among the
-  /// findings.
-  [[nodiscard]] std::vector<std::size_t> contenders(std::size_t at) const {
-    const Finding& winner = result_.last.findings[at];
-    std::vector<std::size_t> chosen{at};
-    for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
-      const Finding& one = result_.last.findings[k];
-      if (k == at || chosen.size() > kMostRivals) continue;
-      const bool alike = std::any_of(
-          winner.look_alikes.begin(), winner.look_alikes.end(), [&](const LookAlike& other) {
-            // What is the same to first order, and acts elsewhere, may yet be told apart by a fit.
-            return other.effect.name == one.effect.name &&
-                   (other.cosine < kSame || one.effect.channel != winner.effect.channel);
-          });
-      if (alike && one.score > winner.score - 4.0 * kDecisive) chosen.push_back(k);
-    }
-    return chosen;
   }
 
   /// Those that can be fitted beside what the model has.
@@ -192,14 +261,16 @@ class Discoverer {
 
   bool add(std::size_t at) {
     const Finding& winner = result_.last.findings[at];
-    std::vector<Trial> trials = tried(contenders(at));
+    std::vector<Trial> trials = tried(contenders(result_.last.findings, at));
     if (trials.empty()) {
       stop(StopReason::cannot_be_fitted, winner.effect.name);
       return false;
     }
-    const std::size_t best = best_of(trials);
+    const std::size_t best = best_of(trials, recordings_, options_.diagnosis.legs);
     const double reckoned = reckoned_share(trials[best].fit).value_or(1.0);
-    if ((predicts_worse(trials[best]) && reckoned >= kLess) || reckoned > kNoWorse) {
+    const bool worse = predicts_worse(result_.steps.back().held_out, trials[best], recordings_,
+                                      options_.diagnosis.legs);
+    if ((worse && reckoned >= kLess) || reckoned > kNoWorse) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
@@ -215,23 +286,6 @@ class Discoverer {
     step.predicted = winner.held_out;
     step.look_alikes = std::move(look_alikes);
     return true;
-  }
-
-  /// Of the trial that is taken: the winner's look-alikes, itself among them where another is
-  /// taken. Those that were tried are as far behind as their fits are.
-  [[nodiscard]] static std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials,
-                                                        std::size_t taken, const Finding& winner) {
-    const ModelFit& fit = trials[taken].fit;
-    const double noise = std::max(1.0, fit.chi2 / std::max(1, fit.dof));
-    std::vector<LookAlike> rivals = winner.look_alikes;
-    for (LookAlike& rival : rivals) {
-      if (rival.effect.name == trials[taken].candidate.effect.name) rival.effect = winner.effect;
-      for (const Trial& trial : trials) {
-        if (trial.candidate.effect.name != rival.effect.name) continue;
-        rival.behind = (chi2_of_all(trial.fit) - chi2_of_all(fit)) / noise;
-      }
-    }
-    return rivals;
   }
 
   /// Dead reckoning over the longer horizon with another fit, as each fit's own path judges it, as
@@ -275,40 +329,9 @@ class Discoverer {
     return true;
   }
 
-  /// The systematic errors that nearly every robot has.
-  [[nodiscard]] static bool is_common_motion(const Candidate& one) {
-    const CatalogueRecord* record = find_record(one.effect.name);
-    return one.form == Form::catalogue && record != nullptr && record->common_motion;
-  }
-
   /// The first reason counts.
   void stop(StopReason reason, const std::string& effect) {
     if (result_.stopped.effect.empty()) result_.stopped = {reason, effect, 0};
-  }
-
-  /// What the gate left out costs what it allows, or a fit would be the better for leaving out
-  /// more.
-  [[nodiscard]] static double chi2_of_all(const ModelFit& fit) {
-    return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
-  }
-
-  /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
-  [[nodiscard]] std::size_t best_of(std::vector<Trial>& trials) const {
-    const auto cost = [](const Trial& one) {
-      return chi2_of_all(one.fit) - 2.0 * one.candidate.log_prior +
-             4.0 * static_cast<double>(one.candidate.effect.shape.size() +
-                                       one.candidate.parameters.size());
-    };
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < trials.size(); ++k) {
-      const double gain = cost(trials[best]) - cost(trials[k]);
-      if (gain < -kDecisive) continue;
-      if (gain < kDecisive && !(arrival_of(trials[k]) < kBetter * arrival_of(trials[best]))) {
-        continue;
-      }
-      best = k;
-    }
-    return best;
   }
 
   /// Places and thresholds of all effects found, each with the others in the model.
@@ -352,23 +375,6 @@ class Discoverer {
       found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(weakest));
       result_.found = fitted(effects);
     }
-  }
-
-  /// a' C^-1 a of an effect's coefficients, by the scatter that there is where that is less than
-  /// the model's noise allows.
-  [[nodiscard]] static double wald(const ModelFit& of, std::size_t effect) {
-    const FitState& fit = *of.state;
-    const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
-    std::vector<Eigen::Index> places;
-    for (std::size_t k = 0; k < unknown.size(); ++k) {
-      const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
-      if (one.effect == effect) places.push_back(static_cast<Eigen::Index>(k));
-    }
-    if (places.empty()) return 0.0;
-    const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
-    const Eigen::VectorXd a = fit.adjustment.coefficients(places);
-    const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
-    return a.dot(DenseLdlt(C).solve(a)) / scatter;
   }
 
   const std::vector<Recording>& recordings_;

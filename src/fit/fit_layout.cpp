@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "drive/wheels_and_gyro.hpp"
+#include "effects/steering.hpp"
+#include "estimation/recording_start.hpp"
+#include "fit/fit_stages.hpp"
+#include "text/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+/// Then what was laid out by another path is not what its columns say.
+bool steering_sees_path(const std::vector<Effect>& effects) {
+  const auto sees_path = [](const Shape& shape) {
+    const std::vector<std::string>& names = shape.variables();
+    return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+      return name == "heading" || name == "x" || name == "y";
+    });
+  };
+  return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) {
+    return is_steering(effect.channel) &&
+           std::any_of(effect.shape.begin(), effect.shape.end(), sees_path);
+  });
+}
+
+/// What was recorded, driven as the steering effects say.
+std::vector<Recording> as_steered(const FitTask& task, const FitState& fit) {
+  const Model& model = fit.model;
+  if (!steers(model.effects)) return task.recorded;
+  return with_gyro(steered(task.raw, model.effects, model.robot, fit.paths), model.robot,
+                   model.noise);
+}
+
+/// Spans are left out where delays move them.
+ProblemOptions moved_options(const FitTask& task, const Model& model) {
+  ProblemOptions result = task.options.problem;
+  const std::size_t sessions = task.recorded.size();
+  if (result.left_out.size() > sessions) {
+    throw std::invalid_argument(joined("spans are left out of ", result.left_out.size(),
+                                       " recordings, of which there are ", sessions));
+  }
+  result.left_out.resize(result.left_out.empty() ? 0 : sessions);
+  for (std::size_t s = 0; s < result.left_out.size(); ++s) {
+    std::vector<double> ends;
+    for (const TimeSpan& span : result.left_out[s]) {
+      ends.push_back(span.from);
+      ends.push_back(span.to);
+    }
+    ends = retimed(ends, task.recorded[s], s, sessions, model.effects, model.robot,
+                   delay_of_legs(task.recorded[s]));
+    for (std::size_t k = 0; k < result.left_out[s].size(); ++k) {
+      result.left_out[s][k] = {ends[2 * k], ends[2 * k + 1]};
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void lay_out_recordings(const FitTask& task, Fitting& now) {
+  FitState& fit = now.fit;
+  now.laid_out = fit.model.effects;
+  fit.recordings = retimed(as_steered(task, fit), fit.model.effects, fit.model.robot);
+  fit.used = moved_options(task, fit.model);
+  fit.problem = make_problem(fit.recordings, fit.model, fit.used);
+}
+
+bool layout_moved(const Fitting& now) {
+  constexpr double kMovedLayout = 0.02;  // standard deviations
+  const FitState& fit = now.fit;
+  if (steering_sees_path(fit.model.effects)) return true;
+  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
+    if (!is_laid_out(fit.model.effects[one.effect].channel)) continue;
+    const double before = now.laid_out[one.effect].coefficients[one.place];
+    const double moved = coefficient_at(fit, idx(unknown[k])) - before;
+    if (std::abs(moved) > kMovedLayout * sd_of_unknown(fit, k)) return true;
+  }
+  return false;
+}
+
+void lay_out_again(const FitTask& task, Fitting& now) {
+  const std::map<std::string, Vector2> landmarks = landmark_places(now.fit);
+  lay_out_recordings(task, now);
+  now.fit.adjustment.state = placed(now.fit, landmarks);
+}
+
+RecordingState placed(const FitState& fit, const std::map<std::string, Vector2>& landmarks) {
+  RecordingState state;
+  for (const std::string& name : fit.problem.landmarks) {
+    state.landmarks.push_back(landmarks.at(name));
+  }
+  for (const PoseNode& node : fit.problem.poses) {
+    const std::size_t session = idx(node.session);
+    state.poses.push_back(pose_at(fit.recordings[session].drive, fit.paths[session], node.t));
+  }
+  state.orientations = orientations_seen_from(fit.problem, state.poses);
+  return state;
+}
+
+}  // namespace trussmap

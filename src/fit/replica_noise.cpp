@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "drive/body_motion.hpp"
+#include "drive/row_variables.hpp"
+#include "drive/wheels_and_gyro.hpp"
+#include "effects/channel_physics.hpp"
+#include "effects/corrected_recording.hpp"
+#include "estimation/noise_states.hpp"
+#include "fit/replica_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+namespace trussmap {
+namespace {
+
+/// A value of a row, and what the effects add to it.
+double with_effects(double value, const Replica& replica,
+                    const std::vector<const std::vector<DrivePattern>*>& patterns, std::size_t row,
+                    double DrivePattern::*part) {
+  for (std::size_t k = 0; k < patterns.size(); ++k) {
+    if (patterns[k] == nullptr) continue;
+    value += replica.offsets[static_cast<Eigen::Index>(k)] * (*patterns[k])[row].*part;
+  }
+  return value;
+}
+
+/// Of other wheels than two: what their noise does to the body.
+void disturb_columns(std::size_t row, const Model& model, Drive& drive, NormalDraws& draw) {
+  const ArcNoise own = row_noise(drive, row, 1.0, drive.duration(row), model.robot, model.noise);
+  Matrix3 Q;
+  Q << own.along, own.along_aside, own.shared,        //
+      own.along_aside, own.aside, own.heading_aside,  //
+      own.shared, own.heading_aside, own.heading;
+  const Eigen::SelfAdjointEigenSolver<Matrix3> axes(Q);
+  Eigen::Vector3d more = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    more += draw(std::sqrt(std::max(axes.eigenvalues()[k], 0.0))) * axes.eigenvectors().col(k);
+  }
+  add_travel(drive, row, wheel_travel({more[0], 0.0, more[2]}, model.robot));
+  if (!drive.sideways.empty()) drive.sideways[row] += more[1];
+}
+
+/// g of a process's channel, drawn for every row's end.
+std::vector<double> drawn_gains(const NoiseProcess& process, const Drive& drive,
+                                const std::vector<double>& ends_of_legs, NormalDraws& draw) {
+  const bool way = goes_with_distance(process.process);
+  std::vector<double> g(drive.rows(), 0.0);
+  double value = is_walk(process.process) ? 0.0 : draw(process.sd);
+  int leg = 0;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    const double lag =
+        way ? 0.5 * std::abs(drive.left[row] + drive.right[row]) : drive.duration(row);
+    const double middle = drive.t[row] - 0.5 * drive.duration(row);
+    const double before = value;
+    switch (process.process) {
+      case ProcessKind::white:
+        value = draw(process.sd);
+        break;
+      case ProcessKind::per_leg: {
+        const int at = leg_at(ends_of_legs, middle);
+        if (at != leg) value = draw(process.sd);
+        leg = at;
+        break;
+      }
+      case ProcessKind::per_session:
+      case ProcessKind::per_pass:
+        break;
+      case ProcessKind::correlated_in_t:
+      case ProcessKind::correlated_in_distance: {
+        const double keep = std::exp(-lag / process.length);
+        value = keep * value + draw(process.sd * std::sqrt(1.0 - keep * keep));
+        break;
+      }
+      case ProcessKind::walk_in_t:
+      case ProcessKind::walk_in_distance:
+        value += draw(process.sd * std::sqrt(lag));
+        break;
+    }
+    // Wheels take the mean over a row, of a chain nearly that of its ends.
+    const bool mean = is_chain(process.process) && acts_on(process.channel) == ActsOn::drives;
+    g[row] = mean ? 0.5 * (before + value) : value;
+  }
+  return g;
+}
+
+void add_to_fixes(const NoiseProcess& process, const std::vector<double>& g, Recording& recording,
+                  NormalDraws& draw) {
+  for (Fix& one : recording.fixes) {
+    const bool white = process.process == ProcessKind::white;
+    const double value = white ? draw(process.sd) : g[row_at(recording.drive, one.t)];
+    (process.channel == Channel::fix_x ? one.x : one.y) += value;
+  }
+}
+
+void add_to_sightings(const NoiseProcess& process, const std::vector<double>& g,
+                      Recording& recording, NormalDraws& draw) {
+  struct Pass {
+    double seen = 0.0;
+    double value = 0.0;
+  };
+  std::map<std::string, Pass> passes;
+  for (Sighting& one : recording.sightings) {
+    if (one.standing() && process.channel != Channel::sighting_yaw) continue;
+    double value = g[row_at(recording.drive, one.t)];
+    if (process.process == ProcessKind::white) value = draw(process.sd);
+    if (process.process == ProcessKind::per_pass) {
+      const auto [at, fresh] = passes.try_emplace(one.landmark, Pass{});
+      if (fresh || one.t - at->second.seen > kLongestGap) at->second.value = draw(process.sd);
+      at->second.seen = one.t;
+      value = at->second.value;
+    }
+    one = without(process.channel, value, one);
+    one.range = std::max(one.range, kLeastDrawnRange);
+  }
+}
+
+}  // namespace
+
+void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& draw) {
+  Drive& drive = replica.timed[session].drive;
+  const auto patterns = drive_patterns(replica.border, session);
+  const Robot& robot = replica.fit.model.robot;
+  for (std::size_t row = 0; row < drive.gyro.size(); ++row) {
+    const GyroShare& gyro = drive.gyro[row];
+    if (!std::isfinite(gyro.variance)) continue;
+    const double excess = with_effects(0.0, replica, patterns, row, &DrivePattern::excess);
+    const double along = gyro.along * excess;
+    const double apart = wheel_travel({0.0, 0.0, gyro.turn}, robot).right * excess;
+    add_travel(drive, row, {along - apart, along + apart});
+    if (!drive.sideways.empty()) drive.sideways[row] += gyro.aside * excess;
+    const double duration = drive.duration(row);
+    const double turn = body_motion(drive, row, robot).turn - excess;
+    drive.yaw_rate[row] =
+        (turn + draw(replica.fit.model.noise.gyro * std::sqrt(duration))) / duration;
+  }
+  drive.gyro.clear();
+}
+
+void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw) {
+  Drive& drive = replica.timed[session].drive;
+  const Noise& noise = replica.fit.model.noise;
+  const auto patterns = drive_patterns(replica.border, session);
+  const Robot& robot = replica.fit.model.robot;
+  for (std::size_t row = 0; row < drive.rows(); ++row) {
+    double& left = drive.left[row];
+    double& right = drive.right[row];
+    const double duration = drive.duration(row);
+    const double turn = std::abs(body_motion(drive, row, robot).turn);
+    const double heading = draw(std::sqrt(noise.heading_per_s * noise.heading_per_s * duration +
+                                          noise.heading_per_rad * noise.heading_per_rad * turn));
+    const double travel = draw(noise.travel_per_s * std::sqrt(duration));
+    if (drive.wheels.empty()) {
+      const WheelTravel turned = wheel_travel({0.0, 0.0, heading}, robot);
+      left += draw(noise.left * std::sqrt(std::abs(left))) + travel + turned.left;
+      right += draw(noise.right * std::sqrt(std::abs(right))) + travel + turned.right;
+    } else {
+      disturb_columns(row, replica.fit.model, drive, draw);
+    }
+    if (!drive.has_compass() || std::isnan(drive.heading[row])) continue;
+    const double shown = with_effects(replica.paths[session].ends[row].heading, replica, patterns,
+                                      row, &DrivePattern::compass);
+    drive.heading[row] = wrap_angle(shown + draw(noise.compass));
+  }
+}
+
+void add_process(const NoiseProcess& process, std::size_t session, Replica& replica,
+                 NormalDraws& draw) {
+  const bool of_fixes = process.channel == Channel::fix_x || process.channel == Channel::fix_y;
+  if (!of_fixes && !is_recordable(process.channel)) {
+    throw std::invalid_argument("noise of channel \"" + std::string(name_of(process.channel)) +
+                                "\" cannot be drawn: no recording can hold it");
+  }
+  Recording& recording = replica.timed[session];
+  Drive& drive = recording.drive;
+  // Legs of the recording as it was: rests may be none any more.
+  const std::vector<double> g =
+      drawn_gains(process, drive, ends_of_legs(replica.fit.recordings[session]), draw);
+  if (of_fixes) {
+    add_to_fixes(process, g, recording, draw);
+    return;
+  }
+  switch (acts_on(process.channel)) {
+    case ActsOn::readings:
+      for (std::size_t row = 0; row < drive.heading.size(); ++row) {
+        drive.heading[row] = wrap_angle(drive.heading[row] + g[row]);
+      }
+      return;
+    case ActsOn::drives:
+      free_drive(process.channel, g, replica.fit.model.robot, drive);
+      return;
+    case ActsOn::views:
+      add_to_sightings(process, g, recording, draw);
+      return;
+  }
+}
+
+}  // namespace trussmap

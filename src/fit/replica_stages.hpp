@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The stages of a recording drawn anew (replicated_recording.hpp). They draw from one stream, so
+// their order is part of what a seed means.
+#pragma once
+
+#include "fit/fit_state.hpp"
+
+#include <random>
+#include <string>
+#include <tuple>
+
+namespace trussmap {
+
+inline constexpr double kLeastDrawnRange = 1e-6;  // m
+
+/// Normal errors, one after the other.
+struct NormalDraws {
+  std::mt19937_64 random;
+  std::normal_distribution<double> normal = {};
+
+  double operator()(double sd) { return sd * normal(random); }
+};
+
+/// The fit's recordings on their way to new ones.
+struct Replica {
+  const FitState& fit;
+  Eigen::VectorXd offsets;
+  RecordingState state;          ///< without lasting noise; the robot misses landmarks
+  std::vector<Recording> timed;  ///< as fitted: moved back by the delays
+  std::vector<SessionPath> paths = {};
+  EffectParameters border = {};
+};
+
+/// What a survey, copied to every session, has been drawn to say: it stays one.
+struct DrawnSurvey {
+  std::map<std::tuple<std::string, double, double>, Vector2> places;
+  std::map<std::tuple<std::string, double, double, double>, double> headings;
+};
+
+void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, NormalDraws& draw);
+void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw);
+void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& draw);
+void draw_sightings(Replica& replica, NormalDraws& draw);
+
+/// Of a drive along which both lead, what wheels and gyro each show; the gyro's noise.
+void part_wheels_and_gyro(std::size_t session, Replica& replica, NormalDraws& draw);
+/// Noise of wheels and compass.
+void disturb_drive(std::size_t session, Replica& replica, NormalDraws& draw);
+/// Throws std::invalid_argument on a channel that no recording can hold.
+void add_process(const NoiseProcess& process, std::size_t session, Replica& replica,
+                 NormalDraws& draw);
+
+}  // namespace trussmap
