@@ -18,13 +18,9 @@
 #pragma once
 
 #include "trussmap/planar.hpp"
+#include "trussmap/robot.hpp"
 
 namespace trussmap {
-
-struct WheelTravel {
-  double left = 0.0;   ///< m, signed
-  double right = 0.0;  ///< m, signed
-};
 
 struct WheelNoise {
   double left = 0.0;   ///< k_L, m^(1/2)

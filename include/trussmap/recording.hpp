@@ -43,7 +43,7 @@ struct Covariate {
   std::vector<double> values;  ///< one per drive row, in the column's own unit
 };
 
-/// How the gyro's reading of a row was taken into its travels (drive/wheels_and_gyro.hpp).
+/// How the gyro's reading of a row was taken into its travels (odometry/wheels_and_gyro.hpp).
 struct GyroShare {
   double left = 0.0;      ///< m, the wheels' own travels
   double right = 0.0;     ///< m

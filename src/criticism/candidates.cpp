@@ -3,9 +3,9 @@
 #include "criticism/candidates.hpp"
 
 #include "criticism/driven_variables.hpp"
-#include "drive/row_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/place_patterns.hpp"
+#include "recording/variable_names.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/catalogue.hpp"
 

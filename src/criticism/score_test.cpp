@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/score_test.hpp"
 
-#include "drive/row_variables.hpp"
 #include "linalg/dense.hpp"
 #include "parallel/parallel_for.hpp"
+#include "recording/variable_names.hpp"
 #include "statistics/distributions.hpp"
 
 #include <algorithm>

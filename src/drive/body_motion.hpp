@@ -5,9 +5,8 @@
 // such a motion, and where a motion becomes what two wheels would show of it.
 #pragma once
 
-#include "trussmap/arc.hpp"
-#include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <cstddef>
 

@@ -16,10 +16,6 @@ namespace {
 constexpr double kStandingSpeed = 0.005;  // m/s, of the faster wheel
 constexpr double kSpinShare = 0.2;        // of the wheels' speed that the middle may have in a spin
 
-constexpr std::array<std::string_view, 4> kRates{"speed", "turn_rate", "acceleration", "curvature"};
-constexpr std::array<std::string_view, 4> kEvents{"starts", "spins", "reverses_left",
-                                                  "reverses_right"};
-
 /// First and one past the last row of the same kind within half a window of the row's middle.
 struct Span {
   std::size_t first;
@@ -115,25 +111,6 @@ std::vector<MotionKind> motion_kinds(const Drive& drive) {
                                 drive.wheel_slip(row)));
   }
   return kinds;
-}
-
-const std::vector<std::string>& reserved_variables() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all(kRates.begin(), kRates.end());
-    all.insert(all.end(),
-               {"arc_angle", "spin_angle", "heading", "x", "y", "t", "distance", "session"});
-    all.insert(all.end(), kEvents.begin(), kEvents.end());
-    return all;
-  }();
-  return names;
-}
-
-bool is_event(std::string_view variable) {
-  return std::find(kEvents.begin(), kEvents.end(), variable) != kEvents.end();
-}
-
-bool is_rate(std::string_view variable) {
-  return std::find(kRates.begin(), kRates.end(), variable) != kRates.end();
 }
 
 std::size_t row_at(const Drive& drive, double t) {

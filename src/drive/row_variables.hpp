@@ -20,9 +20,10 @@
 // explain.
 #pragma once
 
-#include "trussmap/model.hpp"
+#include "recording/variable_names.hpp"
 #include "trussmap/planar.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <string>
 #include <string_view>
@@ -43,13 +44,6 @@ enum class MotionKind { standing, spinning, driving };
                                      double sideways = 0.0);
 /// Kind of motion of each row.
 [[nodiscard]] std::vector<MotionKind> motion_kinds(const Drive& drive);
-
-/// Names that a covariate may not have, and a shape may always use.
-[[nodiscard]] const std::vector<std::string>& reserved_variables();
-/// starts, spins, reverses_left, reverses_right.
-[[nodiscard]] bool is_event(std::string_view variable);
-/// speed, turn_rate, acceleration, curvature: smoothed within one kind of motion.
-[[nodiscard]] bool is_rate(std::string_view variable);
 
 /// `path`: pose at the end of each row, from `start`. Throws std::invalid_argument where its length
 /// is not the drive's.

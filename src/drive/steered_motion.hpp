@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Kinematics of a drive with a steered wheel: tricycle and ackermann (DriveKind, model.hpp).
+// Kinematics of a drive with a steered wheel: tricycle and ackermann (DriveKind, robot.hpp).
 #pragma once
 
-#include "trussmap/model.hpp"
+#include "trussmap/robot.hpp"
 
 #include <array>
 

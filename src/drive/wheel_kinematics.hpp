@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// How a robot's columns move its body, one row at a time (DriveKind, model.hpp); with_wheels does
+// How a robot's columns move its body, one row at a time (DriveKind, robot.hpp); with_wheels does
 // so with a whole recording.
 #pragma once
 
-#include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
+#include "trussmap/robot.hpp"
 
 #include <cstddef>
 

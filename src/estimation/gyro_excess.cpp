@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/gyro_excess.hpp"
 
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <cmath>
 

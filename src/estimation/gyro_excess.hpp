@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What a gyro and the wheels say of each other over a segment, beside the motion that both give
-// (drive/wheels_and_gyro.hpp).
+// (odometry/wheels_and_gyro.hpp).
 //
 //   e_k   excess of row k: the gyro's turn less the wheels', N(0, v_k) where neither errs
 //

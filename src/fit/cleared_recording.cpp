@@ -3,7 +3,7 @@
 #include "fit/cleared_recording.hpp"
 
 #include "drive/body_motion.hpp"
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "effects/steering.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/effect_columns.hpp"

@@ -5,7 +5,7 @@
 #include "drive/body_motion.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/steering.hpp"
 #include "fit/effect_columns.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_state.hpp"
 
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"

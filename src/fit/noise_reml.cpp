@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fit/noise_reml.hpp"
 
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"

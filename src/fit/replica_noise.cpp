@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/corrected_recording.hpp"
 #include "estimation/noise_states.hpp"

@@ -3,7 +3,7 @@
 #include "trussmap/dead_reckoning.hpp"
 
 #include "drive/body_motion.hpp"
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "recording/floor_code.hpp"

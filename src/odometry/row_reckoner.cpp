@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "odometry/row_reckoner.hpp"
 
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/drive_charts.hpp"
 
-#include "drive/wheel_places.hpp"
+#include "effects/wheel_places.hpp"
 #include "effects/channel_physics.hpp"
 #include "geometry/index.hpp"
 #include "geometry/units.hpp"

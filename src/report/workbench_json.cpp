@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "drive/row_variables.hpp"
 #include "plot/fit_charts.hpp"
+#include "recording/variable_names.hpp"
 #include "report/effect_parts.hpp"
 #include "report/page_words.hpp"
 #include "report/view_json.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/further_columns.hpp"
 
-#include "drive/row_variables.hpp"
+#include "recording/variable_names.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>

@@ -123,6 +123,7 @@ TEST(CalibrateCommand, ASecondOdometerGivesTheWheels) {
   second.truth.clear();
   const std::string convert = "convert " + drive + " " + at + "/both --second-odometer " + at;
   write_recording(scratch.path() / "encoders", second);
+  fs::remove(scratch.path() / "encoders" / "sightings.csv");
   Ran ran = run_trussmap(convert + "/encoders");
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.output.find("encoders/model.toml: is missing, expected the second odometer's"),

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Robots with a gyro, from the simulator that turns the physics round.
-#include "drive/wheels_and_gyro.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "estimation/recording_problem.hpp"
 #include "estimation/recording_system.hpp"
 #include "fit/effect_columns.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/map_guess.hpp"
 
-#include "drive/row_variables.hpp"
+#include "recording/variable_names.hpp"
 
 #include <algorithm>
 #include <cctype>

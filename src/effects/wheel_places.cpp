@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "drive/wheel_places.hpp"
+#include "effects/wheel_places.hpp"
 
 #include <cmath>
 #include <numbers>

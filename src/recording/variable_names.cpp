@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "recording/variable_names.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace trussmap {
+namespace {
+
+constexpr std::array<std::string_view, 4> kRates{"speed", "turn_rate", "acceleration", "curvature"};
+constexpr std::array<std::string_view, 4> kEvents{"starts", "spins", "reverses_left",
+                                                  "reverses_right"};
+
+}  // namespace
+
+const std::vector<std::string>& reserved_variables() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all(kRates.begin(), kRates.end());
+    all.insert(all.end(),
+               {"arc_angle", "spin_angle", "heading", "x", "y", "t", "distance", "session"});
+    all.insert(all.end(), kEvents.begin(), kEvents.end());
+    return all;
+  }();
+  return names;
+}
+
+bool is_event(std::string_view variable) {
+  return std::find(kEvents.begin(), kEvents.end(), variable) != kEvents.end();
+}
+
+bool is_rate(std::string_view variable) {
+  return std::find(kRates.begin(), kRates.end(), variable) != kRates.end();
+}
+
+}  // namespace trussmap

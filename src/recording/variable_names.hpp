@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// What a shape may speak of, by name; what it means stands in drive/row_variables.hpp.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trussmap {
+
+/// Names that a covariate may not have, and a shape may always use.
+[[nodiscard]] const std::vector<std::string>& reserved_variables();
+/// starts, spins, reverses_left, reverses_right.
+[[nodiscard]] bool is_event(std::string_view variable);
+/// speed, turn_rate, acceleration, curvature: smoothed within one kind of motion.
+[[nodiscard]] bool is_rate(std::string_view variable);
+
+}  // namespace trussmap
