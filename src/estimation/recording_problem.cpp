@@ -416,9 +416,7 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
     }
     one.from = problem.pose_node(one.from);
     if (one.kind == MeasurementKind::sighting_yaw) one.to += problem.pose_end();
-    const bool between_poses =
-        one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
-    if (between_poses) one.to = problem.pose_node(one.to);
+    if (is_between_poses(one.kind)) one.to = problem.pose_node(one.to);
   }
   add_processes(problem, recordings, model);
   return problem;
