@@ -26,6 +26,7 @@
 // covariance (Henderson's mixed model equations, 1950).
 #pragma once
 
+#include "estimation/process_moments.hpp"
 #include "estimation/recording_problem.hpp"
 #include "trussmap/model.hpp"
 
@@ -36,10 +37,6 @@ namespace trussmap {
 
 inline constexpr double kLongestGap = 5.0;  ///< s: a landmark unseen for longer is met anew
 
-/// Correlated in it, or walking: else, where a process is either, in time.
-[[nodiscard]] bool goes_with_distance(ProcessKind process);
-/// Neither correlated nor constant: from 0 at a recording's start.
-[[nodiscard]] bool is_walk(ProcessKind process);
 /// Ends of a session's legs, s, ascending.
 [[nodiscard]] std::vector<double> ends_of_legs(const Recording& recording);
 /// The leg that time t lies in: how many have ended before.
@@ -56,21 +53,6 @@ struct LaidProcess {
   std::vector<std::vector<NoiseTerm>> terms;  ///< per measurement
   std::vector<Matrix4> within;                ///< per measurement, in its values
 };
-
-/// What a unit process adds to the four numbers of some rows in which it acts by c: K_from and
-/// K_to as above before they are told apart, e = by_start z_start + u.
-struct ProcessMoments {
-  Vector4 by_start = Vector4::Zero();
-  double keep = 1.0;             ///< z_end = keep z_start + w
-  Matrix4 uu = Matrix4::Zero();  ///< cov u
-  Vector4 uw = Vector4::Zero();  ///< cov(u, w)
-  double ww = 0.0;               ///< var w
-};
-
-/// Of a chain. `at_ends`: it acts at the rows' ends (a reading), else by its means over the rows.
-[[nodiscard]] ProcessMoments process_moments(const std::vector<SegmentRow>& rows,
-                                             const std::vector<Vector4>& c, ProcessKind process,
-                                             double length, bool at_ends);
 
 /// How a unit of g of a channel that acts on drives or readings changes the rows' four numbers.
 [[nodiscard]] std::vector<Vector4> unit_columns(const Drive& drive,
@@ -95,7 +77,6 @@ class ProcessLayer {
   [[nodiscard]] LaidProcess lay(Channel channel, ProcessKind process, double length) const;
 
  private:
-  friend class ProcessLayout;
   const RecordingProblem& problem_;
   const std::vector<Recording>& recordings_;
   Robot robot_;

@@ -11,8 +11,7 @@ namespace trussmap {
 namespace {
 
 bool in_map(const Measurement& one) {
-  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::truth ||
-         one.kind == MeasurementKind::fix;
+  return is_in_map_frame(one.kind);
 }
 
 void refuse_loose_sessions(const RecordingProblem& problem) {

@@ -3,388 +3,205 @@
 #include "estimation/recording_problem.hpp"
 
 #include "estimation/gyro_excess.hpp"
-#include "estimation/motion_changes.hpp"
+#include "estimation/measured_rows.hpp"
 #include "estimation/noise_states.hpp"
+#include "estimation/session_instants.hpp"
 #include "linalg/dense.hpp"
 #include "parallel/parallel_for.hpp"
-#include "recording/floor_code.hpp"
-#include "recording/legs.hpp"
 #include "recording/time_spans.hpp"
 #include "text/number_text.hpp"
-#include "trussmap/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include <Eigen/LU>
 
 namespace trussmap {
 namespace {
 
-constexpr double kExactSd = 1e-6;   // m or rad: what is called exact is this exact
-constexpr double kNearRange = 3.0;  // sds
+/// A problem while session after session joins it: poses and orientations count from 0, until every
+/// landmark has its node.
+struct GrowingProblem {
+  RecordingProblem problem;
+  std::map<std::string, int> landmark_node;
+  std::map<int, int> orientation;  ///< of a landmark
+};
 
-Matrix4 whitener_of_sds(std::initializer_list<double> sds) {
-  Matrix4 result = Matrix4::Zero();
-  Eigen::Index k = 0;
-  for (const double sd : sds) {
-    result(k, k) = 1.0 / std::max(sd, kExactSd);
-    ++k;
+/// One session's poses.
+struct SessionPoses {
+  int session = 0;
+  std::vector<TimeSpan> left_out;
+  std::map<double, int> at;  ///< by time
+};
+
+/// The drives between successive poses that count.
+struct SessionSegments {
+  std::vector<Measurement> measured;  ///< from and to poses
+  std::vector<std::vector<SegmentRow>> rows;
+};
+
+SessionSegments segments_of(const SessionPoses& poses, const Drive& drive, const Model& model) {
+  using Node = std::pair<const double, int>;
+  std::vector<std::pair<const Node*, const Node*>> ends;
+  for (auto to = poses.at.begin(), from = to; to != poses.at.end(); from = to++) {
+    if (from == to || overlaps_any({from->first, to->first}, poses.left_out)) continue;
+    ends.emplace_back(&*from, &*to);
   }
-  return result;
+  SessionSegments segments{std::vector<Measurement>(ends.size()),
+                           std::vector<std::vector<SegmentRow>>(ends.size())};
+  parallel_for(ends.size(), [&](std::size_t k) {
+    const auto& [from, to] = ends[k];
+    std::vector<SegmentRow>& rows = segments.rows[k];
+    rows = segment_rows(drive, from->first, to->first, model.robot);
+    const SegmentMotion motion = segment_motion(rows);
+    Measurement& one = segments.measured[k];
+    one.kind = MeasurementKind::segment;
+    one.from = from->second;
+    one.to = to->second;
+    one.rows = std::isnan(motion.mean_heading) ? 3 : 4;
+    one.value << motion.displacement.x, motion.displacement.y, motion.displacement.heading,
+        one.rows == 4 ? motion.mean_heading : 0.0;
+    one.whitener = whitener_of(segment_covariance(drive, rows, model.robot, model.noise), one.rows);
+    one.session = poses.session;
+  });
+  return segments;
 }
 
-/// Collects the problem, session by session.
-class Collector {
- public:
-  Collector(const Model& model, const ProblemOptions& options) : model_(model), options_(options) {}
+Measurement gyro_measured(const GyroExcess& excess, const Measurement& segment) {
+  Measurement one;
+  one.kind = MeasurementKind::gyro;
+  one.from = segment.from;
+  one.rows = excess.rows;
+  one.value = excess.value;
+  one.whitener.topLeftCorner(one.rows, one.rows).setIdentity();
+  one.session = segment.session;
+  one.source = segment.source;
+  return one;
+}
 
-  void add_session(const Recording& recording) {
-    session_ = static_cast<int>(problem_.sessions.size());
-    problem_.sessions.push_back(recording.name);
-    const std::vector<std::size_t> truth = truth_rows_used(recording);
-    const std::vector<std::size_t> fixes = fixes_used(recording);
-    const bool loops = options_.loops && !recording.loops.empty();
-    if (recording.sightings.empty() && truth.empty() && fixes.empty() && !loops) {
-      throw InputError(recording.name, 0,
-                       "neither sightings, truth, fixes nor loops in use, expected some to adjust "
-                       "to");
-    }
-    add_poses(recording, truth, fixes);
-    add_segments(recording);
-    for (std::size_t k = 0; k < recording.sightings.size(); ++k) {
-      if (pose_at_.contains(recording.sightings[k].t)) add_sighting(recording.sightings[k], k);
-    }
-    for (const std::size_t k : truth) {
-      if (pose_at_.contains(recording.truth[k].t)) add_truth(recording.truth[k], k);
-    }
-    for (const std::size_t k : fixes) {
-      if (pose_at_.contains(recording.fixes[k].t)) add_fix(recording.fixes[k], k);
-    }
-    for (std::size_t k = 0; loops && k < recording.loops.size(); ++k) {
-      const Loop& loop = recording.loops[k];
-      if (pose_at_.contains(loop.t) && pose_at_.contains(loop.t2)) add_loop(loop, k);
+RecordingProblem with_segments(RecordingProblem problem, SessionSegments segments,
+                               const Drive& drive, const Model& model) {
+  for (std::size_t k = 0; k < segments.measured.size(); ++k) {
+    Measurement& one = segments.measured[k];
+    one.source = problem.segments.size();
+    GyroExcess excess = gyro_excess(drive, segments.rows[k], model.robot, model.noise);
+    problem.segments.push_back(std::move(segments.rows[k]));
+    problem.measurements.push_back(one);
+    if (excess.rows > 0) problem.measurements.push_back(gyro_measured(excess, one));
+    problem.gyro_weights.push_back(std::move(excess.weights));
+  }
+  return problem;
+}
+
+/// The number of a key, which is the next one where it is new.
+template <typename Key, typename Named>
+int numbered(std::map<Key, int>& numbers, const Key& key, std::vector<Named>& all) {
+  const auto [at, fresh] = numbers.try_emplace(key, static_cast<int>(all.size()));
+  if (fresh) all.push_back(key);
+  return at->second;
+}
+
+GrowingProblem with_sightings(GrowingProblem growing, const std::vector<Sighting>& sightings,
+                              const SessionPoses& poses, const Noise& noise) {
+  RecordingProblem& problem = growing.problem;
+  for (std::size_t k = 0; k < sightings.size(); ++k) {
+    const auto pose = poses.at.find(sightings[k].t);
+    if (pose == poses.at.end()) continue;
+    const auto add = [&](Measurement one, int to) {
+      one.from = pose->second;
+      one.to = to;
+      one.session = poses.session;
+      one.source = k;
+      problem.measurements.push_back(one);
+    };
+    const int landmark = numbered(growing.landmark_node, sightings[k].landmark, problem.landmarks);
+    add(measured_by(sightings[k], noise), landmark);
+    if (const auto yaw = yaw_measured(sightings[k], noise)) {
+      add(*yaw, numbered(growing.orientation, landmark, problem.oriented));
     }
   }
+  return growing;
+}
 
-  /// After all sessions, so that every sighted landmark has its node.
-  void add_survey(const Recording& recording) {
-    if (!options_.survey) return;
+/// Truth, fixes and loops, of poses that are not left out.
+RecordingProblem with_places(RecordingProblem problem, const Recording& recording,
+                             const RowsUsed& used, const SessionPoses& poses, const Noise& noise) {
+  const auto add = [&](Measurement one, double from, std::size_t source) {
+    const auto pose = poses.at.find(from);
+    if (pose == poses.at.end()) return;
+    one.from = pose->second;
+    one.session = poses.session;
+    one.source = source;
+    problem.measurements.push_back(one);
+  };
+  for (const std::size_t k : used.truth) {
+    add(measured_by(recording.truth[k], noise), recording.truth[k].t, k);
+  }
+  for (const std::size_t k : used.fixes) {
+    add(measured_by(recording.fixes[k], noise), recording.fixes[k].t, k);
+  }
+  for (std::size_t k = 0; used.loops && k < recording.loops.size(); ++k) {
+    const Loop& loop = recording.loops[k];
+    const auto to = poses.at.find(loop.t2);
+    if (to == poses.at.end()) continue;
+    Measurement one = measured_by(loop, noise);
+    one.to = to->second;
+    add(one, loop.t, k);
+  }
+  return problem;
+}
+
+GrowingProblem with_session(GrowingProblem growing, const Recording& recording, const Model& model,
+                            const ProblemOptions& options) {
+  RecordingProblem& problem = growing.problem;
+  SessionPoses poses;
+  poses.session = static_cast<int>(problem.sessions.size());
+  problem.sessions.push_back(recording.name);
+  const RowsUsed used = rows_used(recording, model.robot, options);
+  if (!options.left_out.empty()) poses.left_out = options.left_out[idx(poses.session)];
+  for (const double t : session_instants(recording, used, model.robot, options, poses.left_out)) {
+    poses.at[t] = static_cast<int>(problem.poses.size());
+    problem.poses.push_back({poses.session, t});
+  }
+  problem = with_segments(std::move(problem), segments_of(poses, recording.drive, model),
+                          recording.drive, model);
+  growing = with_sightings(std::move(growing), recording.sightings, poses, model.noise);
+  growing.problem = with_places(std::move(growing.problem), recording, used, poses, model.noise);
+  return growing;
+}
+
+/// After all sessions, so that every sighted landmark has its node. Sessions come with copies of
+/// one survey: the same numbers count once.
+GrowingProblem with_surveys(GrowingProblem growing, const std::vector<Recording>& recordings,
+                            const Noise& noise) {
+  std::set<std::tuple<int, double, double>> places;
+  std::set<std::tuple<int, double, double, double>> headings;
+  const auto add = [&growing](Measurement one, int from, std::size_t source) {
+    one.from = from;
+    one.source = source;
+    growing.problem.measurements.push_back(one);
+  };
+  for (const Recording& recording : recordings) {
     for (std::size_t k = 0; k < recording.survey.size(); ++k) {
       const SurveyPoint& point = recording.survey[k];
-      const auto node = landmark_node_.find(point.landmark);
-      if (node == landmark_node_.end()) continue;
-      const double sd = std::isnan(point.sd) ? model_.noise.survey : point.sd;
-      Measurement one;
-      one.kind = MeasurementKind::survey;
-      one.from = node->second;
-      one.rows = 2;
-      one.value.head<2>() = Vector2(point.x, point.y);
-      one.whitener = whitener_of_sds({sd, sd});
-      one.source = k;
-      // Sessions come with copies of one survey: the same numbers count once.
-      const auto same_place = [&](const Surveyed& other) {
-        return other.landmark == one.from && other.place == one.value.head<2>();
-      };
-      const auto copy = std::find_if(surveyed_.begin(), surveyed_.end(), same_place);
-      if (copy == surveyed_.end()) problem_.measurements.push_back(one);
-      const bool has_heading = !std::isnan(point.heading);
-      const bool new_heading =
-          has_heading && std::none_of(copy, surveyed_.end(), [&](const Surveyed& other) {
-            return same_place(other) && other.heading == point.heading;
-          });
-      if (copy != surveyed_.end() && !new_heading) continue;
-      surveyed_.push_back({one.from, one.value.head<2>(), point.heading});
-      if (new_heading) add_survey_heading(point, k, node->second);
-    }
-  }
-
-  [[nodiscard]] RecordingProblem take() { return std::move(problem_); }
-
- private:
-  [[nodiscard]] std::vector<std::size_t> truth_rows_used(const Recording& recording) const {
-    std::vector<std::size_t> used;
-    if (!options_.truth || recording.truth.empty()) return used;
-    const Drive& drive = recording.drive;
-    double path = 0.0;
-    double turn = 0.0;
-    double from = drive.start();
-    std::size_t last = 0;
-    for (std::size_t k = 0; k < recording.truth.size(); ++k) {
-      const double t = recording.truth[k].t;
-      if (t < drive.start() || t > drive.t.back()) continue;
-      for (const SegmentRow& row : segment_rows(drive, from, t, model_.robot)) {
-        path += std::abs(row.path);
-        turn += std::abs(row.turn);
+      const auto node = growing.landmark_node.find(point.landmark);
+      if (node == growing.landmark_node.end()) continue;
+      if (places.emplace(node->second, point.x, point.y).second) {
+        add(measured_by(point, noise), node->second, k);
       }
-      from = t;
-      last = k;
-      if (used.empty() || path >= options_.truth_path || turn >= options_.truth_turn) {
-        used.push_back(k);
-        path = turn = 0.0;
+      const auto orientation = growing.orientation.find(node->second);
+      if (std::isnan(point.heading) || orientation == growing.orientation.end()) continue;
+      if (headings.emplace(node->second, point.x, point.y, point.heading).second) {
+        add(heading_measured(point, noise), orientation->second, k);
       }
     }
-    // At rest again, the end tells a late clock from a short way.
-    if (!used.empty() && used.back() != last) used.push_back(last);
-    return used;
   }
-
-  /// All but those that follow one another faster than their errors change; at rest one in
-  /// `fix_gap`, too, for each tells more of the place.
-  [[nodiscard]] std::vector<std::size_t> fixes_used(const Recording& recording) const {
-    std::vector<std::size_t> used;
-    if (!options_.fixes || recording.fixes.empty()) return used;
-    const Drive& drive = recording.drive;
-    const std::vector<double> driven = driven_path(drive);
-    double last_t = 0.0;
-    double last_path = 0.0;
-    for (std::size_t k = 0; k < recording.fixes.size(); ++k) {
-      const double t = recording.fixes[k].t;
-      if (t < drive.start() || t > drive.t.back()) continue;
-      const double path = path_at(drive, driven, t);
-      const bool soon = t - last_t < options_.fix_gap && path - last_path < options_.fix_path;
-      if (!used.empty() && soon) continue;
-      used.push_back(k);
-      last_t = t;
-      last_path = path;
-    }
-    return used;
-  }
-
-  void add_poses(const Recording& recording, const std::vector<std::size_t>& truth,
-                 const std::vector<std::size_t>& fixes) {
-    std::vector<double> times;
-    for (const Sighting& sighting : recording.sightings) times.push_back(sighting.t);
-    for (const std::size_t k : truth) times.push_back(recording.truth[k].t);
-    for (const std::size_t k : fixes) times.push_back(recording.fixes[k].t);
-    if (options_.loops) {
-      for (const Loop& loop : recording.loops) {
-        times.push_back(loop.t);
-        times.push_back(loop.t2);
-      }
-    }
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    leave_out(times);
-    pose_at_.clear();
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      if (k > 0 && !is_left_out(times[k - 1], times[k])) {
-        const std::vector<SegmentRow> rows =
-            segment_rows(recording.drive, times[k - 1], times[k], model_.robot);
-        for (const double t : motion_changes(recording.drive, rows, model_.robot,
-                                             {options_.least_spin, options_.least_drive})) {
-          if (t > times[k - 1] && t < times[k]) add_pose(t);
-        }
-      }
-      add_pose(times[k]);
-    }
-  }
-
-  /// Whether the drive between two successive instants does not count.
-  [[nodiscard]] bool is_left_out(double from, double to) const {
-    return overlaps_any({from, to}, spans_);
-  }
-
-  /// Drops instants inside what is left out, and those that would stand alone.
-  void leave_out(std::vector<double>& times) {
-    spans_.clear();
-    if (!options_.left_out.empty()) spans_ = options_.left_out[idx(session_)];
-    if (spans_.empty()) return;
-    std::erase_if(times, [this](double t) {
-      return std::any_of(spans_.begin(), spans_.end(),
-                         [t](const TimeSpan& span) { return span.from < t && t < span.to; });
-    });
-    std::vector<double> kept;
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      const bool after = k > 0 && !is_left_out(times[k - 1], times[k]);
-      const bool before = k + 1 < times.size() && !is_left_out(times[k], times[k + 1]);
-      if (after || before) kept.push_back(times[k]);
-    }
-    times = std::move(kept);
-  }
-
-  void add_pose(double t) {
-    pose_at_[t] = static_cast<int>(problem_.poses.size());
-    problem_.poses.push_back({session_, t});
-  }
-
-  void add_segments(const Recording& recording) {
-    if (pose_at_.empty()) return;
-    using Node = std::pair<const double, int>;
-    std::vector<std::pair<const Node*, const Node*>> ends;
-    for (auto from = pose_at_.begin(), to = std::next(from); to != pose_at_.end(); from = to++) {
-      if (!is_left_out(from->first, to->first)) ends.emplace_back(&*from, &*to);
-    }
-    std::vector<Measurement> segments(ends.size());
-    std::vector<std::vector<SegmentRow>> rows_of(ends.size());
-    parallel_for(ends.size(), [&](std::size_t k) {
-      const auto& [from, to] = ends[k];
-      std::vector<SegmentRow>& rows = rows_of[k];
-      rows = segment_rows(recording.drive, from->first, to->first, model_.robot);
-      const SegmentMotion motion = segment_motion(rows);
-      Measurement& one = segments[k];
-      one.kind = MeasurementKind::segment;
-      one.from = from->second;  // poses, until every landmark has its node
-      one.to = to->second;
-      one.rows = std::isnan(motion.mean_heading) ? 3 : 4;
-      one.value << motion.displacement.x, motion.displacement.y, motion.displacement.heading,
-          one.rows == 4 ? motion.mean_heading : 0.0;
-      one.whitener = whitener_of(
-          segment_covariance(recording.drive, rows, model_.robot, model_.noise), one.rows);
-      one.session = session_;
-    });
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      segments[k].source = problem_.segments.size();
-      problem_.segments.push_back(std::move(rows_of[k]));
-      problem_.measurements.push_back(segments[k]);
-      add_gyro(recording.drive, segments[k]);
-    }
-  }
-
-  void add_gyro(const Drive& drive, const Measurement& segment) {
-    GyroExcess excess =
-        gyro_excess(drive, problem_.segments[segment.source], model_.robot, model_.noise);
-    problem_.gyro_weights.push_back(std::move(excess.weights));
-    if (excess.rows == 0) return;
-    Measurement one;
-    one.kind = MeasurementKind::gyro;
-    one.from = segment.from;
-    one.rows = excess.rows;
-    one.value = excess.value;
-    one.whitener.topLeftCorner(one.rows, one.rows).setIdentity();
-    one.session = session_;
-    one.source = segment.source;
-    problem_.measurements.push_back(one);
-  }
-
-  void add_sighting(const Sighting& sighting, std::size_t source) {
-    const int next = static_cast<int>(problem_.landmarks.size());
-    const auto [node, fresh] = landmark_node_.try_emplace(sighting.landmark, next);
-    if (fresh) problem_.landmarks.push_back(sighting.landmark);
-    const Noise& noise = model_.noise;
-    Measurement one;
-    one.from = pose_at_.at(sighting.t);
-    one.to = node->second;
-    one.rows = 2;
-    one.session = session_;
-    one.source = source;
-    if (sighting.standing()) {
-      one.kind = MeasurementKind::standing;
-      one.value.head<2>() = code_from_robot(sighting);
-      one.whitener = whitener_of_sds({noise.sighting, noise.sighting});
-    } else {
-      const double sd_range = std::hypot(noise.range, noise.range_relative * sighting.range);
-      if (std::isnan(sighting.range)) {
-        one.kind = MeasurementKind::direction;
-        one.rows = 1;
-        one.value[0] = sighting.bearing;
-        one.whitener = whitener_of_sds({noise.bearing});
-      } else if (std::isnan(sighting.bearing)) {
-        one.kind = MeasurementKind::view;
-        one.rows = 1;
-        one.value[0] = sighting.range;
-        one.whitener = whitener_of_sds({sd_range});
-      } else if (sighting.range > kNearRange * sd_range) {
-        one.kind = MeasurementKind::view;
-        one.value.head<2>() = Vector2(sighting.range, sighting.bearing);
-        one.whitener = whitener_of_sds({sd_range, noise.bearing});
-      } else {
-        one.kind = MeasurementKind::cartesian_view;
-        one.value.head<2>() = sighting.range * rotation(sighting.bearing).col(0);
-        one.whitener = whitener_of_sds({sd_range, sd_range});
-      }
-    }
-    problem_.measurements.push_back(one);
-    if (std::isnan(sighting.yaw)) return;
-    one.kind = MeasurementKind::sighting_yaw;
-    one.to = orientation_of(node->second);
-    one.rows = 1;
-    one.value = Vector4(sighting.yaw, 0.0, 0.0, 0.0);
-    one.whitener = whitener_of_sds({noise.yaw});
-    problem_.measurements.push_back(one);
-  }
-
-  /// Counted among the orientations, until every pose has its node.
-  int orientation_of(int landmark) {
-    const int next = static_cast<int>(problem_.oriented.size());
-    const auto [at, fresh] = orientation_.try_emplace(landmark, next);
-    if (fresh) problem_.oriented.push_back(landmark);
-    return at->second;
-  }
-
-  void add_survey_heading(const SurveyPoint& point, std::size_t source, int landmark) {
-    const auto orientation = orientation_.find(landmark);
-    if (orientation == orientation_.end()) return;
-    Measurement one;
-    one.kind = MeasurementKind::survey_heading;
-    one.from = orientation->second;
-    one.rows = 1;
-    one.value[0] = point.heading;
-    one.whitener = whitener_of_sds({model_.noise.yaw});
-    one.source = source;
-    problem_.measurements.push_back(one);
-  }
-
-  void add_truth(const TruthRow& row, std::size_t source) {
-    const Noise& noise = model_.noise;
-    Measurement one;
-    one.kind = MeasurementKind::truth;
-    one.from = pose_at_.at(row.t);
-    one.rows = 3;
-    one.value.head<3>() = Eigen::Vector3d(row.x, row.y, row.heading);
-    one.whitener = whitener_of_sds({noise.truth, noise.truth, noise.truth_heading});
-    one.session = session_;
-    one.source = source;
-    problem_.measurements.push_back(one);
-  }
-
-  void add_fix(const Fix& fix, std::size_t source) {
-    const double sd = std::isnan(fix.sd) ? model_.noise.fix : fix.sd;
-    Measurement one;
-    one.kind = MeasurementKind::fix;
-    one.from = pose_at_.at(fix.t);
-    one.rows = 2;
-    one.value.head<2>() = Vector2(fix.x, fix.y);
-    one.whitener = whitener_of_sds({sd, sd});
-    one.session = session_;
-    one.source = source;
-    problem_.measurements.push_back(one);
-  }
-
-  void add_loop(const Loop& loop, std::size_t source) {
-    const double sd = std::isnan(loop.sd) ? model_.noise.loop : loop.sd;
-    const double sd_heading =
-        std::isnan(loop.sd_heading) ? model_.noise.loop_heading : loop.sd_heading;
-    Measurement one;
-    one.kind = MeasurementKind::loop;
-    one.from = pose_at_.at(loop.t);
-    one.to = pose_at_.at(loop.t2);
-    one.rows = 3;
-    one.value.head<3>() = Eigen::Vector3d(loop.dx, loop.dy, loop.dtheta);
-    one.whitener = whitener_of_sds({sd, sd, sd_heading});
-    one.session = session_;
-    one.source = source;
-    problem_.measurements.push_back(one);
-  }
-
-  /// A point of a survey that has been taken.
-  struct Surveyed {
-    int landmark = 0;
-    Vector2 place = Vector2::Zero();  ///< m
-    double heading = kAbsent;         ///< rad; NaN: none
-  };
-
-  const Model& model_;
-  const ProblemOptions& options_;
-  int session_ = 0;
-  std::vector<TimeSpan> spans_;  ///< left out of this session
-  std::map<std::string, int> landmark_node_;
-  std::map<int, int> orientation_;  ///< of a landmark
-  std::map<double, int> pose_at_;   ///< of this session, by time
-  std::vector<Surveyed> surveyed_;
-  RecordingProblem problem_;
-};
+  return growing;
+}
 
 }  // namespace
 
@@ -404,10 +221,12 @@ Matrix4 whitener_with(const Matrix4& whitener, const Matrix4& more, int rows) {
 
 RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
                               const ProblemOptions& options) {
-  Collector collector(model, options);
-  for (const Recording& recording : recordings) collector.add_session(recording);
-  for (const Recording& recording : recordings) collector.add_survey(recording);
-  RecordingProblem problem = collector.take();
+  GrowingProblem growing;
+  for (const Recording& recording : recordings) {
+    growing = with_session(std::move(growing), recording, model, options);
+  }
+  if (options.survey) growing = with_surveys(std::move(growing), recordings, model.noise);
+  RecordingProblem problem = std::move(growing.problem);
   for (Measurement& one : problem.measurements) {
     if (one.kind == MeasurementKind::survey) continue;
     if (one.kind == MeasurementKind::survey_heading) {
@@ -416,9 +235,7 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
     }
     one.from = problem.pose_node(one.from);
     if (one.kind == MeasurementKind::sighting_yaw) one.to += problem.pose_end();
-    const bool between_poses =
-        one.kind == MeasurementKind::segment || one.kind == MeasurementKind::loop;
-    if (between_poses) one.to = problem.pose_node(one.to);
+    if (is_between_poses(one.kind)) one.to = problem.pose_node(one.to);
   }
   add_processes(problem, recordings, model);
   return problem;

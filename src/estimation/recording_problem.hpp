@@ -75,6 +75,16 @@ enum class MeasurementKind {
   return kind == MeasurementKind::sighting_yaw || kind == MeasurementKind::survey_heading;
 }
 
+/// Of a place in the map's frame, whatever was driven.
+[[nodiscard]] constexpr bool is_in_map_frame(MeasurementKind kind) {
+  return kind == MeasurementKind::survey || kind == MeasurementKind::truth ||
+         kind == MeasurementKind::fix;
+}
+
+[[nodiscard]] constexpr bool is_between_poses(MeasurementKind kind) {
+  return kind == MeasurementKind::segment || kind == MeasurementKind::loop;
+}
+
 /// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
 /// place taken for another.
 [[nodiscard]] constexpr bool may_be_wrong(MeasurementKind kind) {

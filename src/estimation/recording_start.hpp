@@ -37,7 +37,6 @@
 #include "estimation/recording_problem.hpp"
 
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -69,17 +68,5 @@ struct RecordingStart {
 /// it, rad.
 [[nodiscard]] std::vector<double> orientations_seen_from(const RecordingProblem& problem,
                                                          const std::vector<Pose>& poses);
-
-/// The part of a problem that one session's poses first ... first + count - 1 see, without survey,
-/// truth and fixes; landmarks that they do not see are left out.
-struct ProblemPart {
-  RecordingProblem problem;
-  std::vector<int> landmarks;     ///< of the whole problem, in the part's order
-  std::vector<int> orientations;  ///< likewise, as numbered among the oriented
-  int first_pose = 0;
-};
-/// With `placed`, sightings of landmarks that have no place there are left out, too.
-[[nodiscard]] ProblemPart part_of(const RecordingProblem& problem, int first, int count,
-                                  const std::vector<std::optional<Vector2>>* placed = nullptr);
 
 }  // namespace trussmap

@@ -6,20 +6,14 @@
 #include "estimation/held_unknowns.hpp"
 #include "estimation/noise_states.hpp"
 #include "estimation/student_tails.hpp"
-#include "linalg/damped_step.hpp"
-#include "linalg/dense.hpp"
 #include "parallel/parallel_for.hpp"
 
 #include <cmath>
-#include <utility>
-
-#include <Eigen/LU>
 
 namespace trussmap {
 namespace {
 
 constexpr std::size_t kMeasurementsAtOnce = 64;
-constexpr std::size_t kColumnsAtOnce = 8;
 
 std::vector<int> sizes_of(const RecordingProblem& problem, const RecordingGauge& gauge) {
   std::vector<int> sizes(idx(problem.nodes()));
@@ -74,6 +68,13 @@ bool touches_drives(const EffectParameters& border) {
     if (!effect.drives.empty()) return true;
   }
   return false;
+}
+
+void take_held_out(const std::vector<std::uint8_t>& held, int node, RowsByNode& rows) {
+  if (node < 0 || held[idx(node)] == held_nothing) return;
+  for (int k = 0; k < 3; ++k) {
+    if (is_held(held[idx(node)], k)) rows.col(k).setZero();
+  }
 }
 
 }  // namespace
@@ -133,54 +134,50 @@ std::vector<std::uint8_t> RecordingSystem::held_nodes(bool hold_headings) const 
   return held;
 }
 
+void RecordingSystem::linearise_measurement(std::size_t k, const Point& at) {
+  const Measurement& one = problem_.measurements[k];
+  const bool driven = is_driven(one.kind);
+  Vector4 value = one.value;
+  if (driven && !motions_.empty()) value = moved_by_effects(k, at.offsets);
+  value += one.value_offset;
+  ViewPattern view = view_of(border_, at.offsets, one);
+  if (at.noise.size() > 0 && driven) value += lasting_in_segment(problem_, k, at.noise);
+  if (at.noise.size() > 0 && !driven) view = lasting_in_view(problem_, k, view, at.noise);
+  const MeasurementRows rows = measurement_rows(problem_, one, at.state, value, view);
+  const Matrix4 W = root_weights_[k] * one.whitener;
+  Whitened& J = J_[k];
+  J.from = W * rows.by_from;
+  J.to = W * rows.by_to;
+  take_held_out(at.held, one.from, J.from);
+  take_held_out(at.held, one.to, J.to);
+  if (!problem_.noise_terms.empty()) {
+    J.states.clear();
+    for (const NoiseTerm& term : problem_.noise_terms[k]) {
+      J.states.push_back(W * error_by(one, rows.by_view, term));
+    }
+  }
+  const Vector4 error = W * rows.error;
+  const Vector4 plain = one.tails > 0.0 ? rows.error + one.value_offset : rows.error;
+  squared_errors_[k] = tail_deviance(one.tails, one.rows, (one.whitener * plain).squaredNorm());
+  residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
+  evaluate_effect_parameters(k, rows);
+}
+
 double RecordingSystem::linearise(const RecordingState& state, const Eigen::VectorXd& coefficients,
                                   bool hold_headings) {
   const std::vector<std::uint8_t> held = held_nodes(hold_headings);
-  const auto take_held_out = [&held](int node, RowsByNode& rows) {
-    if (node < 0 || held[idx(node)] == held_nothing) return;
-    for (int k = 0; k < 3; ++k) {
-      if (is_held(held[idx(node)], k)) rows.col(k).setZero();
-    }
-  };
   normal_.clear();
   gradient_ = Eigen::VectorXd::Zero(normal_.unknowns());
   M_.setZero();
-  const bool with_drives = touches_drives(border_);
-  if (with_drives) motions_.resize(problem_.measurements.size());
-  const Eigen::VectorXd all = offsets_at(border_, coefficients);
+  if (touches_drives(border_)) motions_.resize(problem_.measurements.size());
+  const Eigen::VectorXd offsets = offsets_at(border_, coefficients);
   const auto states = static_cast<Eigen::Index>(problem_.noise_states.size());
   const Eigen::VectorXd noise =
       state.noise.size() == states ? state.noise : Eigen::VectorXd::Zero(states);
-  const auto linearise_one = [&](std::size_t k) {
-    const Measurement& one = problem_.measurements[k];
-    const bool segment = is_driven(one.kind);
-    Vector4 value =
-        (segment && with_drives ? moved_by_effects(k, all) : one.value) + one.value_offset;
-    ViewPattern view = view_of(border_, all, one);
-    if (states > 0 && segment) value += lasting_in_segment(problem_, k, noise);
-    if (states > 0 && !segment) view = lasting_in_view(problem_, k, view, noise);
-    const MeasurementRows rows = measurement_rows(problem_, one, state, value, view);
-    const Matrix4 W = root_weights_[k] * one.whitener;
-    Whitened& J = J_[k];
-    J.from = W * rows.by_from;
-    J.to = W * rows.by_to;
-    take_held_out(one.from, J.from);
-    take_held_out(one.to, J.to);
-    if (!problem_.noise_terms.empty()) {
-      J.states.clear();
-      for (const NoiseTerm& term : problem_.noise_terms[k]) {
-        J.states.push_back(W * error_by(one, rows.by_view, term));
-      }
-    }
-    const Vector4 error = W * rows.error;
-    const Vector4 plain = one.tails > 0.0 ? rows.error + one.value_offset : rows.error;
-    squared_errors_[k] = tail_deviance(one.tails, one.rows, (one.whitener * plain).squaredNorm());
-    residuals_.segment(first_row_[k], one.rows) = error.head(one.rows);
-    evaluate_effect_parameters(k, rows);
-  };
+  const Point at{state, offsets, noise, held};
   parallel_ranges(problem_.measurements.size(), kMeasurementsAtOnce,
                   [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t k = begin; k < end; ++k) linearise_one(k);
+                    for (std::size_t k = begin; k < end; ++k) linearise_measurement(k, at);
                   });
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     Vector4 error = Vector4::Zero();
@@ -295,29 +292,6 @@ void RecordingSystem::linearise_states(const Eigen::VectorXd& states) {
   }
 }
 
-std::vector<RecordingSystem::Link> RecordingSystem::links_of(std::size_t k) const {
-  const Measurement& one = problem_.measurements[k];
-  const Whitened& J = J_[k];
-  std::vector<Link> links;
-  for (const auto& [node, rows] : {std::pair(one.from, &J.from), std::pair(one.to, &J.to)}) {
-    if (node < 0 || normal_.size(node) == 0) continue;
-    links.push_back({node, rows->leftCols(normal_.size(node))});
-  }
-  for (std::size_t t = 0; t < J.states.size(); ++t) {
-    links.push_back({state_node(problem_.noise_terms[k][t].state), J.states[t]});
-  }
-  return links;
-}
-
-std::vector<RecordingSystem::NodeRows> RecordingSystem::node_rows(std::size_t measurement) const {
-  const int rows = problem_.measurements[measurement].rows;
-  std::vector<NodeRows> result;
-  for (const Link& link : links_of(measurement)) {
-    result.push_back({link.node, link.J.topRows(rows)});
-  }
-  return result;
-}
-
 Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& offsets) {
   Motion& motion = motions_[k];
   if (motion.at.size() == offsets.size()) {
@@ -360,274 +334,6 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
     const Vector4 column = W * rows.by_view * unit->vector();
     M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);
   }
-}
-
-Eigen::MatrixXd RecordingSystem::transposed_times(const Eigen::MatrixXd& rows) const {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns(), rows.cols());
-  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin);
-    const auto columns = static_cast<Eigen::Index>(end - begin);
-    add_transposed_times(rows.middleCols(first, columns), result.middleCols(first, columns));
-  });
-  return result;
-}
-
-void RecordingSystem::add_transposed_times(const Eigen::Ref<const Eigen::MatrixXd>& rows,
-                                           Eigen::Ref<Eigen::MatrixXd> result) const {
-  for (std::size_t k = 0; k < J_.size(); ++k) {
-    const Measurement& one = problem_.measurements[k];
-    const auto part = rows.middleRows(first_row_[k], one.rows);
-    for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
-      if (node < 0 || normal_.size(node) == 0) continue;
-      const int size = normal_.size(node);
-      result.middleRows(normal_.offset(node), size).noalias() +=
-          J->topLeftCorner(one.rows, size).transpose().lazyProduct(part);
-    }
-    for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
-      const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
-      result.row(at) += J_[k].states[t].head(one.rows).transpose() * part;
-    }
-  }
-  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
-    const NoiseState& state = problem_.noise_states[k];
-    const auto part = rows.row(state_row(k));
-    result.row(normal_.offset(state_node(static_cast<int>(k)))) += part / state.sd;
-    if (state.previous < 0) continue;
-    result.row(normal_.offset(state_node(state.previous))) -= state.keep / state.sd * part;
-  }
-}
-
-Eigen::MatrixXd RecordingSystem::times(const Eigen::MatrixXd& nodes) const {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows_, nodes.cols());
-  subtract_times(nodes, result);
-  result = -result;
-  return result;
-}
-
-void RecordingSystem::subtract_times(const Eigen::MatrixXd& nodes, Eigen::MatrixXd& rows) const {
-  parallel_ranges(idx(rows.cols()), kColumnsAtOnce, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin);
-    const auto columns = static_cast<Eigen::Index>(end - begin);
-    subtract_some(nodes.middleCols(first, columns), rows.middleCols(first, columns));
-  });
-}
-
-void RecordingSystem::subtract_some(const Eigen::Ref<const Eigen::MatrixXd>& nodes,
-                                    Eigen::Ref<Eigen::MatrixXd> rows) const {
-  for (std::size_t k = 0; k < J_.size(); ++k) {
-    const Measurement& one = problem_.measurements[k];
-    auto part = rows.middleRows(first_row_[k], one.rows);
-    for (const auto& [node, J] : {std::pair(one.from, &J_[k].from), std::pair(one.to, &J_[k].to)}) {
-      if (node < 0 || normal_.size(node) == 0) continue;
-      const int size = normal_.size(node);
-      part.noalias() -= J->topLeftCorner(one.rows, size)
-                            .lazyProduct(nodes.middleRows(normal_.offset(node), size));
-    }
-    for (std::size_t t = 0; t < J_[k].states.size(); ++t) {
-      const int at = normal_.offset(state_node(problem_.noise_terms[k][t].state));
-      part -= J_[k].states[t].head(one.rows) * nodes.row(at);
-    }
-  }
-  for (std::size_t k = 0; k < problem_.noise_states.size(); ++k) {
-    const NoiseState& state = problem_.noise_states[k];
-    auto part = rows.row(state_row(k));
-    part -= nodes.row(normal_.offset(state_node(static_cast<int>(k)))) / state.sd;
-    if (state.previous < 0) continue;
-    part += state.keep / state.sd * nodes.row(normal_.offset(state_node(state.previous)));
-  }
-}
-
-Eigen::MatrixXd RecordingSystem::free_of_nodes(Eigen::MatrixXd columns) const {
-  if (columns.cols() > 0) subtract_times(solve_nodes(transposed_times(columns)), columns);
-  return columns;
-}
-
-Eigen::MatrixXd RecordingSystem::transposed_rows(std::size_t measurement) const {
-  const Measurement& one = problem_.measurements[measurement];
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(normal_.unknowns() + M_.cols(), one.rows);
-  for (const Link& link : links_of(measurement)) {
-    result.middleRows(normal_.offset(link.node), link.J.cols()) =
-        link.J.topRows(one.rows).transpose();
-  }
-  result.bottomRows(M_.cols()) = M_.middleRows(first_row_[measurement], one.rows).transpose();
-  return result;
-}
-
-void RecordingSystem::build_schur(double damping) {
-  A_inverse_B_ = B_.cols() > 0 ? normal_.solve(B_) : B_;
-  schur_ = D_ - B_.transpose() * A_inverse_B_;
-  schur_ = (0.5 * (schur_ + schur_.transpose())).eval();
-  schur_.diagonal() += damping * D_.diagonal();
-  if (schur_.cols() == 0) return;
-  const DenseCholesky factor(schur_);
-  if (!factor.positive_definite()) throw NotPositiveDefinite(-1);
-  schur_inverse_ = factor.inverse();
-}
-
-RecordingSystem::Step RecordingSystem::solve_step(double damping) {
-  factorise_damped(normal_, damping);
-  build_schur(damping);
-  Step step;
-  step.nodes = -gradient_;
-  normal_.solve_in_place(step.nodes);
-  step.coefficients = Eigen::VectorXd::Zero(B_.cols());
-  if (B_.cols() > 0) {
-    step.coefficients = schur_inverse_ * (-border_gradient_ - B_.transpose() * step.nodes);
-    step.nodes -= A_inverse_B_ * step.coefficients;
-  }
-  step.predicted = predicted_decrease(step.nodes, gradient_, normal_.diagonal(), damping) +
-                   predicted_decrease(step.coefficients, border_gradient_, D_.diagonal(), damping);
-  return step;
-}
-
-RecordingState RecordingSystem::moved(const RecordingState& state, const Step& step) const {
-  RecordingState result = state;
-  const auto states = static_cast<Eigen::Index>(problem_.noise_states.size());
-  if (result.noise.size() != states) result.noise = Eigen::VectorXd::Zero(states);
-  for (Eigen::Index k = 0; k < states; ++k) {
-    result.noise[k] += step.nodes[normal_.offset(state_node(static_cast<int>(k)))];
-  }
-  for (int node = 0; node < problem_.nodes(); ++node) {
-    if (normal_.size(node) == 0) continue;
-    const int at = normal_.offset(node);
-    if (problem_.is_landmark(node)) {
-      result.landmarks[idx(node)] += step.nodes.segment<2>(at);
-    } else if (problem_.is_orientation(node)) {
-      result.orientations[idx(node - problem_.pose_end())] += step.nodes[at];
-    } else {
-      Pose& pose = result.poses[idx(node - problem_.landmark_count())];
-      pose.x += step.nodes[at];
-      pose.y += step.nodes[at + 1];
-      pose.heading += step.nodes[at + 2];
-    }
-  }
-  return result;
-}
-
-void RecordingSystem::factorise() {
-  if (normal_.unknowns() > 0) normal_.factorise();
-  build_schur(0.0);
-}
-
-Eigen::MatrixXd RecordingSystem::solve(const Eigen::MatrixXd& b) const {
-  const Eigen::Index n = normal_.unknowns();
-  Eigen::MatrixXd x(b.rows(), b.cols());
-  if (b.cols() == 0) return x;
-  x.topRows(n) = normal_.solve(b.topRows(n));
-  if (B_.cols() > 0) {
-    x.bottomRows(B_.cols()) =
-        schur_inverse_ * (b.bottomRows(B_.cols()) - B_.transpose() * x.topRows(n));
-    x.topRows(n) -= A_inverse_B_ * x.bottomRows(B_.cols());
-  }
-  return x;
-}
-
-Eigen::MatrixXd RecordingSystem::joint_covariance(const std::vector<int>& nodes) const {
-  const Eigen::Index n = normal_.unknowns();
-  Eigen::Index size = B_.cols();
-  for (const int node : nodes) size += problem_.size_of(node);
-  Eigen::MatrixXd selection = Eigen::MatrixXd::Zero(n + B_.cols(), size);
-  Eigen::Index at = 0;
-  for (const int node : nodes) {
-    const int width = problem_.size_of(node);
-    for (int k = 0; k < width && k < normal_.size(node); ++k) {
-      const bool held =
-          node == problem_.pose_node(0) && (k == 2 ? gauge_.hold_heading : gauge_.hold_position);
-      if (!held) selection(normal_.offset(node) + k, at + k) = 1.0;
-    }
-    at += width;
-  }
-  selection.bottomRightCorner(B_.cols(), B_.cols()).setIdentity();
-  const Eigen::MatrixXd covariance = selection.transpose() * solve(selection);
-  return 0.5 * (covariance + covariance.transpose());
-}
-
-template <int Size>
-std::vector<Eigen::Matrix<double, Size, Size>> RecordingSystem::covariances(int first,
-                                                                            int count) const {
-  const Eigen::MatrixXd blocks = normal_.inverse_blocks();
-  std::vector<Eigen::Matrix<double, Size, Size>> result(idx(count),
-                                                        Eigen::Matrix<double, Size, Size>::Zero());
-  for (int k = 0; k < count; ++k) {
-    const int node = first + k;
-    if (normal_.size(node) == 0) continue;
-    const Eigen::Index at = normal_.offset(node);
-    auto& covariance = result[idx(k)];
-    covariance = blocks.block<Size, Size>(0, at);
-    if (B_.cols() == 0) continue;
-    const auto own = A_inverse_B_.middleRows(at, Size);
-    covariance += own * schur_inverse_ * own.transpose();
-  }
-  return result;
-}
-
-std::vector<Matrix2> RecordingSystem::landmark_covariances() const {
-  return covariances<2>(0, problem_.landmark_count());
-}
-
-std::vector<double> RecordingSystem::orientation_variances() const {
-  std::vector<double> result;
-  const auto count = static_cast<int>(problem_.oriented.size());
-  result.reserve(problem_.oriented.size());
-  for (const auto& one : covariances<1>(problem_.pose_end(), count)) result.push_back(one(0, 0));
-  return result;
-}
-
-std::vector<Matrix3> RecordingSystem::pose_covariances() const {
-  std::vector<Matrix3> result =
-      covariances<3>(problem_.landmark_count(), static_cast<int>(problem_.poses.size()));
-  // The diagonal of what is held is there for the sake of the solution alone.
-  if (gauge_.hold_heading) {
-    result.front().row(2).setZero();
-    result.front().col(2).setZero();
-  }
-  if (gauge_.hold_position) {
-    result.front().topRows<2>().setZero();
-    result.front().leftCols<2>().setZero();
-  }
-  return result;
-}
-
-Eigen::MatrixXd RecordingSystem::landmark_covariance_times(const Eigen::MatrixXd& b) const {
-  Eigen::MatrixXd lifted = Eigen::MatrixXd::Zero(normal_.unknowns() + B_.cols(), b.cols());
-  for (int node = 0; node < problem_.landmark_count(); ++node) {
-    if (normal_.size(node) == 0) continue;
-    lifted.middleRows(normal_.offset(node), 2) = b.middleRows(Eigen::Index{2} * node, 2);
-  }
-  const Eigen::MatrixXd solved = solve(lifted);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(b.rows(), b.cols());
-  for (int node = 0; node < problem_.landmark_count(); ++node) {
-    if (normal_.size(node) == 0) continue;
-    result.middleRows(Eigen::Index{2} * node, 2) = solved.middleRows(normal_.offset(node), 2);
-  }
-  return result;
-}
-
-Eigen::MatrixXd RecordingSystem::coefficient_covariance() const {
-  return B_.cols() == 0 ? B_.topRows(0) : schur_inverse_;
-}
-
-double RecordingSystem::log_determinant() const {
-  double sum = normal_.unknowns() > 0 ? normal_.log_determinant() : 0.0;
-  if (schur_.cols() == 0) return sum;
-  return sum + DenseCholesky(schur_).log_determinant();
-}
-
-double RecordingSystem::gradient_norm() const {
-  return 2.0 * std::hypot(gradient_.norm(), border_gradient_.norm());
-}
-
-Eigen::MatrixXd RecordingSystem::scaled_schur() const {
-  const Eigen::VectorXd scale = D_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  // Not D - B' A^-1 B, whose difference loses all digits where it matters, but what is left of M
-  // when the nodes have taken what they can.
-  const Eigen::MatrixXd left = M_ - times(A_inverse_B_);
-  Eigen::MatrixXd schur = left.transpose() * left;
-  for (Eigen::Index k = 0; k < schur.cols(); ++k) {
-    const double prior_sd = border_[idx(unknown_[idx(k)])].prior_sd;
-    schur(k, k) += 1.0 / (prior_sd * prior_sd);
-  }
-  return scale.asDiagonal() * schur * scale.asDiagonal();
 }
 
 }  // namespace trussmap

@@ -180,6 +180,14 @@ class RecordingSystem {
   [[nodiscard]] int state_row(std::size_t state) const {
     return measured_rows_ + static_cast<int>(state);
   }
+  /// Where the system is linearised, and what of each node it holds (held_unknowns.hpp).
+  struct Point {
+    const RecordingState& state;
+    const Eigen::VectorXd& offsets;  ///< of the border
+    const Eigen::VectorXd& noise;
+    const std::vector<std::uint8_t>& held;
+  };
+  void linearise_measurement(std::size_t k, const Point& at);
   void linearise_states(const Eigen::VectorXd& states);
   void add_states_to_normal(std::size_t k, const Whitened& rows, const Vector4& error);
   void add_block(int node, const Eigen::MatrixXd& block);

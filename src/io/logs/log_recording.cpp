@@ -200,6 +200,77 @@ bool is_log(const fs::path& path) {
 
 namespace {
 
+void add_readings(GatheredLog& gathered, const std::vector<std::int64_t>& bounds, Drive& drive) {
+  for (Signal& one : gathered.heading) {
+    one.finish();
+    if (!one.empty()) add_heading(one, bounds, drive);
+  }
+  for (Signal& one : gathered.yaw_rate) {
+    one.finish();
+    if (!one.empty()) add_yaw_rate(one, bounds, drive);
+  }
+  if (!any_read(drive.heading)) drive.heading.clear();
+  if (!any_read(drive.yaw_rate)) drive.yaw_rate.clear();
+}
+
+void add_covariates(const LogMap& map, GatheredLog& gathered,
+                    const std::vector<std::int64_t>& bounds, Drive& drive) {
+  for (auto& [name, signal] : gathered.covariates) {
+    signal.finish();
+    if (signal.empty()) {
+      const std::string& key = name;
+      const auto line = std::find_if(map.covariates.begin(), map.covariates.end(),
+                                     [&key](const auto& one) { return one.first == key; });
+      throw InputError(map.file.string(), line->second.line,
+                       "covariate " + name + " has no value in the log, expected one or more");
+    }
+    Covariate& covariate = drive.covariates.emplace_back(Covariate{name, {}});
+    for (std::size_t k = 1; k < bounds.size(); ++k) {
+      covariate.values.push_back(signal.held(bounds[k]));
+    }
+  }
+}
+
+SightingCounts add_sightings(const LogMap& map, const GatheredLog& gathered, const Clock& clock,
+                             Recording& recording) {
+  SightingCounts seen;
+  for (SeenSighting& one : seen_sightings(map, gathered, seen)) {
+    one.sighting.t = clock.seconds(one.t);
+    if (one.sighting.t < recording.drive.start() || one.sighting.t > recording.drive.t.back()) {
+      ++seen.outside;
+    } else {
+      recording.sightings.push_back(std::move(one.sighting));
+    }
+  }
+  return seen;
+}
+
+void count_rows(const Recording& recording, LogRecording& result) {
+  count(recording.drive.rows(), "drive rows", result);
+  count(recording.sightings.size(), "sightings", result);
+  count(recording.fixes.size(), "fixes", result);
+  count(recording.truth.size(), "truth rows", result);
+  count(recording.survey.size(), "surveyed landmarks", result);
+}
+
+void count_left_out(const WheelRows& rows, const GatheredLog& gathered, const SightingCounts& seen,
+                    std::size_t outside_fixes, LogRecording& result) {
+  count(rows.unordered, "messages of the wheels were out of order in time: sorted", result);
+  count(rows.repeated, "messages of the wheels at the time of another: the later in the log counts",
+        result);
+  count(seen.outside, "sightings before or after the drive left out", result);
+  count(seen.no_frame,
+        "sightings without a way from their frame to the robot's at their time left "
+        "out",
+        result);
+  count(gathered.unnamed, "sightings without a landmark's name left out", result);
+  count(gathered.refused, "messages whose field is no number, pose or velocity left out", result);
+  count(gathered.negative_ranges, "ranges below 0 left out", result);
+  count(outside_fixes, "fixes before or after the drive left out", result);
+  count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
+  count(gathered.wrong_poses, "poses without a valid rotation left out", result);
+}
+
 LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
   const LogMap map = read_log_map(map_file);
   GatheredLog gathered = gather(log, map);
@@ -219,65 +290,18 @@ LogRecording recording_of(const fs::path& log, const fs::path& map_file) {
   for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
     drive.t.push_back(clock.seconds(rows.bounds[k]));
   }
-  for (Signal& one : gathered.heading) {
-    one.finish();
-    if (!one.empty()) add_heading(one, rows.bounds, drive);
-  }
-  for (Signal& one : gathered.yaw_rate) {
-    one.finish();
-    if (!one.empty()) add_yaw_rate(one, rows.bounds, drive);
-  }
-  if (!any_read(drive.heading)) drive.heading.clear();
-  if (!any_read(drive.yaw_rate)) drive.yaw_rate.clear();
-  for (auto& [name, signal] : gathered.covariates) {
-    signal.finish();
-    if (signal.empty()) {
-      const std::string& key = name;
-      const auto line = std::find_if(map.covariates.begin(), map.covariates.end(),
-                                     [&key](const auto& one) { return one.first == key; });
-      throw InputError(map_file.string(), line->second.line,
-                       "covariate " + name + " has no value in the log, expected one or more");
-    }
-    Covariate& covariate = drive.covariates.emplace_back(Covariate{name, {}});
-    for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
-      covariate.values.push_back(signal.held(rows.bounds[k]));
-    }
-  }
+  add_readings(gathered, rows.bounds, drive);
+  add_covariates(map, gathered, rows.bounds, drive);
 
-  SightingCounts seen;
+  const SightingCounts seen = add_sightings(map, gathered, clock, recording);
   std::size_t outside_fixes = 0;
-  for (SeenSighting& one : seen_sightings(map, gathered, seen)) {
-    one.sighting.t = clock.seconds(one.t);
-    if (one.sighting.t < drive.start() || one.sighting.t > drive.t.back()) {
-      ++seen.outside;
-    } else {
-      recording.sightings.push_back(std::move(one.sighting));
-    }
-  }
   add_fixes(gathered, clock, recording, outside_fixes);
   for (const TimedFieldPose& one : truth_of(map, gathered)) {
     recording.truth.push_back({clock.seconds(one.t), one.x, one.y, one.heading});
   }
 
-  count(drive.rows(), "drive rows", result);
-  count(recording.sightings.size(), "sightings", result);
-  count(recording.fixes.size(), "fixes", result);
-  count(recording.truth.size(), "truth rows", result);
-  count(recording.survey.size(), "surveyed landmarks", result);
-  count(rows.unordered, "messages of the wheels were out of order in time: sorted", result);
-  count(rows.repeated, "messages of the wheels at the time of another: the later in the log counts",
-        result);
-  count(seen.outside, "sightings before or after the drive left out", result);
-  count(seen.no_frame,
-        "sightings without a way from their frame to the robot's at their time left "
-        "out",
-        result);
-  count(gathered.unnamed, "sightings without a landmark's name left out", result);
-  count(gathered.refused, "messages whose field is no number, pose or velocity left out", result);
-  count(gathered.negative_ranges, "ranges below 0 left out", result);
-  count(outside_fixes, "fixes before or after the drive left out", result);
-  count(gathered.lost_fixes, "fixes that the receiver itself calls none left out", result);
-  count(gathered.wrong_poses, "poses without a valid rotation left out", result);
+  count_rows(recording, result);
+  count_left_out(rows, gathered, seen, outside_fixes, result);
   result.warnings = std::move(rows.warnings);
   warn_of_clock(map, gathered, result);
   warn_of_far_fixes(recording, result);
