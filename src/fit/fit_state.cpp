@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -70,7 +71,7 @@ double most_moved(const std::vector<SessionPath>& before, const std::vector<Sess
 /// Path and rows as the adjustment has them. Without effects nothing depends on the path but what
 /// asks for it afterwards.
 FitChange follow(const FitTask& task, Fitting& now) {
-  const std::vector<SessionPath> before = std::move(now.fit.paths);
+  const std::vector<SessionPath> before = std::exchange(now.fit.paths, {});
   if (now.columns_see_paths()) lay_paths(now.fit);
   FitChange change;
   change.offsets = relinearised(task, now);
