@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit/fit_state.hpp"
 
-#include "odometry/wheels_and_gyro.hpp"
 #include "estimation/common_errors.hpp"
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"
 #include "fit/fit_stages.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
