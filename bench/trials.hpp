@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // The trials of a bench, one after the other: all of them, those of a share, or all out of the
-// files of shares (trussmap/shards.hpp). What a trial comes to is JSON; a part of the bench sums it
-// up.
+// files of shares (trussmap/tour_experiment.hpp). What a trial comes to is JSON; a part of the
+// bench sums it up.
 //
 //   said   what --verbose tells of the trial, part of what it comes to
 #pragma once
 
-#include "trussmap/shards.hpp"
+#include "trussmap/tour_experiment.hpp"
 #include "trussmap/write_files.hpp"
 
 #include <functional>

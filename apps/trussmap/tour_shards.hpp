@@ -6,7 +6,7 @@
 #pragma once
 
 #include "tour_output.hpp"
-#include "trussmap/shards.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include <functional>
 #include <string>

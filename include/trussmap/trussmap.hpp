@@ -50,7 +50,6 @@
 #include "trussmap/recording_files.hpp"
 #include "trussmap/robot.hpp"
 #include "trussmap/shape.hpp"
-#include "trussmap/shards.hpp"
 #include "trussmap/simulated_recording.hpp"
 #include "trussmap/simulation.hpp"
 #include "trussmap/stop.hpp"

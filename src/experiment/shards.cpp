@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "trussmap/shards.hpp"
+#include "trussmap/tour_experiment.hpp"
 
 #include <charconv>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 //
 // Runs in shares: every trial once, and a message that names what is missing or there twice.
-#include "trussmap/shards.hpp"
 
 #include "trussmap/tour_experiment.hpp"
 
