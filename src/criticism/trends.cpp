@@ -5,8 +5,8 @@
 #include "criticism/tested_candidate.hpp"
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/place_patterns.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
 
