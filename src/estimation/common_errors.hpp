@@ -19,8 +19,8 @@
 
 namespace trussmap {
 
-/// As the catalogue has them, coefficients 0; those of the compass only where one was read, those per
-/// time only where no row lasts minutes.
+/// As the catalogue has them, coefficients 0; those of the compass only where one was read, those
+/// per time only where no row lasts minutes.
 [[nodiscard]] std::vector<Effect> common_errors(const std::vector<Recording>& recordings);
 
 /// Standard deviation of the weak prior on such an effect's coefficients.

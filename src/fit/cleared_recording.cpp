@@ -3,10 +3,10 @@
 #include "fit/cleared_recording.hpp"
 
 #include "drive/body_motion.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/steering.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/effect_columns.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/dead_reckoning.hpp"
 
 #include <algorithm>

@@ -5,12 +5,12 @@
 #include "drive/body_motion.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/steering.hpp"
 #include "fit/effect_columns.hpp"
 #include "fit/online_terms.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>

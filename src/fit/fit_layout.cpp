@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/steering.hpp"
 #include "estimation/recording_start.hpp"
 #include "fit/fit_stages.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>

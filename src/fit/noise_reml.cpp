@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "fit/noise_reml.hpp"
 
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "estimation/segment_noise.hpp"
 #include "estimation/student_tails.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/corrected_recording.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/replica_stages.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 
 #include <algorithm>
 #include <cmath>

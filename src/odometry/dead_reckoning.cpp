@@ -3,9 +3,9 @@
 #include "trussmap/dead_reckoning.hpp"
 
 #include "drive/body_motion.hpp"
-#include "odometry/wheels_and_gyro.hpp"
 #include "odometry/merge.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "recording/floor_code.hpp"
 
 #include <cmath>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "simulation/wheel_readings.hpp"
 
-#include "effects/wheel_places.hpp"
 #include "effects/channel_physics.hpp"
+#include "effects/wheel_places.hpp"
 #include "geometry/index.hpp"
 
 #include <algorithm>

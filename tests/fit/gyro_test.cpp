@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 //
 // Robots with a gyro, from the simulator that turns the physics round.
-#include "odometry/wheels_and_gyro.hpp"
 #include "estimation/recording_problem.hpp"
 #include "estimation/recording_system.hpp"
 #include "fit/effect_columns.hpp"
 #include "fit/fit_state.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/catalogue.hpp"
 #include "trussmap/corrected_odometry.hpp"
 #include "trussmap/diagnose.hpp"

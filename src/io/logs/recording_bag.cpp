@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 
-#include "odometry/wheels_and_gyro.hpp"
 #include "io/logs/bag_builder.hpp"
 #include "io/logs/recording_bag_map.hpp"
 #include "odometry/row_reckoner.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "trussmap/log_files.hpp"
 
 #include <algorithm>
