@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the drive that is to be measured; its model goes along, with a scale that is asked for.
-NamedTexts models_of(const fs::path& folder) {
+/// What goes along with a recording: its model, where it has one.
+NamedTexts model_beside(const fs::path& folder) {
   const fs::path file = folder / "model.toml";
   if (!fs::exists(file)) return {};
   return {{"model.toml", format_model(read_model(file))}};
@@ -59,7 +59,7 @@ void convert_odometer(const fs::path& in, const fs::path& out,
     throw InputError((second / "drive.csv").string(), 0, error.what());
   }
   write_recording(out, recording, "with the motions of the second odometer " + second.string(),
-                  models_of(in));
+                  model_beside(in));
   fmt::print("converted: {} with the second odometer {} to the recording {}\n\n", in.string(),
              second.string(), out.string());
   fmt::print("  {:>7} motions of {} s and more in loops.csv\n", recording.loops.size() - before,

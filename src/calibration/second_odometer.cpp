@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "odometry/wheels_and_gyro.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/dead_reckoning.hpp"
@@ -29,6 +30,7 @@ std::vector<Loop> second_odometer_loops(const Recording& second, const Model& mo
   if (!(every > 0.0)) throw std::invalid_argument("motions last longer than 0 s");
   Drive own = with_wheels(second, model.robot).drive;
   own.heading.clear();  // a compass would tie motions together that count as independent
+  own = with_gyro(own, model.robot, model.noise);  // once, not for every motion
   if (own.rows() < 2 || drive.rows() < 2) {
     throw std::invalid_argument("a drive has two rows at least");
   }

@@ -23,11 +23,14 @@ struct BodyMotion {
   }
 };
 
-/// Of two wheels, or of what two wheels would show.
+/// Of two wheels that are so far apart (m), or of what two wheels there would show.
+[[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, double wheelbase,
+                                            double sideways = 0.0) {
+  return {0.5 * (travel.left + travel.right), sideways, (travel.right - travel.left) / wheelbase};
+}
 [[nodiscard]] inline BodyMotion body_motion(const WheelTravel& travel, const Robot& robot,
                                             double sideways = 0.0) {
-  return {0.5 * (travel.left + travel.right), sideways,
-          (travel.right - travel.left) / robot.wheelbase};
+  return body_motion(travel, robot.wheelbase, sideways);
 }
 
 /// What two wheels of this robot show of it, or would if it had them.

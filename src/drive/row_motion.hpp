@@ -16,7 +16,7 @@ namespace trussmap {
 struct RowMotion {
   BodyMotion body;                 ///< as the wheels show it, or wheels and gyro together
   double left = 0.0, right = 0.0;  ///< m, travels of two wheels that show this
-  double apart = 0.0;              ///< m between them
+  double wheelbase = 0.0;          ///< m, between them
   double duration = 0.0;           ///< s
   double gyro_turn = 0.0;          ///< rad
   double gyro_along = 0.0;         ///< as GyroShare::along
@@ -28,7 +28,12 @@ struct RowMotion {
 
   /// What so much more of the two wheels' travels adds.
   [[nodiscard]] BodyMotion by_wheels(double more_left, double more_right) const {
-    return {0.5 * (more_left + more_right), 0.0, (more_right - more_left) / apart};
+    return body_motion({more_left, more_right}, wheelbase);
+  }
+  /// Other wheels than two, of this drive.
+  void set_wheels(const Drive& drive, std::size_t number) {
+    wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
+    row = number;
   }
   /// What the wheels show.
   void set(const WheelTravel& travel, double sideways, const Robot& robot) {
@@ -47,7 +52,7 @@ struct RowMotion {
 [[nodiscard]] inline RowMotion row_motion(const WheelTravel& travel, double sideways,
                                           double duration, const Robot& robot) {
   RowMotion row;
-  row.apart = robot.wheelbase;
+  row.wheelbase = robot.wheelbase;
   row.duration = duration;
   row.set(travel, sideways, robot);
   return row;
@@ -58,8 +63,7 @@ struct RowMotion {
                                             const Robot& robot) {
   RowMotion shown =
       row_motion({drive.left[row], drive.right[row]}, drive.slip(row), drive.duration(row), robot);
-  shown.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
-  shown.row = row;
+  shown.set_wheels(drive, row);
   return shown;
 }
 
@@ -78,8 +82,7 @@ struct RowMotion {
 [[nodiscard]] inline RowMotion row_motion(const Drive& drive, std::size_t row, const Robot& robot) {
   if (drive.gyro.empty()) return shown_motion(drive, row, robot);
   RowMotion motion = row_motion(drive.gyro[row], drive.duration(row), robot);
-  motion.wheels = drive.wheels.empty() ? nullptr : &drive.wheels;
-  motion.row = row;
+  motion.set_wheels(drive, row);
   return motion;
 }
 

@@ -4,6 +4,7 @@
 
 #include "drive/body_motion.hpp"
 #include "drive/steered_motion.hpp"
+#include "text/named_values.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 
@@ -18,7 +19,7 @@
 namespace trussmap {
 namespace {
 
-constexpr std::array<std::pair<DriveKind, std::string_view>, 7> kNames{{
+constexpr NamedValues<DriveKind, 7> kDriveNames{{
     {DriveKind::differential, "differential"},
     {DriveKind::skid_steer, "skid-steer"},
     {DriveKind::tricycle, "tricycle"},
@@ -122,19 +123,11 @@ void require_geometry(const Robot& robot) {
 }  // namespace
 
 std::string_view name_of(DriveKind drive) {
-  return std::find_if(kNames.begin(), kNames.end(),
-                      [drive](const auto& one) { return one.first == drive; })
-      ->second;
+  return name_in(kDriveNames, drive);
 }
 
 DriveKind drive_named(std::string_view name) {
-  std::string all;
-  for (const auto& [drive, known] : kNames) {
-    if (known == name) return drive;
-    all += (all.empty() ? "" : ", ") + std::string(known);
-  }
-  throw std::invalid_argument("drive \"" + std::string(name) + "\" is unknown, expected one of " +
-                              all);
+  return value_named(kDriveNames, "drive", name);
 }
 
 Eigen::MatrixXd wheel_matrix(const std::vector<WheelPlace>& places) {

@@ -1,18 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "text/named_values.hpp"
 #include "trussmap/model.hpp"
-
-#include <algorithm>
-#include <array>
-#include <stdexcept>
-#include <utility>
 
 namespace trussmap {
 namespace {
 
-using Name = std::pair<ProcessKind, std::string_view>;
-
-constexpr std::array<Name, 8> kNames{
+constexpr NamedValues<ProcessKind, 8> kProcessNames{
     {{ProcessKind::white, "white"},
      {ProcessKind::per_leg, "per leg"},
      {ProcessKind::per_session, "per session"},
@@ -25,9 +19,7 @@ constexpr std::array<Name, 8> kNames{
 }  // namespace
 
 std::string_view name_of(ProcessKind process) {
-  return std::find_if(kNames.begin(), kNames.end(),
-                      [process](const Name& one) { return one.first == process; })
-      ->second;
+  return name_in(kProcessNames, process);
 }
 
 bool is_correlated(ProcessKind process) {
@@ -40,13 +32,7 @@ bool is_chain(ProcessKind process) {
 }
 
 ProcessKind process_named(std::string_view name) {
-  std::string names;
-  for (const auto& [process, own] : kNames) {
-    if (own == name) return process;
-    names += (names.empty() ? "" : ", ") + std::string(own);
-  }
-  throw std::invalid_argument("process \"" + std::string(name) + "\" is unknown, expected one of " +
-                              names);
+  return value_named(kProcessNames, "process", name);
 }
 
 }  // namespace trussmap

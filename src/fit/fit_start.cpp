@@ -57,7 +57,9 @@ void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
   static_cast<void>(choose_gauge(fit.problem));  // refuses what has no start
   const bool freed = fit.common_errors > 0 && !now.only_common();
   const bool as_fitted = task.options.problem.left_out.empty() && !freed;
-  const std::vector<Recording> recordings = freed ? without_own_effects(task, fit) : fit.recordings;
+  const std::vector<Recording> without =
+      freed ? without_own_effects(task, fit) : std::vector<Recording>();
+  const std::vector<Recording>& recordings = freed ? without : fit.recordings;
   ProblemOptions all = task.options.problem;
   all.left_out.clear();
   const RecordingProblem problem =

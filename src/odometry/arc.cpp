@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/arc.hpp"
 
+#include "drive/body_motion.hpp"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -40,8 +42,8 @@ double g2(double x) {
 }  // namespace
 
 Pose arc_displacement(const WheelTravel& travel, double wheelbase) {
-  return arc_displacement(0.5 * (travel.left + travel.right),
-                          (travel.right - travel.left) / wheelbase);
+  const BodyMotion motion = body_motion(travel, wheelbase);
+  return arc_displacement(motion.forward, motion.turn);
 }
 
 Pose arc_displacement(double path, double turn) {
@@ -139,9 +141,8 @@ Matrix3 slanting_covariance(const Vector2& way, double turn, const ArcNoise& noi
 }
 
 Matrix3 arc_covariance(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {
-  return arc_covariance(0.5 * (travel.left + travel.right),
-                        (travel.right - travel.left) / wheelbase,
-                        wheel_arc_noise(travel, wheelbase, noise));
+  const BodyMotion motion = body_motion(travel, wheelbase);
+  return arc_covariance(motion.forward, motion.turn, wheel_arc_noise(travel, wheelbase, noise));
 }
 
 Motion arc_motion(const WheelTravel& travel, double wheelbase, const WheelNoise& noise) {

@@ -129,7 +129,9 @@ Drive with_gyro(const Drive& drive, const Robot& robot, const Noise& noise) {
 std::vector<Recording> with_gyro(const std::vector<Recording>& recordings, const Robot& robot,
                                  const Noise& noise) {
   std::vector<Recording> result = recordings;
-  for (Recording& one : result) one.drive = with_gyro(one.drive, robot, noise);
+  for (Recording& one : result) {
+    if (one.drive.has_gyro()) one.drive = with_gyro(one.drive, robot, noise);
+  }
   return result;
 }
 

@@ -4,6 +4,8 @@
 // The variables that shapes speak of.
 #include "drive/row_variables.hpp"
 
+#include "drive/added_rows.hpp"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -11,22 +13,17 @@
 namespace trussmap {
 namespace {
 
+using testing::add_rows;
+
 using Values = std::vector<double>;
 
 /// 2 s at rest, 2 s spin left, 3 s ahead at 0.5 m/s, 3 s back; rows of 0.1 s.
 Drive plain_drive() {
   Drive drive;
-  const auto add = [&drive](int rows, double left, double right) {
-    for (int k = 0; k < rows; ++k) {
-      drive.t.push_back(10.0 + 0.1 * static_cast<double>(drive.rows() + 1));
-      drive.left.push_back(left);
-      drive.right.push_back(right);
-    }
-  };
-  add(20, 0.0, 0.0);
-  add(20, -0.02, 0.02);
-  add(30, 0.05, 0.05);
-  add(30, -0.05, -0.05);
+  add_rows(drive, 20, 0.0, 0.0);
+  add_rows(drive, 20, -0.02, 0.02);
+  add_rows(drive, 30, 0.05, 0.05);
+  add_rows(drive, 30, -0.05, -0.05);
   drive.covariates.push_back({"lights", Values(100, 1.0)});
   return drive;
 }

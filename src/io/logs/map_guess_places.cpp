@@ -5,25 +5,26 @@
 namespace trussmap {
 namespace {
 
-void guess_range(const NamedFacts& field, MapText& text) {
-  text.text("range", field.facts->path);
+/// In the unit that its name has, else in this one.
+void guess_with_unit(const std::string& key, const NamedFacts& field, const char* else_unit,
+                     const char* why, MapText& text) {
+  text.text(key, field.facts->path);
   const std::optional<Unit> unit = unit_in(field.path);
   if (is_of(unit, {Quantity::length, Quantity::angle})) {
-    text.text("range_unit", std::string(unit->name));
+    text.text(key + "_unit", std::string(unit->name));
   } else {
-    text.text("range_unit", field.facts->largest > 100.0 ? "mm" : "m", "a guess by its size");
+    text.text(key + "_unit", else_unit, why);
   }
 }
 
+void guess_range(const NamedFacts& field, MapText& text) {
+  guess_with_unit("range", field, field.facts->largest > 100.0 ? "mm" : "m", "a guess by its size",
+                  text);
+}
+
 void guess_bearing(const NamedFacts& field, MapText& text) {
-  text.text("bearing", field.facts->path);
-  const std::optional<Unit> unit = unit_in(field.path);
-  if (is_of(unit, {Quantity::length, Quantity::angle})) {
-    text.text("bearing_unit", std::string(unit->name));
-  } else {
-    text.text("bearing_unit", looks_like_degrees(*field.facts) ? "deg" : "rad",
-              "a guess by its range");
-  }
+  guess_with_unit("bearing", field, looks_like_degrees(*field.facts) ? "deg" : "rad",
+                  "a guess by its range", text);
   text.number("bearing_sign", 1, "-1 where it grows clockwise");
 }
 
