@@ -245,29 +245,87 @@ void UpdatableFactor::add_row(int place, const std::vector<FactorEntry>& column)
   }
 }
 
+bool UpdatableFactor::follow_each_other(int first, int count) const {
+  for (int j = first; j + 1 < first + count; ++j) {
+    if (parent_of(j) != j + 1 || columns_[idx(j)].count != columns_[idx(j + 1)].count + 1) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Columns that have their rows in common are taken together: x is looked up once for all of them.
+template <int Width>
+struct UpdatableFactor::Panel {
+  Panel(const UpdatableFactor& factor, int first) : j(first) {
+    const Column& last = factor.columns_[idx(first + Width - 1)];
+    rows = factor.rows_.data() + last.begin;
+    count = last.count;
+    for (int c = 0; c < Width; ++c) {
+      triangle[c] = factor.values_.data() + factor.columns_[idx(first + c)].begin;
+      values[c] = triangle[c] + (Width - 1 - c);
+    }
+  }
+
+  /// x of the columns, and what they take off the rows below.
+  void forwards(const double* pivots, double* x) const {
+    double own[Width];
+    bool zero = true;
+    for (int c = 0; c < Width; ++c) {
+      own[c] = x[j + c];
+      for (int b = 0; b < c; ++b) own[c] -= triangle[b][c - b - 1] * own[b];
+      zero = zero && own[c] == 0.0;
+    }
+    if (zero) return;
+    for (int k = 0; k < count; ++k) {
+      double off = 0.0;
+      for (int c = 0; c < Width; ++c) off += values[c][k] * own[c];
+      x[rows[k]] -= off;
+    }
+    for (int c = 0; c < Width; ++c) x[j + c] = own[c] / pivots[j + c];
+  }
+
+  void backwards(double* x) const {
+    double sums[Width] = {};
+    for (int k = 0; k < count; ++k) {
+      const double below = x[rows[k]];
+      for (int c = 0; c < Width; ++c) sums[c] += values[c][k] * below;
+    }
+    for (int c = Width - 1; c >= 0; --c) {
+      for (int b = c + 1; b < Width; ++b) sums[c] += triangle[c][b - c - 1] * x[j + b];
+      x[j + c] -= sums[c];
+    }
+  }
+
+  int j;
+  int count;
+  const int* rows;
+  const double* triangle[Width];  ///< of each column, from its first row on
+  const double* values[Width];    ///< of each column, from the first row below all of them on
+};
+
 void UpdatableFactor::solve_in_place(Eigen::VectorXd& x) const {
   const int n = static_cast<int>(pivots_.size());
-  for (int j = 0; j < n; ++j) {
-    const double xj = x[j];
-    if (xj == 0.0) continue;
-    const Column& one = columns_[idx(j)];
-    const int* row = rows_.data() + one.begin;
-    const double* value = values_.data() + one.begin;
-    for (int k = 0; k < one.count; ++k) x[row[k]] -= value[k] * xj;
-    x[j] = xj / pivots_[idx(j)];
-  }
-  for (int j = n - 1; j >= 0; --j) {
-    const Column& one = columns_[idx(j)];
-    const int* row = rows_.data() + one.begin;
-    const double* value = values_.data() + one.begin;
-    double sums[2] = {x[j], 0.0};
-    int k = 0;
-    for (; k + 2 <= one.count; k += 2) {
-      sums[0] -= value[k] * x[row[k]];
-      sums[1] -= value[k + 1] * x[row[k + 1]];
+  for (int j = 0; j < n;) {
+    if (j + 4 <= n && follow_each_other(j, 4)) {
+      Panel<4>(*this, j).forwards(pivots_.data(), x.data());
+      j += 4;
+    } else if (j + 2 <= n && follow_each_other(j, 2)) {
+      Panel<2>(*this, j).forwards(pivots_.data(), x.data());
+      j += 2;
+    } else {
+      Panel<1>(*this, j).forwards(pivots_.data(), x.data());
+      j += 1;
     }
-    if (k < one.count) sums[0] -= value[k] * x[row[k]];
-    x[j] = sums[0] + sums[1];
+  }
+  for (int j = n; j > 0;) {
+    if (j >= 4 && follow_each_other(j - 4, 4)) {
+      Panel<4>(*this, j -= 4).backwards(x.data());
+    } else if (j >= 2 && follow_each_other(j - 2, 2)) {
+      Panel<2>(*this, j -= 2).backwards(x.data());
+    } else {
+      Panel<1>(*this, j -= 1).backwards(x.data());
+    }
   }
 }
 

@@ -63,6 +63,10 @@ class UpdatableFactor {
   [[nodiscard]] int parent_of(int column) const;
   /// Moves columns together when half of the storage is holes.
   void compact();
+  /// Each column's rows are its successor and those of its successor.
+  [[nodiscard]] bool follow_each_other(int first, int count) const;
+  template <int Width>
+  struct Panel;
   /// Along one path, one or two columns in work_.
   template <int Columns>
   void follow(bool add, std::vector<int> pattern);

@@ -34,8 +34,8 @@ template <typename Value, std::size_t Count>
     if (own == name) return value;
     all += (all.empty() ? "" : ", ") + std::string(own);
   }
-  throw std::invalid_argument(kind + " \"" + std::string(name) +
-                              "\" is unknown, expected one of " + all);
+  throw std::invalid_argument(kind + " \"" + std::string(name) + "\" is unknown, expected one of " +
+                              all);
 }
 
 }  // namespace trussmap

@@ -13,14 +13,16 @@
 namespace trussmap {
 namespace {
 
-// Places kept free: few, because every row added at the end lengthens all later updates; not too
-// few, because of what a new factor costs.
+// Places kept free, and how much the rows added there, which lengthen all later updates, may add to
+// a factor until a new one is cheaper.
 constexpr int kLeastSpare = 32;
-constexpr int kJointsPerSpare = 64;
-constexpr double kTurned = 1e-3;     // change of a gradient, as a share of it
-constexpr int kFewTurned = 100;      // more: a new factor is cheaper
-constexpr int kMostHalvings = 10;    // of a step until the energy has fallen
-constexpr double kRounding = 1e-14;  // of the energy: no rise
+constexpr int kJointsPerSpare = 8;
+constexpr double kMostGrowth = 2.0;
+constexpr double kFewNonzeros = 1e4;  // a pass over so many costs little beside a new factor
+constexpr double kTurned = 1e-3;      // change of a gradient, as a share of it
+constexpr int kFewTurned = 100;       // more: a new factor is cheaper
+constexpr int kMostHalvings = 10;     // of a step until the energy has fallen
+constexpr double kRounding = 1e-14;   // of the energy: no rise
 // What elimination may leave of a diagonal entry: 4 digits of the answer are right even then.
 constexpr double kLeastShare = 1e-12;
 
@@ -194,8 +196,12 @@ double Equilibrium::evaluate(const ElasticTruss& truss) {
 
 /// The factor goes with the truss, or is made anew.
 void Equilibrium::follow(const ElasticTruss& truss) {
-  const bool room = truss.joints() <= static_cast<int>(unknown_.size());
-  if (!factored_ || !room || std::ssize(changed_) > kFewTurned) {
+  const auto is_worn = [&] {
+    return truss.joints() > static_cast<int>(unknown_.size()) ||
+           cholesky_.factor_nonzeros() > kMostGrowth * nonzeros_ + kFewNonzeros ||
+           std::ssize(changed_) > kFewTurned;
+  };
+  if (!factored_ || is_worn()) {
     factorise(truss);
     return;
   }
@@ -409,6 +415,7 @@ void Equilibrium::factorise(const ElasticTruss& truss) {
   const BlockSystem system = system_of(truss, places, Kernel::cholmod);
   cholesky_.analyse(system.matrix());
   cholesky_.factorise(system.matrix());
+  nonzeros_ = cholesky_.factor_nonzeros();
   diagonal_ = system.diagonal();
   sound_ = is_sound();
   unknown_.assign(idx(places), -1);

@@ -75,6 +75,7 @@ class Equilibrium {
   std::vector<int> turned_;               ///< elements noticeably, by the last evaluation
   std::vector<int> unknown_;              ///< per place: its joint's first unknown
   int joints_ = 0;                        ///< in the factor
+  double nonzeros_ = 0.0;                 ///< of the factor when it was made
   bool factored_ = false;
   bool linear_ = true;  ///< bars alone
   bool sound_ = true;   ///< as the factor was last looked at
