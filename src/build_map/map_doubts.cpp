@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/map_doubts.hpp"
 
+#include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/gate.hpp"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -99,7 +99,6 @@ std::string words_of(const FreedError& one) {
   const auto percent = [&] {
     return signed_text(100.0 * value, 2) + " +- " + fixed_text(100.0 * sd, 2) + " %";
   };
-  constexpr double kDegree = std::numbers::pi / 180.0;
   if (facts_of(one.effect.channel).unit == "rad/s") {
     return one.effect.name + " " + signed_text(60.0 * value / kDegree, 1) + " +- " +
            fixed_text(60.0 * sd / kDegree, 1) + " deg/min";

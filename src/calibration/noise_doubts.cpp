@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/end_moments.hpp"
 #include "calibration/noise_distances.hpp"
+#include "geometry/units.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/wheel_noise.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -49,7 +49,6 @@ void doubt_size(Doubts& doubts, const NoiseExperiment& experiment, const NoiseEs
 void doubt_shape(Doubts& doubts, const EndErrors& errors, const NoiseExperiment& experiment,
                  const NoiseEstimate& estimate, const NoiseFit& fit) {
   constexpr double kSureMisfit = 1e-4;
-  constexpr double kDegree = std::numbers::pi / 180.0;
   const bool misfit = fit.shape_p_value < kSureMisfit;
   const bool degrees =
       (misfit || fit.nonlinear) && shape_p_scaled(errors, experiment, kDegree) > kBadNoiseFit;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/wall_distances.hpp"
 
+#include "geometry/units.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -62,7 +64,7 @@ double heading_by(const Vector2& u, const Vector2& m, double difference) {
     throw std::invalid_argument(
         fmt::format("the distances say that the robot stands askew to the walls by {:.0f} degrees, "
                     "expected 45 or less",
-                    std::abs(heading) * 180.0 / std::numbers::pi));
+                    std::abs(heading) * kDegrees));
   }
   return heading;
 }

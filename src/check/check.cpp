@@ -4,13 +4,13 @@
 
 #include "check/findings.hpp"
 #include "check/turn_signs.hpp"
+#include "geometry/units.hpp"
 #include "recording/legs.hpp"
 #include "recording/well_formed.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -349,7 +349,7 @@ Recording by_its_columns(Recording recording, const Robot& robot) {
   if (recording.drive.wheels.empty() && steers_in_degrees(recording, robot)) {
     for (Covariate& one : recording.drive.covariates) {
       if (one.name != robot.columns[1]) continue;
-      for (double& angle : one.values) angle *= std::numbers::pi / 180.0;
+      for (double& angle : one.values) angle *= kDegree;
     }
   }
   return with_wheels(std::move(recording), robot);

@@ -6,6 +6,7 @@
 #include "check/column_mistakes.hpp"
 #include "check/findings.hpp"
 #include "check/misfit.hpp"
+#include "geometry/units.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -84,7 +85,6 @@ std::string percent(double share) {
 }  // namespace
 
 bool steers_in_degrees(const Recording& recording, const Robot& robot) {
-  constexpr double kDegree = std::numbers::pi / 180.0;
   constexpr double kSome = 0.05;  // of the rows
   const bool tricycle = robot.drive == DriveKind::tricycle;
   if ((!tricycle && robot.drive != DriveKind::ackermann) || robot.columns.size() != 2) return false;

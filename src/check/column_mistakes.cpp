@@ -3,16 +3,14 @@
 #include "check/column_mistakes.hpp"
 
 #include "drive/wheel_kinematics.hpp"
+#include "geometry/units.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace trussmap {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class List {
  public:

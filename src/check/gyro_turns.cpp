@@ -4,10 +4,10 @@
 // Turns of the gyro against the wheels', in stretches in which these have turned by a third of a
 // radian.
 #include "check/findings.hpp"
+#include "geometry/units.hpp"
 #include "text/number_text.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace trussmap {
 namespace {
@@ -45,8 +45,7 @@ TurnAgreement check_gyro(Checked& checked) {
   if (std::abs(result.correlation) < kClear) return result;
   result.sign = result.correlation > 0.0 ? 1 : -1;
   const double times = std::sqrt(gg / ww);
-  const double degrees = 180.0 / std::numbers::pi;
-  if (checked.wheelbase_known && std::abs(std::log(times / degrees)) < std::log(kFar)) {
+  if (checked.wheelbase_known && std::abs(std::log(times / kDegrees)) < std::log(kFar)) {
     checked.add("drive.csv", "yaw_rate", "angle unit",
                 joined("the gyro turns ", figure(times), " times as far as the wheels"),
                 "convert the yaw rates to rad/s");

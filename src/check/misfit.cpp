@@ -3,13 +3,13 @@
 #include "check/misfit.hpp"
 
 #include "check/findings.hpp"
+#include "geometry/units.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
-#include <numbers>
 #include <optional>
 
 #include <Eigen/Dense>
@@ -17,11 +17,10 @@
 namespace trussmap {
 namespace {
 
-constexpr double kTurn = 0.5;      // rad, of a sample
-constexpr double kUntold = 2.5;    // rad between two readings: whole turns are not told
-constexpr double kWay = 0.5;       // m, of a sample
-constexpr double kLongest = 10.0;  // s
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kTurn = 0.5;        // rad, of a sample
+constexpr double kUntold = 2.5;      // rad between two readings: whole turns are not told
+constexpr double kWay = 0.5;         // m, of a sample
+constexpr double kLongest = 10.0;    // s
 constexpr std::size_t kFewest = 10;  // samples
 
 /// Mean of what is at most 1; nothing of too few.

@@ -6,13 +6,13 @@
 // of the directions is how they change from one to the next, alike or mirrored.
 #include "check/findings.hpp"
 #include "check/survey_legs.hpp"
+#include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include <Eigen/Eigenvalues>
@@ -82,7 +82,7 @@ void check_compass_frame(Checked& checked, const Track& track, const std::vector
   }
   if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
   checked.add("drive.csv", "heading", "compass turned",
-              joined("the compass reads ", figure(offset.angle() * 180.0 / std::numbers::pi),
+              joined("the compass reads ", figure(offset.angle() * kDegrees),
                      " degrees more than directions in the survey have"),
               "let readings count from the survey's x axis, not from north");
 }

@@ -4,6 +4,7 @@
 // Truth against the wheels, stretch by stretch: lengths tell a unit, turns of heading and of course
 // tell signs and axes, and heading against course on straight stretches a tracker that is turned.
 #include "check/findings.hpp"
+#include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
@@ -142,8 +143,8 @@ void check_turned(Checked& checked, const std::vector<Stretch>& stretches) {
   if (!offset.is_clear() || std::abs(offset.angle()) < kTurned) return;
   checked.add("truth.csv", "heading", "truth turned",
               joined("on straight stretches the heading lies ",
-                     figure(offset.angle() * 180.0 / std::numbers::pi, "degrees"),
-                     " off the course (", offset.count(), " stretches)"),
+                     figure(offset.angle() * kDegrees, "degrees"), " off the course (",
+                     offset.count(), " stretches)"),
               "turn the tracker's body frame to the robot's forward axis, or fit the effect "
               "\"truth heading\"");
 }
@@ -162,7 +163,7 @@ void check_compass_frame(Checked& checked) {
   }
   if (!offset.is_clear() || std::abs(offset.angle()) < kCompassTurned) return;
   checked.add("drive.csv", "heading", "compass turned",
-              joined("the compass reads ", figure(offset.angle() * 180.0 / std::numbers::pi),
+              joined("the compass reads ", figure(offset.angle() * kDegrees),
                      " degrees more than the truth's heading"),
               "readings count from the map's x axis, not from north");
 }

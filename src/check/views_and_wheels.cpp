@@ -10,6 +10,7 @@
 // Units and mistakes are tried where they disagree. A mirrored robot sees a mirrored world:
 // exchanged wheels and clockwise bearings cannot be told apart here.
 #include "check/findings.hpp"
+#include "geometry/units.hpp"
 #include "recording/floor_code.hpp"
 #include "statistics/median.hpp"
 #include "statistics/thinned.hpp"
@@ -134,7 +135,7 @@ void check_bearing_unit(Checked& checked) {
   const auto beyond = std::count_if(
       sizes.begin(), sizes.end(), [](double size) { return size > 2.0 * std::numbers::pi + 0.1; });
   if (5 * beyond < std::ssize(sizes)) return;
-  checked.angle_unit = std::numbers::pi / 180.0;
+  checked.angle_unit = kDegree;
   checked.add(
       "sightings.csv", "bearing", "angle unit",
       joined(beyond, " of ", sizes.size(), " bearings are beyond a whole turn in radians (",

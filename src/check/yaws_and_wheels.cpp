@@ -8,6 +8,7 @@
 //
 // A turn by half a circle or a whole one says nothing of the sign.
 #include "check/findings.hpp"
+#include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 
@@ -41,7 +42,7 @@ double unit_of(Checked& checked, const char* file, const char* column, const cha
       joined(beyond, " of ", sizes.size(), " ", plural, " are beyond a whole turn in radians (",
              figure(*std::max_element(sizes.begin(), sizes.end())), "): they look like degrees"),
       "convert them to radians");
-  return std::numbers::pi / 180.0;
+  return kDegree;
 }
 
 }  // namespace

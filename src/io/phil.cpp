@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "geometry/index.hpp"
+#include "geometry/units.hpp"
 #include "io/csv.hpp"
 #include "io/number_rows.hpp"
 #include "trussmap/error.hpp"
@@ -39,7 +40,6 @@ constexpr double kShortestRow = 0.2;  // s
 
 constexpr double kLongestGap = 0.2;      // s between two samples of the gyro
 constexpr double kLargestRate = 2000.0;  // deg/s, what the sensor can show
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr double kFrameRate = 100.0;   // Hz
 constexpr double kTruthStep = 0.1;     // s
@@ -50,7 +50,7 @@ constexpr double kFastestTurn = 20.0;  // rad/s
 constexpr double kAheadOfBody = 104.4 * kDegree;
 
 /// A quantity that grows along a log, between whose rows it goes straight.
-struct Growth {
+struct Counter {
   std::vector<double> t;
   std::vector<double> value;
 
@@ -158,9 +158,9 @@ Drive drive_of(const Ticks& ticks, double shortest) {
   return drive;
 }
 
-Growth turn_of_wheels(const Ticks& ticks) {
+Counter turn_of_wheels(const Ticks& ticks) {
   const Drive drive = drive_of(ticks, 0.0);
-  Growth turn{{0.0}, {0.0}};
+  Counter turn{{0.0}, {0.0}};
   for (std::size_t k = 0; k < drive.rows(); ++k) {
     turn.t.push_back(drive.t[k]);
     turn.value.push_back(turn.value.back() + (drive.right[k] - drive.left[k]) / kWheelbase);
@@ -173,13 +173,13 @@ Growth turn_of_wheels(const Ticks& ticks) {
 
 /// Its integral by the sensor's own clock: that of the computer says when a sample was fetched.
 /// `raw_gyro_z` is counter-clockwise already (`yaw` is not).
-Growth read_gyro(const fs::path& folder, int& stale) {
+Counter read_gyro(const fs::path& folder, int& stale) {
   const fs::path file = require_plain_or_xz(folder / "rio_data.csv");
   const std::string text = read_file(file);
   CsvReader csv(text, file.string());
   const int rate_column = csv.require("raw_gyro_z");
   const int time_column = csv.require("navx time");
-  Growth turn;
+  Counter turn;
   double epoch = 0.0;
   double before = 0.0;
   while (csv.next()) {
@@ -207,7 +207,7 @@ Growth read_gyro(const fs::path& folder, int& stale) {
 }
 
 /// What the gyro turned from one time to another; none where it has no samples.
-std::optional<double> turned(const Growth& gyro, double from, double to) {
+std::optional<double> turned(const Counter& gyro, double from, double to) {
   if (!gyro.covers(from) || !gyro.covers(to)) return {};
   const auto first = std::upper_bound(gyro.t.begin(), gyro.t.end(), from);
   const auto last = std::lower_bound(gyro.t.begin(), gyro.t.end(), to);
@@ -218,7 +218,7 @@ std::optional<double> turned(const Growth& gyro, double from, double to) {
 }
 
 /// Of turns over short windows; 0 without any.
-double correlation(const Growth& wheels, const Growth& gyro, double lag) {
+double correlation(const Counter& wheels, const Counter& gyro, double lag) {
   constexpr double kWindow = 0.3;  // s
   double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, ab = 0.0, bb = 0.0;
   for (const double t : wheels.t) {
@@ -239,7 +239,7 @@ double correlation(const Growth& wheels, const Growth& gyro, double lag) {
 
 /// How much later the gyro's log has what the wheels' has: both begin together to within tenths of
 /// a second. Needs turns; without, the clocks stay as they are.
-void align(const Growth& wheels, const Growth& gyro, PhilRecording& result) {
+void align(const Counter& wheels, const Counter& gyro, PhilRecording& result) {
   constexpr int kMost = 50;
   constexpr double kStep = 0.01;  // s
   constexpr double kClear = 0.7;
@@ -255,7 +255,7 @@ void align(const Growth& wheels, const Growth& gyro, PhilRecording& result) {
   result.aligned = true;
 }
 
-void add_gyro(const Growth& gyro, double late, Drive& drive) {
+void add_gyro(const Counter& gyro, double late, Drive& drive) {
   double from = 0.0;
   for (const double to : drive.t) {
     const std::optional<double> turn = turned(gyro, from + late, to + late);
@@ -398,7 +398,7 @@ PhilRecording read_phil(const fs::path& folder) {
                      "less than half a second of ticks, expected a drive");
   }
   result.tick_rows = static_cast<int>(ticks.t.size());
-  const Growth gyro = read_gyro(folder, result.stale_samples);
+  const Counter gyro = read_gyro(folder, result.stale_samples);
   align(turn_of_wheels(ticks), gyro, result);
   add_gyro(gyro, result.gyro_late, drive);
   read_truth(folder, result);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "plot/chart_svg.hpp"
 
+#include "geometry/units.hpp"
 #include "plot/chart_scales.hpp"
 #include "plot/svg_marks.hpp"
 #include "text/xml_text.hpp"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -136,8 +136,7 @@ std::string Pen::mark(const ChartLayer& layer, std::size_t row) const {
           "fill-opacity=\"0.18\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
           px(std::max(1.5, unit * layer.columns[2].numbers[row])),
           px(std::max(1.5, unit * layer.columns[3].numbers[row])), px(at_x(layer, 0, row)),
-          px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * 180.0 / std::numbers::pi),
-          ink, ink);
+          px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * kDegrees), ink, ink);
     }
     case LayerKind::intervals: {
       const double radius = layer.size > 0.0 ? layer.size : 4.0;

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "plot/fit_charts.hpp"
 #include "plot/map_layers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ void add_bars(Chart& chart, const Places& places, std::vector<RouteMisfit> route
     bars.columns[6].numbers.push_back(route.traversals);
     bars.columns[7].numbers.push_back(route.force);
     bars.columns[8].numbers.push_back(100.0 * route.stretch_error);
-    bars.columns[9].numbers.push_back(route.orientation_error * 180.0 / std::numbers::pi);
+    bars.columns[9].numbers.push_back(route.orientation_error * kDegrees);
     bars.columns[10].numbers.push_back(route.chi2);
     bars.shade.push_back(route.force / loudest);
   }

@@ -1,19 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/test_path.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
 
 namespace trussmap {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");

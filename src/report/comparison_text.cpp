@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 std::string size_text(const Trend& trend) {
   if (trend.unit.empty()) return fmt::format("{:.2g} %", 100.0 * trend.size);
-  if (trend.unit == "rad") return fmt::format("{:.2g} deg", trend.size * 180.0 / std::numbers::pi);
+  if (trend.unit == "rad") return fmt::format("{:.2g} deg", trend.size * kDegrees);
   if (trend.unit == "m") return fmt::format("{:.2g} mm", 1e3 * trend.size);
   return fmt::format("{:.2g} {}", trend.size, trend.unit);
 }

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "plot/layers.hpp"
 #include "plot/map_picture.hpp"
 #include "report/map_tours.hpp"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -275,10 +275,9 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
   page.facts.push_back({fmt::format("{:.3f} m", built.quality.median_sd),
                         "standard error of landmarks (median)", page.tone});
   if (built.quality.oriented > 0) {
-    page.facts.push_back(
-        {fmt::format("{:.2f}\u00b0", built.quality.median_sd_heading * 180.0 / std::numbers::pi),
-         fmt::format("standard error of the axes of {} landmarks (median)",
-                     built.quality.oriented)});
+    page.facts.push_back({fmt::format("{:.2f}\u00b0", built.quality.median_sd_heading * kDegrees),
+                          fmt::format("standard error of the axes of {} landmarks (median)",
+                                      built.quality.oriented)});
   }
   if (built.on_survey) {
     const SurveyComparison& survey = built.on_survey->comparison;

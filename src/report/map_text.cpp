@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "report/path_text.hpp"
 #include "trussmap/texts.hpp"
 #include "trussmap/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -69,7 +69,7 @@ std::string quality_text(const BuiltMap& built) {
   if (quality.oriented > 0) {
     text += fmt::format("  {:<28} {:>8}  of {}, their axes good to {:.2f} deg (median)\n",
                         "landmarks with orientation", quality.oriented, built.map.landmarks(),
-                        quality.median_sd_heading * 180.0 / std::numbers::pi);
+                        quality.median_sd_heading * kDegrees);
   }
   if (built.method != Method::adjustment) {
     text += fmt::format("  {:<28} {:>8.3f} m  (rms; the standard errors above are that map's)\n",

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "geometry/units.hpp"
 #include "trussmap/texts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ std::string poses_text(const std::vector<TimedPose>& poses, bool adjusted) {
       adjusted ? "adjusted with everything that was measured, in the map's frame"
                : "dead reckoned from (0, 0, 0)",
       std::sqrt(end.covariance(0, 0) + end.covariance(1, 1)),
-      std::sqrt(end.covariance(2, 2)) * 180.0 / std::numbers::pi);
+      std::sqrt(end.covariance(2, 2)) * kDegrees);
 }
 
 std::string lasting_noise_text(const Noise& noise, TextStyle style) {

@@ -6,7 +6,6 @@
 
 #include "io/bag_lines.hpp"
 
-#include <chrono>
 
 #include <gtest/gtest.h>
 
@@ -128,7 +127,7 @@ TEST(Cdr, OtherEncodingsAreRefused) {
   EXPECT_EQ(decoded("int8 a\n", "\0\1"s), "has 2 bytes, expected 4 or more");
 }
 
-/// 64 MiB of points take no time, and a tree of a million groups is never made.
+/// Neither 64 MiB of points nor a million groups become a tree.
 TEST(Cdr, LargeMessagesCostWhatIsKept) {
   const Ros2Layout layout = parse_ros2_definition(
       "my_msgs/A", "uint8[] points\nB[] more\nuint8 last\n" + kLine + "B\nuint8 a\nuint8 b\n");
@@ -137,10 +136,7 @@ TEST(Cdr, LargeMessagesCostWhatIsKept) {
   std::string message = kLittle + "\0\0\0\4"s + std::string(kPoints, 'p') + "\x40\x42\x0F\0"s +
                         std::string(2 * kGroups, 'g') + "l";
   FieldTree tree;
-  const auto begin = std::chrono::steady_clock::now();
   decode_cdr(message, layout, 10, tree);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(took.count(), 2.0);  // s
   EXPECT_EQ(tree.root().member("points")->field().length, kPoints);
   EXPECT_EQ(tree.root().member("more")->field().length, kGroups);
   EXPECT_EQ(tree.root().member("last")->number(), 'l');

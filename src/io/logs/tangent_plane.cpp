@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/tangent_plane.hpp"
 
+#include "geometry/units.hpp"
+
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace trussmap {
 namespace {
 
 constexpr double kRadius = 6378137.0;                // m, of the equator
 constexpr double kFlattening = 1.0 / 298.257223563;  // NIMA TR8350.2
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Earth-centred, earth-fixed, m.
 std::array<double, 3> earth_centred(double latitude, double longitude, double height) {
