@@ -98,7 +98,7 @@ class UnsupportedJoint : public SolveError {
 //                  squares; strain energy is then half of chi squared.                  1/m^2
 //
 // What was measured as a single number, with variance v, is a spring: a length, or an angle (then
-// with an arm L: of a direction the length of the bar that it turns).
+// with an arm L, which weighs it beside lengths: the length of a bar that it turns, or less).
 //
 // mean_error       k = t L / sqrt(2/pi v)                                   1/m; of angles m/rad
 // variance         k = t / v                                                1/m^2; 1/rad^2
