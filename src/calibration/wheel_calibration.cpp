@@ -5,8 +5,8 @@
 #include "calibration/heading_offset.hpp"
 #include "calibration/measured_distance.hpp"
 #include "calibration/most_likely_noise.hpp"
+#include "calibration/sought_constants.hpp"
 #include "calibration/truth_alignment.hpp"
-#include "effects/channel_physics.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "recording/well_formed.hpp"
@@ -26,145 +26,11 @@
 namespace trussmap {
 namespace {
 
-constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
-
-/// The same of a steering's gain. Small angles tell it from the wheelbase so badly that both get
-/// worse.
-constexpr double kUselessGain = 0.03;
-
-constexpr const char* kNoDistance =
-    "nothing in use measures a distance; add a survey, truth, or loops between poses far apart";
-
-/// What is sought: g of a channel, with the shape 1.
-struct Constant {
-  std::string name;  ///< of its effect
-  Channel channel;
-  std::string symbol;
-  /// What is missing where the motion does not determine it, in the user's terms...
-  const char* missing =
-      "the motion does not tell this wheel from the others; drive ahead, to the side where the "
-      "robot can, and turn";
-  const char* missing_without_distance = kNoDistance;  ///< ... and where nothing tells a distance
-  /// E_d, E_b and E_s, or the like; of a steering offset how much of the wheel's way is left.
-  double (*ratio)(double g) = [](double g) { return 1.0 + g; };
-  /// What was found on corrected rows, more, beside what was in force: of a reading, which stays as
-  /// it is, or beside it.
-  double (*joined)(double g, double more) = [](double g, double more) { return g + more; };
-};
-
-double joined_factors(double g, double more) {
-  return (1.0 + g) * (1.0 + more) - 1.0;
-}
-
-Constant turn_constant() {
-  constexpr const char* kMissing = "the robot hardly turns; drive turns, both ways";
-  return {.name = "wheelbase",
-          .channel = Channel::turn,
-          .symbol = "E_b (wheelbase / nominal)",
-          .missing = kMissing,
-          .missing_without_distance = kMissing,
-          .ratio = [](double g) { return 1.0 / (1.0 + g); },
-          .joined = joined_factors};
-}
-
-Constant scale_constant() {
-  return {.name = "wheel scale",
-          .channel = Channel::wheels,
-          .symbol = "E_s (true / measured travel)",
-          .missing =
-              "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
-              "wheels from a smaller wheelbase; drive straight lines",
-          .joined = joined_factors};
-}
-
-Constant diameters_constant() {
-  constexpr const char* kMissing =
-      "the drive is too short to show one wheel larger than the other; drive straight lines of "
-      "several metres";
-  return {.name = "wheel diameter ratio",
-          .channel = Channel::difference,
-          .symbol = "E_d (right wheel / left wheel)",
-          .missing = kMissing,
-          .missing_without_distance = kMissing,
-          .ratio = [](double g) { return (1.0 + 0.5 * g) / (1.0 - 0.5 * g); },
-          // (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
-          .joined = [](double g, double more) { return (g + more) / (1.0 + 0.25 * g * more); }};
-}
-
-Constant steering_offset_constant() {
-  constexpr const char* kMissing =
-      "the drive is too short to show where straight ahead is; drive straight lines of several "
-      "metres";
-  return {.name = "steering offset",
-          .channel = Channel::steer,
-          .symbol = "the steering's offset",
-          .missing = kMissing,
-          .missing_without_distance = kMissing,
-          .ratio = [](double g) { return std::cos(g); }};
-}
-
-Constant steering_gain_constant() {
-  constexpr const char* kMissing =
-      "the steering angles are too small, or too much alike, to tell it from the wheelbase; steer "
-      "far, and little, both ways";
-  return {.name = "steering gain",
-          .channel = Channel::steer_gain,
-          .symbol = "the steering's gain",
-          .missing = kMissing,
-          .missing_without_distance = kMissing};
-}
-
-std::vector<Constant> constants_of(const Robot& robot) {
-  switch (robot.drive) {
-    case DriveKind::differential:
-      return {diameters_constant(), turn_constant(), scale_constant()};
-    case DriveKind::tricycle:
-    case DriveKind::ackermann:
-      return {steering_offset_constant(), turn_constant(), scale_constant(),
-              steering_gain_constant()};
-    default:
-      break;
-  }
-  std::vector<Constant> result;
-  for (const ChannelFacts& one : channels()) {
-    const std::optional<std::size_t> wheel = wheel_of(one.channel);
-    if (!wheel || !is_of_drive(one.channel, robot)) continue;
-    const std::string& column = robot.columns[*wheel];
-    result.push_back({.name = "radius of " + column,
-                      .channel = one.channel,
-                      .symbol = "the radius of " + column});
-  }
-  result.push_back(turn_constant());
-  // With these the wheels may roll in other directions than stated, too, to first order: together
-  // with the place and the heading of the truth's point all nine numbers from three wheels'
-  // travels, or from as many as four can show, to (f, s, a).
-  if (robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum) {
-    result.push_back({.name = "sideways scale",
-                      .channel = Channel::sideways,
-                      .symbol = "the scale of what goes sideways",
-                      .joined = joined_factors});
-  }
-  if (robot.drive == DriveKind::omni3) {
-    result.push_back({.name = "creep",
-                      .channel = Channel::creep,
-                      .symbol = "the slip to the left per travel ahead"});
-  }
-  return result;
-}
-
-/// Without a measured distance a smaller map has smaller errors: the drive's scale is then unknown.
-bool shows_scale(Channel channel) {
-  return channel == Channel::wheels || channel == Channel::wheel1;
-}
-
-/// Which of the constants are sought.
-using Wanted = std::vector<bool>;
-
 /// Parameters: those of the constants that are wanted, and the alignment of the truth.
 EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording>& recordings,
                                const Robot& robot, const WheelCalibrationOptions& options,
                                const TruthAlignment& prior) {
-  const std::vector<Constant> constants = constants_of(robot);
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
   EffectParameters parameters;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
@@ -174,33 +40,6 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording
     parameters.push_back(std::move(one));
   }
   return parameters;
-}
-
-/// The model whose constants have these values; its other effects as given.
-Model with(const Model& model, const std::vector<double>& g) {
-  const std::vector<Constant> constants = constants_of(model.robot);
-  Model result = model;
-  std::erase_if(result.effects, [&constants](const Effect& effect) {
-    return std::any_of(constants.begin(), constants.end(),
-                       [&effect](const Constant& one) { return one.name == effect.name; });
-  });
-  for (std::size_t k = 0; k < constants.size(); ++k) {
-    result.effects.push_back({constants[k].name, constants[k].channel, {"1"}, {g[k]}, false});
-  }
-  return result;
-}
-
-std::vector<double> in_force(const Model& model) {
-  std::vector<double> g;
-  for (const Constant& one : constants_of(model.robot)) {
-    g.push_back(0.0);
-    for (const Effect& effect : model.effects) {
-      if (effect.name == one.name && !effect.coefficients.empty()) {
-        g.back() = effect.coefficients[0];
-      }
-    }
-  }
-  return g;
 }
 
 /// The recordings with the model's effects taken out, and a problem of them.
@@ -221,16 +60,6 @@ Fitted fit(const std::vector<Recording>& recordings, const Model& model, const W
   return result;
 }
 
-/// Adds what was found on corrected rows to what was in force.
-void refine(std::vector<double>& g, const Wanted& wanted, const Robot& robot,
-            const Eigen::VectorXd& found) {
-  const std::vector<Constant> constants = constants_of(robot);
-  Eigen::Index at = 0;
-  for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (wanted[k]) g[k] = constants[k].joined(g[k], found[at++]);
-  }
-}
-
 /// k_L and k_R by the fit of the geometry, in the result and in its model.
 void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibration& result) {
   const std::optional<WheelNoiseFit> found = most_likely_noise(
@@ -246,17 +75,8 @@ void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibra
   result.model.noise.right = found->k[1];
 }
 
-std::string undetermined_text(const Constant& one, bool scale) {
+std::string undetermined_text(const SoughtConstant& one, bool scale) {
   return one.symbol + ": " + (scale ? one.missing : one.missing_without_distance);
-}
-
-/// The standard error from which on a constant is none.
-double useless(const Constant& one, const Model& model) {
-  if (one.channel != Channel::steer_gain) return kUseless;
-  for (const Effect& effect : model.effects) {
-    if (effect.name == one.name) return kUselessGain * std::abs(1.0 + effect.coefficients[0]);
-  }
-  return kUselessGain;
 }
 
 /// Which of them the motion determines: each alone, then jointly.
@@ -264,23 +84,24 @@ Wanted determined(const std::vector<Recording>& recordings, const Model& model,
                   const WheelCalibrationOptions& options, std::vector<std::string>& undetermined) {
   // Without a measured distance the least chi^2 lies at a smaller map: its errors shrink with it.
   const bool scale = measures_distance(recordings, options.problem, model.noise);
-  const std::vector<Constant> constants = constants_of(model.robot);
+  const std::vector<SoughtConstant> constants = sought_constants(model.robot);
   Wanted wanted;
-  for (const Constant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
+  for (const SoughtConstant& one : constants) wanted.push_back(scale || !shows_scale(one.channel));
   const auto can = [&](const Wanted& these) {
     try {
       const Fitted one = fit(recordings, model, these, options, {});
       const Eigen::VectorXd variances = one.adjustment.coefficient_covariance.diagonal();
       Eigen::Index at = 0;
       for (std::size_t k = 0; k < these.size(); ++k) {
-        if (these[k] && !(std::sqrt(variances[at++]) < useless(constants[k], model))) return false;
+        if (!these[k]) continue;
+        if (!(std::sqrt(variances[at++]) < useless_sd(constants[k], model))) return false;
       }
       return true;
     } catch (const SolveError&) {
       return false;
     }
   };
-  for (const Constant& one : constants) {
+  for (const SoughtConstant& one : constants) {
     if (scale || !shows_scale(one.channel)) continue;
     undetermined.push_back(undetermined_text(one, scale));
   }
@@ -307,7 +128,7 @@ void read_constants(WheelCalibration& result, const std::vector<double>& g, cons
   result.chi2 = adjustment.chi2;
   result.dof = adjustment.dof;
   const Robot& robot = result.model.robot;
-  const std::vector<Constant> constants = constants_of(robot);
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (!wanted[k]) continue;
@@ -341,7 +162,7 @@ bool stands_still(const RecordingAdjustment& adjustment, Eigen::Index geometry) 
 void require_positive(const std::vector<double>& g, const Wanted& wanted,
                       const std::vector<Recording>& recordings, const Model& model,
                       const ProblemOptions& options) {
-  const std::vector<Constant> constants = constants_of(model.robot);
+  const std::vector<SoughtConstant> constants = sought_constants(model.robot);
   for (std::size_t k = 0; k < constants.size(); ++k) {
     const double ratio = constants[k].ratio(g[k]);
     if (!wanted[k] || ratio > 0.0) continue;
@@ -376,7 +197,7 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
   constexpr int kRounds = 8;
   constexpr double kSettled = 1e-10;
   WheelCalibration result;
-  result.model = with(model, g);
+  result.model = with_constants(model, g);
   const Wanted wanted = determined(recordings, result.model, options, result.undetermined);
   const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
@@ -384,8 +205,8 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
       last = fit(recordings, result.model, wanted, options, result.truth);
-      refine(g, wanted, model.robot, last.adjustment.coefficients);
-      result.model = with(result.model, g);
+      g = refined(g, wanted, model.robot, last.adjustment.coefficients);
+      result.model = with_constants(result.model, g);
       if (options.problem.truth) {
         const Eigen::VectorXd& all = last.adjustment.coefficients;
         result.truth = alignment_of(recordings, options.sessions, all.tail(all.size() - geometry));
@@ -400,15 +221,6 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
   read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
   return result;
-}
-
-/// Place of the steering's gain among a drive's constants.
-std::optional<std::size_t> place_of_gain(const Robot& robot) {
-  const std::vector<Constant> constants = constants_of(robot);
-  for (std::size_t k = 0; k < constants.size(); ++k) {
-    if (constants[k].channel == Channel::steer_gain) return k;
-  }
-  return std::nullopt;
 }
 
 /// Whether a start from this gain may be believed: it led somewhere, and not far away.

@@ -112,6 +112,58 @@ double disagreement(const std::vector<Pair>& pairs, const Track& track, const Re
   return median(std::move(errors));
 }
 
+/// What the views would be explained by.
+struct Explained {
+  double error;
+  WheelMistake wheels = WheelMistake::none;
+  Reading unit;
+};
+
+/// Of mistakes at the wheels and units of ranges; `best`: as recorded.
+Explained best_explanation(const Checked& checked, const std::vector<Pair>& pairs, Explained best) {
+  const Drive& drive = checked.recording.drive;
+  std::vector<WheelMistake> mistakes{WheelMistake::none, WheelMistake::exchanged};
+  if (drive.wheels.empty()) {  // of others, check_columns knows more
+    mistakes.insert(mistakes.end(), {WheelMistake::negated, WheelMistake::left_negated,
+                                     WheelMistake::right_negated});
+  }
+  for (const WheelMistake wheels : mistakes) {
+    const Track other(drive, checked.wheelbase, wheels);
+    for (const double range : {1.0, 0.01, 0.001, 0.3048, 0.0254}) {
+      const Reading unit{range, checked.angle_unit};
+      const double error = disagreement(pairs, other, unit);
+      if (error < best.error) best = {error, wheels, unit};
+    }
+  }
+  return best;
+}
+
+/// Returns the sign of turns that follows, 0: none.
+int say_explanation(Checked& checked, const Explained& best, const std::string& evidence) {
+  if (best.unit.range_unit != 1.0) {
+    const std::string unit = unit_of_ratio(1.0 / best.unit.range_unit);
+    checked.add("sightings.csv", "range", "range unit", evidence + "with ranges in " + unit,
+                "convert the ranges to metres");
+  }
+  switch (best.wheels) {
+    case WheelMistake::none:
+      return 1;
+    case WheelMistake::exchanged:
+      return -1;
+    case WheelMistake::negated:
+      checked.add("drive.csv", "left,right", "wheels negated",
+                  evidence + "with both wheels' signs changed",
+                  "change the sign of left and right");
+      break;
+    case WheelMistake::left_negated:
+    case WheelMistake::right_negated:
+      add_lone_wheel(checked, best.wheels,
+                     evidence + "with the " + lone_wheel(best.wheels) + " wheel's sign changed");
+      break;
+  }
+  return 0;
+}
+
 }  // namespace
 
 bool tells_place(const Sighting& sighting) {
@@ -175,53 +227,13 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
     pairs = std::move(turns);
     recorded = turned;
   }
-  const Drive& drive = checked.recording.drive;
-  struct Best {
-    double error;
-    WheelMistake wheels = WheelMistake::none;
-    Reading unit;
-  } best{recorded, WheelMistake::none, stated};
-  std::vector<WheelMistake> mistakes{WheelMistake::none, WheelMistake::exchanged};
-  if (drive.wheels.empty()) {  // of others, check_columns knows more
-    mistakes.insert(mistakes.end(), {WheelMistake::negated, WheelMistake::left_negated,
-                                     WheelMistake::right_negated});
-  }
-  for (const WheelMistake wheels : mistakes) {
-    const Track other(drive, checked.wheelbase, wheels);
-    for (const double range : {1.0, 0.01, 0.001, 0.3048, 0.0254}) {
-      const Reading unit{range, checked.angle_unit};
-      const double error = disagreement(pairs, other, unit);
-      if (error < best.error) best = {error, wheels, unit};
-    }
-  }
+  const Explained best = best_explanation(checked, pairs, {recorded, WheelMistake::none, stated});
   if (best.error > kFits || best.error > kBetter * recorded) return result;
   const std::string evidence =
       joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
              fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",
              fixed_text(100.0 * best.error, 0), " % ");
-  if (best.unit.range_unit != 1.0) {
-    const std::string unit = unit_of_ratio(1.0 / best.unit.range_unit);
-    checked.add("sightings.csv", "range", "range unit", evidence + "with ranges in " + unit,
-                "convert the ranges to metres");
-  }
-  switch (best.wheels) {
-    case WheelMistake::none:
-      result.sign = 1;
-      break;
-    case WheelMistake::exchanged:
-      result.sign = -1;
-      break;
-    case WheelMistake::negated:
-      checked.add("drive.csv", "left,right", "wheels negated",
-                  evidence + "with both wheels' signs changed",
-                  "change the sign of left and right");
-      break;
-    case WheelMistake::left_negated:
-    case WheelMistake::right_negated:
-      add_lone_wheel(checked, best.wheels,
-                     evidence + "with the " + lone_wheel(best.wheels) + " wheel's sign changed");
-      break;
-  }
+  result.sign = say_explanation(checked, best, evidence);
   return result;
 }
 

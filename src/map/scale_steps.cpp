@@ -6,6 +6,7 @@
 #include "map/scale_sums.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <queue>
 #include <utility>
@@ -36,6 +37,50 @@ double least_distance(const Affine& frame, const Vector2& low, const Vector2& hi
   return std::isfinite(distance) ? distance : 0.0;
 }
 
+/// A block of the system, on its diagonal or below.
+void add_block(BandMatrix& K, int row, int column, const Stiffness3& B) {
+  K.add(row, column, B[0]);
+  K.add(row + 1, column, B[1]);
+  K.add(row + 1, column + 1, B[2]);
+  if (row > column) K.add(row, column + 1, B[1]);
+}
+
+/// A group's own block: moments of its places, or of differences of them.
+void add_own(BandMatrix& K, int rank, const std::array<Stiffness3, 3>& second) {
+  const int row = kUnknowns * rank;
+  add_block(K, row + 2, row + 2, second[0]);
+  add_block(K, row + 4, row + 2, second[1]);
+  add_block(K, row + 4, row + 4, second[2]);
+}
+
+/// The same of one end of a tie, with how the group is moved.
+void add_end(BandMatrix& K, int rank, const Stiffness3& zeroth,
+             const std::array<Stiffness3, 2>& first, const std::array<Stiffness3, 3>& second) {
+  const int row = kUnknowns * rank;
+  add_block(K, row, row, zeroth);
+  add_block(K, row + 2, row, first[0]);
+  add_block(K, row + 4, row, first[1]);
+  add_own(K, rank, second);
+}
+
+/// Block of two free groups, minus the moments of both.
+void add_between(BandMatrix& K, int rank_a, int rank_b, const TieSums& sums) {
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const Stiffness3& B = i == 0 ? (k == 0 ? sums.n : sums.b[idx(k - 1)])
+                                   : (k == 0 ? sums.a[idx(i - 1)] : sums.ab_at(i - 1, k - 1));
+      const int a = kUnknowns * rank_a + 2 * i;
+      const int b = kUnknowns * rank_b + 2 * k;
+      const int row = std::max(a, b);
+      const int column = std::min(a, b);
+      K.add(row, column, -B[0]);
+      K.add(row + 1, column, -B[1]);
+      K.add(row, column + 1, -B[1]);
+      K.add(row + 1, column + 1, -B[2]);
+    }
+  }
+}
+
 }  // namespace
 
 /// The free groups of a step.
@@ -50,6 +95,14 @@ struct ScaleSums::Free {
   int band = 0;
   Eigen::VectorXd f;
 
+  void pull(std::size_t n, const GroupForce& by_place) {
+    GroupForce force;
+    force.col(0) = by_place.col(0);
+    force.rightCols<2>() =
+        by_place.col(0) * modes[n].t.transpose() + by_place.rightCols<2>() * modes[n].L.transpose();
+    f.segment<kUnknowns>(kUnknowns * rank[n]) +=
+        Eigen::Map<const Eigen::Matrix<double, kUnknowns, 1>>(force.data());
+  }
   [[nodiscard]] GroupForce numbers(std::size_t n) const {
     return GroupForce(Eigen::Map<const GroupForce>(f.data() + std::ptrdiff_t{kUnknowns} * rank[n]));
   }
@@ -144,87 +197,40 @@ void ScaleSums::assemble(int level, Free& free) {
   const int unknowns = kUnknowns * static_cast<int>(free.groups.size());
   K_.resize(unknowns, kUnknowns * (free.band + 1) - 1);
   free.f = Eigen::VectorXd::Zero(unknowns);
-  const auto pull = [&](std::size_t n, const GroupForce& by_place) {
-    const Affine& modes = free.modes[n];
-    GroupForce force;
-    force.col(0) = by_place.col(0);
-    force.rightCols<2>() =
-        by_place.col(0) * modes.t.transpose() + by_place.rightCols<2>() * modes.L.transpose();
-    free.f.segment<kUnknowns>(kUnknowns * free.rank[n]) +=
-        Eigen::Map<const Eigen::Matrix<double, kUnknowns, 1>>(force.data());
-  };
-  const auto add = [&](int row, int column, const Stiffness3& B) {
-    K_.add(row, column, B[0]);
-    K_.add(row + 1, column, B[1]);
-    K_.add(row + 1, column + 1, B[2]);
-    if (row > column) K_.add(row, column + 1, B[1]);
-  };
-  // A group's own block: moments of its places, or of differences of them.
-  const auto add_own = [&](std::size_t n, const std::array<Stiffness3, 3>& second) {
-    const int row = kUnknowns * free.rank[n];
-    add(row + 2, row + 2, second[0]);
-    add(row + 4, row + 2, second[1]);
-    add(row + 4, row + 4, second[2]);
-  };
-  const auto add_end = [&](std::size_t n, const Stiffness3& zeroth,
-                           const std::array<Stiffness3, 2>& first,
-                           const std::array<Stiffness3, 3>& second) {
-    const int row = kUnknowns * free.rank[n];
-    add(row, row, zeroth);
-    add(row + 2, row, first[0]);
-    add(row + 4, row, first[1]);
-    add_own(n, second);
-  };
   for (std::size_t n = 0; n < free.groups.size(); ++n) {
     const Group& one = at.groups[idx(free.groups[n])];
-    pull(n, pull_within(one.inner, free.at[n].L));
+    free.pull(n, pull_within(one.inner, free.at[n].L));
     InnerSums inner;
     inner.add_inner(one.inner, free.modes[n]);
-    add_own(n, inner.dd);
-    for (const int number : one.ties) {
-      const Tie& tie = at.ties[idx(number)];
-      const bool near = tie.a == free.groups[n];
-      const int other = near ? tie.b : tie.a;
-      const int place = other < 0 ? -1 : place_[idx(other)];
-      if (place >= 0 && !near) continue;  // both are free: once
-      const Affine theirs = place >= 0  ? free.at[idx(place)]
-                            : other < 0 ? held_
-                                        : frame_of(level, other);
-      const TiePulls pulls =
-          near ? pulls_of(tie.sums, free.at[n], theirs) : pulls_of(tie.sums, theirs, free.at[n]);
-      const Affine beyond = place >= 0 ? free.modes[idx(place)] : Affine{};
-      const TieSums sums = near ? in_frames(tie.sums, free.modes[n], beyond)
-                                : in_frames(tie.sums, beyond, free.modes[n]);
-      pull(n, near ? pulls.on_a : pulls.on_b);
-      if (near) {
-        add_end(n, sums.n, sums.a, sums.aa);
-      } else {
-        add_end(n, sums.n, sums.b, sums.bb);
-      }
-      if (place < 0) continue;
-      pull(idx(place), pulls.on_b);
-      add_end(idx(place), sums.n, sums.b, sums.bb);
-      add_between(free.rank[n], free.rank[idx(place)], sums);
-    }
+    add_own(K_, free.rank[n], inner.dd);
+    for (const int number : one.ties) assemble_tie(level, at.ties[idx(number)], n, free);
   }
 }
 
-/// Block of two free groups, minus the moments of both.
-void ScaleSums::add_between(int rank_a, int rank_b, const TieSums& sums) {
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const Stiffness3& B = i == 0 ? (k == 0 ? sums.n : sums.b[idx(k - 1)])
-                                   : (k == 0 ? sums.a[idx(i - 1)] : sums.ab_at(i - 1, k - 1));
-      const int a = kUnknowns * rank_a + 2 * i;
-      const int b = kUnknowns * rank_b + 2 * k;
-      const int row = std::max(a, b);
-      const int column = std::min(a, b);
-      K_.add(row, column, -B[0]);
-      K_.add(row + 1, column, -B[1]);
-      K_.add(row, column + 1, -B[1]);
-      K_.add(row + 1, column + 1, -B[2]);
-    }
+/// A tie of free group n.
+void ScaleSums::assemble_tie(int level, const Tie& tie, std::size_t n, Free& free) {
+  const bool near = tie.a == free.groups[n];
+  const int other = near ? tie.b : tie.a;
+  const int place = other < 0 ? -1 : place_[idx(other)];
+  if (place >= 0 && !near) return;  // both are free: once
+  const Affine theirs = place >= 0  ? free.at[idx(place)]
+                        : other < 0 ? held_
+                                    : frame_of(level, other);
+  const TiePulls pulls =
+      near ? pulls_of(tie.sums, free.at[n], theirs) : pulls_of(tie.sums, theirs, free.at[n]);
+  const Affine beyond = place >= 0 ? free.modes[idx(place)] : Affine{};
+  const TieSums sums = near ? in_frames(tie.sums, free.modes[n], beyond)
+                            : in_frames(tie.sums, beyond, free.modes[n]);
+  free.pull(n, near ? pulls.on_a : pulls.on_b);
+  if (near) {
+    add_end(K_, free.rank[n], sums.n, sums.a, sums.aa);
+  } else {
+    add_end(K_, free.rank[n], sums.n, sums.b, sums.bb);
   }
+  if (place < 0) return;
+  free.pull(idx(place), pulls.on_b);
+  add_end(K_, free.rank[idx(place)], sums.n, sums.b, sums.bb);
+  add_between(K_, free.rank[n], free.rank[idx(place)], sums);
 }
 
 /// Returns the share of the step's gain: all, unless a group would be drawn out too far.

@@ -142,7 +142,7 @@ class ScaleSums {
   [[nodiscard]] Free free_groups(int level, const std::vector<int>& groups) const;
   void order(const Level& level, Free& free) const;
   void assemble(int level, Free& free);
-  void add_between(int rank_a, int rank_b, const TieSums& sums);
+  void assemble_tie(int level, const Tie& tie, std::size_t n, Free& free);
   double move(int level, const Free& free);
 
   std::vector<Level> levels_;

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "store/first_version.hpp"
 
+#include "store/store_tables.hpp"
+
+#include <string>
+
 namespace trussmap {
 
 void create_first_version(const Database& database) {
@@ -36,13 +40,13 @@ void create_first_version(const Database& database) {
   )sql");
 }
 
-void upgrade_first_version(const Database& database, const std::function<void()>& make) {
+void upgrade_first_version(const Database& database) {
   database.run("DROP VIEW map");
   for (const char* table : {"facts", "sessions", "legs", "landmarks", "routes", "chain", "misfits",
                             "left_out", "state"}) {
     database.run(std::string("ALTER TABLE ") + table + " RENAME TO first_" + table);
   }
-  make();
+  create_store(database, {});
   // A bar that weighs each traversal is at rest where the map has it: least squares goes on from
   // there as it would have.
   database.run(R"sql(

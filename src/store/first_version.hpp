@@ -8,15 +8,12 @@
 
 #include "store/database.hpp"
 
-#include <functional>
-#include <string>
-
 namespace trussmap {
 
 /// Makes the tables of the first version, empty.
 void create_first_version(const Database& database);
 
-/// Within a transaction. `make`: makes the present tables, empty.
-void upgrade_first_version(const Database& database, const std::function<void()>& make);
+/// To the present tables. Within a transaction.
+void upgrade_first_version(const Database& database);
 
 }  // namespace trussmap

@@ -18,7 +18,7 @@ constexpr std::int64_t kSecond = 1000000000;  // ns
 constexpr std::int64_t kLastSecond = std::numeric_limits<std::int32_t>::max();
 
 /// ns, to the nearest; whole seconds apart, so that nothing of a Unix time is lost.
-std::int64_t nanoseconds(double t) {
+std::int64_t ros_nanoseconds(double t) {
   const double whole = std::floor(t);
   return static_cast<std::int64_t>(whole) * kSecond + std::llround((t - whole) * 1e9);
 }
@@ -60,7 +60,7 @@ std::int64_t BagBuilder::stamp(double t) const {
                          " s as t = 0, is none of ROS, expected 1970 to 2038");
   };
   if (!(std::abs(t) <= static_cast<double>(kLastSecond) + 1.0)) refuse();
-  const std::int64_t ns = nanoseconds(t);
+  const std::int64_t ns = ros_nanoseconds(t);
   const std::int64_t last = (kLastSecond + 1) * kSecond - 1;
   if (ns < -bag_.epoch || ns > last - bag_.epoch) refuse();
   return ns + bag_.epoch;

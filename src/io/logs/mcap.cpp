@@ -22,13 +22,13 @@
 #include "io/logs/mcap.hpp"
 
 #include "io/logs/byte_reader.hpp"
+#include "io/logs/mcap_channels.hpp"
 #include "io/logs/mcap_records.hpp"
 #include "io/logs/sequential_file.hpp"
 #include "trussmap/error.hpp"
 
 #include <array>
 #include <fstream>
-#include <map>
 #include <optional>
 
 namespace trussmap {
@@ -40,8 +40,6 @@ using namespace mcap;
 constexpr std::size_t kNamed = 5;         // bytes of it that say that it is MCAP
 constexpr std::size_t kRecordHeader = 9;  // bytes
 constexpr std::size_t kDataEndSize = kRecordHeader + 4;
-constexpr std::size_t kLargestDefinition = std::size_t{1} << 20U;    // bytes
-constexpr std::size_t kLargestDefinitions = std::size_t{32} << 20U;  // all together
 
 std::string kind_of(std::uint8_t type) {
   switch (type) {
@@ -60,75 +58,112 @@ std::string kind_of(std::uint8_t type) {
   }
 }
 
-std::string_view text(ByteReader& reader) {
-  return reader.take(reader.number<std::uint32_t>());
+void check_magic(SequentialFile& file) {
+  const std::string_view magic = file.read(kMagic.size());
+  if (magic.empty()) fail_at(file.name(), 0, "the file is empty, expected an MCAP file");
+  if (magic.substr(0, kNamed) != kMagic.substr(0, kNamed)) {
+    fail_at(file.name(), 0, "does not begin as an MCAP file does");
+  }
+  if (magic == kMagic) return;
+  fail_at(file.name(), kNamed,
+          magic.size() < kMagic.size() ? "ends in the first 8 bytes, expected an MCAP file"
+                                       : "is MCAP of another version, expected version 0");
 }
 
-struct Schema {
-  std::string name;
-  std::string encoding;
-  std::string definition;  // of ros2msg alone
-  bool kept = true;        // false: the definition is too large
-  std::uint32_t crc = 0;   // of the record
+/// What the end of a file says of it.
+struct McapEnd {
+  bool whole = false;                           // the file ends as it should
+  std::optional<std::uint64_t> unchecked = {};  // where data without a checksum end
 };
 
-struct LogChannel {
-  std::size_t number = 0;
-  std::uint32_t crc = 0;  // of the record
+/// Few files state a checksum of their data, and making one takes as long as the rest. A pipe shows
+/// nothing of its end.
+McapEnd end_of(const SequentialFile& file) {
+  McapEnd found;
+  constexpr std::uint64_t kFooterSize = kRecordHeader + 20;  // bytes
+  const std::uint64_t size = file.size().value_or(0);
+  const std::uint64_t end = kFooterSize + kMagic.size();
+  if (size < kMagic.size() + end) return found;
+  const std::string footer = file.look(size - end, static_cast<std::size_t>(end));
+  if (!footer.ends_with(kMagic)) return found;
+  found.whole = true;
+  if (static_cast<std::uint8_t>(footer[0]) != kFooter) return found;
+  ByteReader reader(footer, file.name(), size - end);
+  reader.skip(kRecordHeader);
+  const auto summary = reader.number<std::uint64_t>();
+  const std::uint64_t data_end = (summary == 0 ? size - end : summary) - kDataEndSize;
+  if (data_end >= size) return found;
+  const std::string stated = file.look(data_end, kDataEndSize);
+  const std::string none = static_cast<char>(kDataEnd) + std::string("\4") + std::string(11, '\0');
+  if (stated != none) return found;
+  found.unchecked = data_end;
+  return found;
+}
+
+/// The records of a chunk: where they lie in the file, or what they are decompressed from does.
+struct ChunkRecords {
+  std::string_view bytes;
+  std::uint64_t at = 0;
+  bool decompressed = false;
 };
+
+ChunkRecords records_of_chunk(ByteReader& reader, const std::string& file,
+                              Decompressor& decompressor) {
+  const std::uint64_t begin = reader.offset();
+  reader.skip(2 * sizeof(std::uint64_t));  // times
+  const auto size = reader.number<std::uint64_t>();
+  const auto crc = reader.number<std::uint32_t>();
+  const std::string_view compression = mcap_text(reader);
+  const auto compressed = reader.number<std::uint64_t>();
+  const std::uint64_t records_at = reader.offset();
+  std::string_view records = reader.take(compressed);
+  if (size > kLargestChunk) {
+    fail_at(file, begin,
+            "a chunk of " + std::to_string(size) + " bytes, expected " +
+                std::to_string(kLargestChunk) + " at most");
+  }
+  const bool plain = compression.empty() || compression == "none";
+  try {
+    if (compression == "lz4") {
+      records = decompressor.lz4(records, size);
+    } else if (compression == "zstd") {
+      records = decompressor.zstd(records, size);
+    } else if (!plain) {
+      fail_at(file, begin,
+              "a chunk is compressed by \"" + std::string(compression.substr(0, 40)) +
+                  "\", expected lz4, zstd or nothing");
+    } else if (records.size() != size) {
+      throw DecompressError("its records have " + std::to_string(records.size()) +
+                            " bytes, expected " + std::to_string(size));
+    }
+  } catch (const DecompressError& error) {
+    fail_at(file, begin, std::string("a chunk is damaged: ") + error.what());
+  }
+  if (const std::uint32_t found = crc == 0 ? 0 : crc32(records); found != crc) {
+    fail_at(file, begin,
+            "a chunk is damaged: its checksum (CRC-32) is " + std::to_string(found) +
+                ", expected " + std::to_string(crc));
+  }
+  return {records, plain ? records_at : begin, !plain};
+}
 
 class McapReader {
  public:
   McapReader(const fs::path& file, const std::string& shown, BagTopics& topics)
-      : file_(file, shown), topics_(&topics) {}
+      : file_(file, shown), topics_(&topics), channels_(topics) {}
 
   std::string read() {
-    check_magic();
-    look_at_the_end();
+    check_magic(file_);
+    end_ = end_of(file_);
+    if (end_.unchecked) file_.without_checksum();
     std::string cut_off;
     while (!at_end_ && cut_off.empty()) cut_off = read_record();
-    if (!cut_off.empty() || ends_well_) return cut_off;
+    if (!cut_off.empty() || end_.whole) return cut_off;
     return "at byte " + std::to_string(file_.at()) +
            ": all messages are read, but its end is missing";
   }
 
  private:
-  void check_magic() {
-    const std::string_view magic = file_.read(kMagic.size());
-    if (magic.empty()) fail_at(file_.name(), 0, "the file is empty, expected an MCAP file");
-    if (magic.substr(0, kNamed) != kMagic.substr(0, kNamed)) {
-      fail_at(file_.name(), 0, "does not begin as an MCAP file does");
-    }
-    if (magic == kMagic) return;
-    fail_at(file_.name(), kNamed,
-            magic.size() < kMagic.size() ? "ends in the first 8 bytes, expected an MCAP file"
-                                         : "is MCAP of another version, expected version 0");
-  }
-
-  /// Whether the file ends as it should, and states a checksum of its data: few do, and making one
-  /// takes as long as the rest. A pipe shows nothing of its end.
-  void look_at_the_end() {
-    constexpr std::uint64_t kFooterSize = kRecordHeader + 20;  // bytes
-    const std::uint64_t size = file_.size().value_or(0);
-    const std::uint64_t end = kFooterSize + kMagic.size();
-    if (size < kMagic.size() + end) return;
-    const std::string footer = file_.look(size - end, static_cast<std::size_t>(end));
-    if (!footer.ends_with(kMagic)) return;
-    ends_well_ = true;
-    if (static_cast<std::uint8_t>(footer[0]) != kFooter) return;
-    ByteReader reader(footer, file_.name(), size - end);
-    reader.skip(kRecordHeader);
-    const auto summary = reader.number<std::uint64_t>();
-    const std::uint64_t data_end = (summary == 0 ? size - end : summary) - kDataEndSize;
-    if (data_end >= size) return;
-    const std::string stated = file_.look(data_end, kDataEndSize);
-    const std::string none =
-        static_cast<char>(kDataEnd) + std::string("\4") + std::string(11, '\0');
-    if (stated != none) return;
-    unchecked_end_ = data_end;
-    file_.without_checksum();
-  }
-
   /// Where the file is cut off.
   std::string read_record() {
     const std::uint64_t begin = file_.at();
@@ -164,7 +199,7 @@ class McapReader {
   /// A length that cannot be: of a file without its end there is more where it was cut off.
   std::string beyond(std::uint64_t begin, std::uint8_t type, std::uint64_t length) {
     const std::string what = "a " + kind_of(type) + " of " + std::to_string(length) + " bytes";
-    if (ends_well_) fail_at(file_.name(), begin, what + ", expected to end before the file does");
+    if (end_.whole) fail_at(file_.name(), begin, what + ", expected to end before the file does");
     if (file_.skip(length) == length) {
       fail_at(file_.name(), begin,
               what + ", expected " + std::to_string(kLargestChunk) + " at most");
@@ -178,9 +213,9 @@ class McapReader {
       take_chunk(reader);
     } else if (type == kDataEnd) {
       const auto stated = reader.number<std::uint32_t>();
-      if (unchecked_end_ && *unchecked_end_ + kRecordHeader != at) {
+      if (end_.unchecked && *end_.unchecked + kRecordHeader != at) {
         fail_at(file_.name(), at,
-                "the data end here, expected at byte " + std::to_string(*unchecked_end_) +
+                "the data end here, expected at byte " + std::to_string(*end_.unchecked) +
                     " as the footer says");
       }
       if (stated != 0 && stated != crc) {
@@ -199,47 +234,13 @@ class McapReader {
   /// What stands in a chunk as well as outside of one.
   void take_plain(std::uint8_t type, std::string_view content, ByteReader& reader) {
     if (type == kMessage) take_message(reader);
-    if (type == kSchema) take_schema(content, reader);
-    if (type == kChannel) take_channel(content, reader);
+    if (type == kSchema) channels_.take_schema(content, reader);
+    if (type == kChannel) channels_.take_channel(content, reader);
   }
 
   void take_chunk(ByteReader& reader) {
-    const std::uint64_t begin = reader.offset();
-    reader.skip(2 * sizeof(std::uint64_t));  // times
-    const auto size = reader.number<std::uint64_t>();
-    const auto crc = reader.number<std::uint32_t>();
-    const std::string_view compression = text(reader);
-    const auto compressed = reader.number<std::uint64_t>();
-    const std::uint64_t records_at = reader.offset();
-    std::string_view records = reader.take(compressed);
-    if (size > kLargestChunk) {
-      fail_at(file_.name(), begin,
-              "a chunk of " + std::to_string(size) + " bytes, expected " +
-                  std::to_string(kLargestChunk) + " at most");
-    }
-    const bool plain = compression.empty() || compression == "none";
-    try {
-      if (compression == "lz4") {
-        records = decompressor_.lz4(records, size);
-      } else if (compression == "zstd") {
-        records = decompressor_.zstd(records, size);
-      } else if (!plain) {
-        fail_at(file_.name(), begin,
-                "a chunk is compressed by \"" + std::string(compression.substr(0, 40)) +
-                    "\", expected lz4, zstd or nothing");
-      } else if (records.size() != size) {
-        throw DecompressError("its records have " + std::to_string(records.size()) +
-                              " bytes, expected " + std::to_string(size));
-      }
-    } catch (const DecompressError& error) {
-      fail_at(file_.name(), begin, std::string("a chunk is damaged: ") + error.what());
-    }
-    if (const std::uint32_t found = crc == 0 ? 0 : crc32(records); found != crc) {
-      fail_at(file_.name(), begin,
-              "a chunk is damaged: its checksum (CRC-32) is " + std::to_string(found) +
-                  ", expected " + std::to_string(crc));
-    }
-    ByteReader inner(records, file_.name(), plain ? records_at : begin, !plain);
+    const ChunkRecords records = records_of_chunk(reader, file_.name(), decompressor_);
+    ByteReader inner(records.bytes, file_.name(), records.at, records.decompressed);
     while (!inner.done()) {
       const auto type = inner.number<std::uint8_t>();
       const auto length = inner.number<std::uint64_t>();
@@ -248,7 +249,7 @@ class McapReader {
       if (type == 0 || type == kChunk) {
         inner.fail("a record of type " + std::to_string(type) + " in a chunk");
       }
-      ByteReader record(content, file_.name(), at, !plain);
+      ByteReader record(content, file_.name(), at, records.decompressed);
       take_plain(type, content, record);
     }
   }
@@ -259,82 +260,23 @@ class McapReader {
     reader.skip(sizeof(std::uint32_t));  // sequence
     const auto log_time = reader.number<std::uint64_t>();
     const auto publish_time = reader.number<std::uint64_t>();
-    const auto channel = channels_.find(id);
-    if (channel == channels_.end()) {
+    const std::optional<std::size_t> channel = channels_.number_of(id);
+    if (!channel) {
       fail_at(file_.name(), begin,
               "a message of channel " + std::to_string(id) +
                   ", expected one that a record before it describes");
     }
-    if (!topics_->count(channel->second.number)) return;
-    topics_->deliver(channel->second.number, log_time, publish_time, reader.take(reader.left()),
+    if (!topics_->count(*channel)) return;
+    topics_->deliver(*channel, log_time, publish_time, reader.take(reader.left()),
                      [&](const std::string& what) { fail_at(file_.name(), begin, what); });
-  }
-
-  void take_schema(std::string_view content, ByteReader& reader) {
-    const auto id = reader.number<std::uint16_t>();
-    if (id == 0) return;
-    Schema schema;
-    schema.crc = crc32(content);
-    if (const auto known = schemas_.find(id); known != schemas_.end()) {
-      if (known->second.crc != schema.crc) reader.fail(differs("schema", id));
-      return;
-    }
-    schema.name = text(reader);
-    schema.encoding = text(reader);
-    const std::string_view definition = text(reader);
-    if (schema.encoding == "ros2msg") {
-      schema.kept = definition.size() <= kLargestDefinition;
-      if (schema.kept) schema.definition = definition;
-    }
-    kept_ += schema.name.size() + schema.encoding.size() + schema.definition.size();
-    check_kept(reader);
-    schemas_.emplace(id, std::move(schema));
-  }
-
-  void take_channel(std::string_view content, ByteReader& reader) {
-    const auto id = reader.number<std::uint16_t>();
-    const std::uint32_t crc = crc32(content);
-    if (const auto known = channels_.find(id); known != channels_.end()) {
-      if (known->second.crc != crc) reader.fail(differs("channel", id));
-      return;
-    }
-    const auto schema_id = reader.number<std::uint16_t>();
-    BagChannel channel;
-    channel.topic = text(reader);
-    channel.encoding = text(reader);
-    kept_ += channel.topic.size() + channel.encoding.size();
-    check_kept(reader);
-    if (const auto schema = schemas_.find(schema_id); schema != schemas_.end()) {
-      channel.type = schema->second.name;
-      channel.schema_encoding = schema->second.encoding;
-      channel.definition = schema->second.definition;
-      channel.definition_known = schema->second.kept;
-    } else if (schema_id != 0) {
-      reader.fail("channel " + std::to_string(id) + " has schema " + std::to_string(schema_id) +
-                  ", expected one that a record before it describes");
-    }
-    channels_.emplace(id, LogChannel{topics_->add(channel), crc});
-  }
-
-  static std::string differs(const std::string& kind, std::uint16_t id) {
-    return kind + " " + std::to_string(id) + " is described twice, expected the same again";
-  }
-
-  void check_kept(const ByteReader& reader) const {
-    if (kept_ <= kLargestDefinitions) return;
-    reader.fail("the descriptions of channels have more than " +
-                std::to_string(kLargestDefinitions) + " bytes");
   }
 
   SequentialFile file_;
   BagTopics* topics_;
-  bool ends_well_ = false;
-  std::optional<std::uint64_t> unchecked_end_;  // of data without a checksum
+  McapChannels channels_;
+  McapEnd end_;
   bool first_ = true;
   bool at_end_ = false;
-  std::size_t kept_ = 0;  // bytes of names and definitions
-  std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, LogChannel> channels_;
   Decompressor decompressor_;
 };
 

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/sought_constants.hpp"
+
+#include "effects/channel_physics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kUseless = 0.1;  // a standard error of a ratio that is no calibration
+
+/// The same of a steering's gain. Small angles tell it from the wheelbase so badly that both get
+/// worse.
+constexpr double kUselessGain = 0.03;
+
+double joined_factors(double g, double more) {
+  return (1.0 + g) * (1.0 + more) - 1.0;
+}
+
+SoughtConstant turn_constant() {
+  constexpr const char* kMissing = "the robot hardly turns; drive turns, both ways";
+  return {.name = "wheelbase",
+          .channel = Channel::turn,
+          .symbol = "E_b (wheelbase / nominal)",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return 1.0 / (1.0 + g); },
+          .joined = joined_factors};
+}
+
+SoughtConstant scale_constant() {
+  return {.name = "wheel scale",
+          .channel = Channel::wheels,
+          .symbol = "E_s (true / measured travel)",
+          .missing =
+              "the robot hardly gets anywhere, and turns on the spot cannot tell larger "
+              "wheels from a smaller wheelbase; drive straight lines",
+          .joined = joined_factors};
+}
+
+SoughtConstant diameters_constant() {
+  constexpr const char* kMissing =
+      "the drive is too short to show one wheel larger than the other; drive straight lines of "
+      "several metres";
+  return {.name = "wheel diameter ratio",
+          .channel = Channel::difference,
+          .symbol = "E_d (right wheel / left wheel)",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return (1.0 + 0.5 * g) / (1.0 - 0.5 * g); },
+          // (1 - g/2), (1 + g/2) multiply to another ratio, and a scale of second order.
+          .joined = [](double g, double more) { return (g + more) / (1.0 + 0.25 * g * more); }};
+}
+
+SoughtConstant steering_offset_constant() {
+  constexpr const char* kMissing =
+      "the drive is too short to show where straight ahead is; drive straight lines of several "
+      "metres";
+  return {.name = "steering offset",
+          .channel = Channel::steer,
+          .symbol = "the steering's offset",
+          .missing = kMissing,
+          .missing_without_distance = kMissing,
+          .ratio = [](double g) { return std::cos(g); }};
+}
+
+SoughtConstant steering_gain_constant() {
+  constexpr const char* kMissing =
+      "the steering angles are too small, or too much alike, to tell it from the wheelbase; steer "
+      "far, and little, both ways";
+  return {.name = "steering gain",
+          .channel = Channel::steer_gain,
+          .symbol = "the steering's gain",
+          .missing = kMissing,
+          .missing_without_distance = kMissing};
+}
+
+}  // namespace
+
+std::vector<SoughtConstant> sought_constants(const Robot& robot) {
+  switch (robot.drive) {
+    case DriveKind::differential:
+      return {diameters_constant(), turn_constant(), scale_constant()};
+    case DriveKind::tricycle:
+    case DriveKind::ackermann:
+      return {steering_offset_constant(), turn_constant(), scale_constant(),
+              steering_gain_constant()};
+    default:
+      break;
+  }
+  std::vector<SoughtConstant> result;
+  for (const ChannelFacts& one : channels()) {
+    const std::optional<std::size_t> wheel = wheel_of(one.channel);
+    if (!wheel || !is_of_drive(one.channel, robot)) continue;
+    const std::string& column = robot.columns[*wheel];
+    result.push_back({.name = "radius of " + column,
+                      .channel = one.channel,
+                      .symbol = "the radius of " + column});
+  }
+  result.push_back(turn_constant());
+  // With these the wheels may roll in other directions than stated, too, to first order: together
+  // with the place and the heading of the truth's point all nine numbers from three wheels'
+  // travels, or from as many as four can show, to (f, s, a).
+  if (robot.drive == DriveKind::omni3 || robot.drive == DriveKind::mecanum) {
+    result.push_back({.name = "sideways scale",
+                      .channel = Channel::sideways,
+                      .symbol = "the scale of what goes sideways",
+                      .joined = joined_factors});
+  }
+  if (robot.drive == DriveKind::omni3) {
+    result.push_back({.name = "creep",
+                      .channel = Channel::creep,
+                      .symbol = "the slip to the left per travel ahead"});
+  }
+  return result;
+}
+
+bool shows_scale(Channel channel) {
+  return channel == Channel::wheels || channel == Channel::wheel1;
+}
+
+double useless_sd(const SoughtConstant& one, const Model& model) {
+  if (one.channel != Channel::steer_gain) return kUseless;
+  for (const Effect& effect : model.effects) {
+    if (effect.name == one.name) return kUselessGain * std::abs(1.0 + effect.coefficients[0]);
+  }
+  return kUselessGain;
+}
+
+std::optional<std::size_t> place_of_gain(const Robot& robot) {
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::steer_gain) return k;
+  }
+  return std::nullopt;
+}
+
+std::vector<double> in_force(const Model& model) {
+  std::vector<double> g;
+  for (const SoughtConstant& one : sought_constants(model.robot)) {
+    g.push_back(0.0);
+    for (const Effect& effect : model.effects) {
+      if (effect.name == one.name && !effect.coefficients.empty()) {
+        g.back() = effect.coefficients[0];
+      }
+    }
+  }
+  return g;
+}
+
+Model with_constants(const Model& model, const std::vector<double>& g) {
+  const std::vector<SoughtConstant> constants = sought_constants(model.robot);
+  Model result = model;
+  std::erase_if(result.effects, [&constants](const Effect& effect) {
+    return std::any_of(constants.begin(), constants.end(),
+                       [&effect](const SoughtConstant& one) { return one.name == effect.name; });
+  });
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    result.effects.push_back({constants[k].name, constants[k].channel, {"1"}, {g[k]}, false});
+  }
+  return result;
+}
+
+std::vector<double> refined(std::vector<double> g, const Wanted& wanted, const Robot& robot,
+                            const Eigen::VectorXd& found) {
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
+  Eigen::Index at = 0;
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (wanted[k]) g[k] = constants[k].joined(g[k], found[at++]);
+  }
+  return g;
+}
+
+}  // namespace trussmap
