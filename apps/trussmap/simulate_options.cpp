@@ -89,10 +89,11 @@ void add_world_options(const Command& command, SimulateOptions& options) {
   add_driving_options(command, options);
 }
 
-void add_robot_options(const Command& command, SimulateOptions& options) {
-  const auto add_positive = [&](const char* name, double& value, const char* help) {
-    command.add_option(name, value, help).check(above_zero()).capture_default_str();
-  };
+void add_positive(const Command& command, const char* name, double& value, const char* help) {
+  command.add_option(name, value, help).check(above_zero()).capture_default_str();
+}
+
+void add_wheel_options(const Command& command, SimulateOptions& options) {
   command
       .add_option("--drive", options.drive,
                   "How wheels move the robot: two wheels, or others with the columns that "
@@ -100,7 +101,7 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       .check(one_of(
           {"differential", "skid-steer", "tricycle", "ackermann", "omni3", "mecanum", "wheels"}))
       .capture_default_str();
-  add_positive("--wheelbase", options.wheelbase,
+  add_positive(command, "--wheelbase", options.wheelbase,
                "Distance of the wheels on the left from those on the right [m]");
   command
       .add_option("--length", options.length,
@@ -110,14 +111,18 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
   command.add_option("--wheel-left", options.wheel_left,
                      "How far to the left of the rear axle's centre the measured wheel of an "
                      "ackermann robot is [m]");
-  add_positive("--wheel-noise", options.wheel_noise,
+}
+
+void add_noise_options(const Command& command, SimulateOptions& options) {
+  add_positive(command, "--wheel-noise", options.wheel_noise,
                "k of each wheel [m^1/2]: a travel d is recorded with variance k^2 |d|");
-  add_positive("--steer-noise", options.steer_noise,
+  add_positive(command, "--steer-noise", options.steer_noise,
                "Noise of the steering [rad m^1/2]: of the mean angle over a metre");
-  add_positive("--compass-noise", options.compass_noise, "Standard deviation of a reading [rad]");
-  add_positive("--sighting-noise", options.sighting_noise,
+  add_positive(command, "--compass-noise", options.compass_noise,
+               "Standard deviation of a reading [rad]");
+  add_positive(command, "--sighting-noise", options.sighting_noise,
                "How far off a landmark the robot stops [m, standard deviation per coordinate]");
-  add_positive("--survey-noise", options.survey_noise,
+  add_positive(command, "--survey-noise", options.survey_noise,
                "Standard deviation of the survey [m per coordinate]");
   command.add_flag("--noise-free", options.noise_free,
                    "Leave all noise out of the recording (model.toml still states it)");
@@ -131,10 +136,13 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       .type_name("KINDS")
       .check(rough_kinds())
       .excludes("--noise-free");
+}
+
+void add_sensor_options(const Command& command, SimulateOptions& options) {
   command.add_flag("--no-compass", options.no_compass, "The robot has no compass");
   command.add_flag("--gyro", options.gyro,
                    "The robot has a gyro: drive.csv gets a column yaw_rate");
-  add_positive("--gyro-noise", options.gyro_noise,
+  add_positive(command, "--gyro-noise", options.gyro_noise,
                "Angle random walk of the gyro [rad/s^1/2]: how its heading errs after a second");
   command
       .add_option("--gyro-walk", options.gyro_walk,
@@ -157,19 +165,21 @@ void add_robot_options(const Command& command, SimulateOptions& options) {
       .add_option("--fixes", options.fix_rate,
                   "A receiver also gives the place of its antenna so often [Hz] (fixes.csv)")
       .check(between(0.0, 1000.0));
-  add_positive("--fix-noise", options.fix_noise, "Standard deviation of a fix [m per coordinate]");
+  add_positive(command, "--fix-noise", options.fix_noise,
+               "Standard deviation of a fix [m per coordinate]");
   command.add_flag("--loops", options.loops,
                    "At each stop the robot also measures its pose from its last stop at the same "
                    "landmark, as scan matching does (loops.csv)");
-  add_positive("--loop-noise", options.loop_noise,
+  add_positive(command, "--loop-noise", options.loop_noise,
                "Standard deviation of a loop [m per coordinate]");
-  add_positive("--loop-heading-noise", options.loop_heading_noise,
+  add_positive(command, "--loop-heading-noise", options.loop_heading_noise,
                "Standard deviation of a loop's turn [rad]");
   command.add_flag("--markers", options.markers,
                    "Landmarks have an axis, as tags and floor codes do: each sighting also reads "
                    "its yaw, and the survey its heading");
-  add_positive("--yaw-noise", options.yaw_noise, "Standard deviation of a landmark's yaw [rad]");
-  add_positive("--reach", options.reach, "Reach of the range sensor [m]");
+  add_positive(command, "--yaw-noise", options.yaw_noise,
+               "Standard deviation of a landmark's yaw [rad]");
+  add_positive(command, "--reach", options.reach, "Reach of the range sensor [m]");
 }
 
 }  // namespace
@@ -189,7 +199,9 @@ void check_drive_options(const Command& command, const SimulateOptions& options)
 
 void add_simulate_options(const Command& command, SimulateOptions& options) {
   add_world_options(command, options);
-  add_robot_options(command, options);
+  add_wheel_options(command, options);
+  add_noise_options(command, options);
+  add_sensor_options(command, options);
   add_effect_options(command, options.effects);
   command.add_flag("--true-rates", options.true_rates,
                    "Let effects of speed and turn_rate follow the true rates; otherwise the "

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -113,259 +114,299 @@ std::vector<Shape> bells_over(const Spread& u) {
   return bells;
 }
 
-/// Gathers the candidates.
-class Gatherer {
- public:
-  Gatherer(const FitState& fit, const ShapeContext& context)
-      : context_(context), area_(driven_area(fit)), has_(measured_in(fit.problem)) {
-    for (const std::string name :
-         {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
-      take_variable(name);
-    }
-    if (context.recordings().size() > 1) take_variable("session");
-    for (const std::string& name : covariates_of(context)) {
-      take_variable(name);
-      if (!variables_.empty() && variables_.back().name == name) covariates_.push_back(name);
-    }
-  }
+/// What the recordings have, before any candidate is tried.
+struct Grounds {
+  const ShapeContext& context;
+  Area area;
+  Measured has;
+  std::vector<Spread> variables;
+  std::vector<std::string> covariates;
 
-  std::vector<Candidate> run() {
-    take_catalogue();
-    for (const Channel channel :
-         {Channel::travel,  Channel::turn,   Channel::difference, Channel::creep,
-          Channel::compass, Channel::drift,  Channel::left,       Channel::right,
-          Channel::wheels,  Channel::gyro,   Channel::gyro_scale, Channel::sideways,
-          Channel::wheel1,  Channel::wheel2, Channel::wheel3,     Channel::wheel4,
-          Channel::wheel5,  Channel::wheel6, Channel::steer,      Channel::steer_gain}) {
-      if (!is_possible(channel, has_, context_.robot())) continue;
-      take_drive_channel(channel);
-    }
-    for (const Channel channel :
-         {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale,
-          Channel::bearing, Channel::delay, Channel::truth_heading, Channel::antenna,
-          Channel::antenna_left, Channel::fix_delay, Channel::sighting_yaw}) {
-      if (!is_possible(channel, has_, context_.robot())) continue;
-      take_view_channel(channel);
-    }
-    return std::move(candidates_);
+  [[nodiscard]] bool allow(Channel channel) const {
+    return is_possible(channel, has, context.robot());
   }
-
- private:
-  void take_variable(const std::string& name) {
-    const Spread spread = spread_of(name, context_);
-    if (!says_something(spread)) return;
-    variables_.push_back(spread);
-  }
-
   [[nodiscard]] bool is_covariate(const std::string& name) const {
-    return std::find(covariates_.begin(), covariates_.end(), name) != covariates_.end();
+    return std::find(covariates.begin(), covariates.end(), name) != covariates.end();
   }
+};
 
-  void add(Candidate one) {
+Grounds grounds_of(const FitState& fit, const ShapeContext& context) {
+  Grounds grounds{context, driven_area(fit), measured_in(fit.problem), {}, {}};
+  const auto take = [&](const std::string& name) {
+    const Spread spread = spread_of(name, context);
+    if (says_something(spread)) grounds.variables.push_back(spread);
+  };
+  for (const char* name : {"speed", "turn_rate", "acceleration", "x", "y", "t", "distance"}) {
+    take(name);
+  }
+  if (context.recordings().size() > 1) take("session");
+  for (const std::string& name : covariates_of(context)) {
+    take(name);
+    if (!grounds.variables.empty() && grounds.variables.back().name == name) {
+      grounds.covariates.push_back(name);
+    }
+  }
+  return grounds;
+}
+
+using Candidates = std::vector<Candidate>;
+
+void append(Candidates& all, Candidates more) {
+  std::move(more.begin(), more.end(), std::back_inserter(all));
+}
+
+/// With a place all over the area, radii in its steps.
+Candidates at_places(Candidate one, const std::vector<double>& radii, const Area& area) {
+  Candidates found;
+  if (!(area.step > 0.0)) return found;
+  one.search = {{area.step, area.low.x(), area.high.x()},
+                {area.step, area.low.y(), area.high.y()},
+                {0.5 * area.step, 0.1 * area.step, 4.0 * area.step}};
+  for (const double radius : radii) {
+    for (const Vector2& centre : area.centres) {
+      found.push_back(with_parameters(one, {centre.x(), centre.y(), radius * area.step}));
+    }
+  }
+  return found;
+}
+
+Candidates at_thresholds(Candidate one, const Spread& u) {
+  Candidates found;
+  if (u.distinct < 3) return found;
+  const double range = u.most - u.least;
+  one.search = {{0.2 * range, u.least + 0.02 * range, u.most - 0.02 * range}};
+  std::set<double> tried;
+  for (const double share : {0.15, 0.3, 0.5, 0.7, 0.85}) {
+    const double c = u.quantile(share);
+    if (c > one.search[0].least && c < one.search[0].most && tried.insert(c).second) {
+      found.push_back(with_parameters(one, {c}));
+    }
+  }
+  return found;
+}
+
+/// Of an entry with parameters.
+Candidates of_family(const CatalogueEntry& entry, const Grounds& grounds) {
+  Candidate one;
+  one.effect.name = std::string(entry.name);
+  one.effect.channel = entry.channel;
+  one.family = std::string(entry.name);
+  one.pattern = entry.pattern;
+  for (const OpenParameter& parameter : entry.parameters) {
+    one.parameters.push_back({std::string(parameter.name), parameter.usual});
+  }
+  Candidates found;
+  if (entry.parameters.size() == 3) {
+    one.variable = "place";
+    found = at_places(one, {0.75, 1.5}, grounds.area);
+    // A patch may have no sharp edge, an anomaly may have one.
+    Candidate other = one;
+    const bool disc = entry.pattern.front() != kDiscPattern;
+    other.pattern = {disc ? kDiscPattern : kBellPattern};
+    other.effect.name =
+        fmt::format("{} {}", name_of(entry.channel), disc ? "within a circle" : "at a place");
+    other.family = other.effect.name;
+    other.form = Form::place;
+    other.log_prior = -1.0;
+    append(found, at_places(other, {0.75, 1.5}, grounds.area));
+  } else {
+    one.variable = "speed";
+    for (const Spread& u : grounds.variables) {
+      if (u.name == "speed") append(found, at_thresholds(one, u));
+    }
+  }
+  return found;
+}
+
+Candidates of_catalogue(const Grounds& grounds) {
+  Candidates found;
+  for (const CatalogueEntry& entry : catalogue()) {
+    if (!grounds.allow(entry.channel)) continue;
+    Candidate one;
+    if (entry.of_covariate()) {
+      std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
+      names.insert(names.end(), grounds.covariates.begin(), grounds.covariates.end());
+      for (const std::string& name : names) {
+        one.effect = catalogue_effect(entry, name);
+        one.variable = name;
+        one.log_prior = suits(entry, name);
+        found.push_back(one);
+      }
+    } else if (entry.has_parameters()) {
+      append(found, of_family(entry, grounds));
+    } else {
+      one.effect = catalogue_effect(entry);
+      found.push_back(one);
+    }
+  }
+  return found;
+}
+
+/// In steps and above thresholds, both at values of the variable.
+Candidates at_values(Channel channel, const Spread& u, bool covariate) {
+  const std::string& n = u.name;
+  Candidate step = plain(channel, u, Form::step, {}, "a step in " + n, -2.5);
+  step.family = step.effect.name;
+  step.pattern = {"(1+sign(" + n + "-{c}))/2"};
+  step.parameters = {{"c", 0.0}};
+  Candidates found = at_thresholds(step, u);
+  if (covariate || n == "speed") {
+    Candidate threshold = plain(channel, u, Form::threshold, {}, n + " above a threshold", -2.5);
+    threshold.family = threshold.effect.name;
+    threshold.pattern = {"max(0, " + n + "-{c})"};
+    threshold.parameters = {{"c", 0.0}};
+    append(found, at_thresholds(threshold, u));
+  }
+  return found;
+}
+
+Candidates of_variable(Channel channel, const Spread& u, bool covariate) {
+  Candidates found;
+  const std::string& n = u.name;
+  // On a leg that is all but straight the sign of the turn rate is noise of the wheels, the same
+  // that a difference between them would explain.
+  if (n == "turn_rate" && channel != Channel::turn && channel != Channel::travel &&
+      channel != Channel::compass) {
+    return found;
+  }
+  // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
+  const double middle = 0.5 * (u.least + u.most);
+  const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
+  const double mean = centred ? rounded_within(u.mean, u.most - u.least) : 0.0;
+  const std::string v = centred ? filled("(" + n + "-{mean})", {{"mean", mean}}) : n;
+  const auto add = [&](Form form, std::vector<Shape> shapes, const std::string& said,
+                       double log_prior) {
+    found.push_back(plain(channel, u, form, std::move(shapes), said, log_prior));
+  };
+  add(Form::line, {v}, n, covariate ? -1.0 : -2.0);
+  if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
+    add(Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"}, n + " and heading", -3.0);
+  }
+  if (u.distinct < 3) return found;
+  const bool signs = u.two_sided() && n != "x" && n != "y";
+  if (signs && !covariate) {
+    add(Form::magnitude, {"abs(" + n + ")"}, "the size of " + n, -2.5);
+    add(Form::sense, {"sign(" + n + ")"}, "the sign of " + n, -2.5);
+  }
+  if (n == "x" || n == "y" || n == "acceleration") return found;
+  add(Form::square, {v + "^2"}, n + " squared", -2.5);
+  append(found, at_values(channel, u, covariate));
+  if (u.distinct < 6) return found;
+  const std::vector<Shape> bells = bells_over(u);
+  if (!bells.empty()) add(Form::curve, bells, "a curve of " + n, -3.0);
+  return found;
+}
+
+Candidates of_heading(Channel channel) {
+  Spread heading;
+  heading.name = "heading";
+  return {plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -2.0),
+          plain(channel, heading, Form::curve, {"sin(2*heading)", "cos(2*heading)"},
+                "twice the heading", -3.0),
+          plain(channel, heading, Form::curve,
+                {"sin(heading)", "cos(heading)", "sin(2*heading)", "cos(2*heading)"},
+                "a curve of heading", -3.0)};
+}
+
+Candidates of_place(Channel channel, const Area& area) {
+  Candidate bell;
+  bell.effect.channel = channel;
+  bell.effect.name = fmt::format("{} at a place", name_of(channel));
+  bell.form = Form::place;
+  bell.variable = "place";
+  bell.family = bell.effect.name;
+  bell.pattern = {kBellPattern};
+  bell.parameters = {{"x", 0.0}, {"y", 0.0}, {"r", 0.0}};
+  bell.log_prior = -3.0;
+  return at_places(bell, {1.0}, area);
+}
+
+Candidates of_drive_channel(Channel channel, const Grounds& grounds) {
+  Candidates found;
+  const bool wheel =
+      channel == Channel::left || channel == Channel::right || channel == Channel::wheels;
+  if (!wheel && channel != Channel::drift) {
+    found = of_heading(channel);
+    if (channel != Channel::compass) append(found, of_place(channel, grounds.area));
+  }
+  for (const Spread& u : grounds.variables) {
+    const bool covariate = grounds.is_covariate(u.name);
+    if (wheel && !covariate && u.name != "t" && u.name != "distance" && u.name != "speed") {
+      continue;
+    }
+    if (channel == Channel::drift && !covariate && u.name != "t") continue;
+    append(found, of_variable(channel, u, covariate));
+  }
+  return found;
+}
+
+Candidates of_view_channel(Channel channel, const Grounds& grounds) {
+  Candidates found;
+  Spread heading;
+  heading.name = "heading";
+  if (channel != Channel::delay) {
+    found.push_back(
+        plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -3.0));
+  }
+  for (const Spread& u : grounds.variables) {
+    const bool covariate = grounds.is_covariate(u.name);
+    if (!covariate && u.name != "t" && u.name != "session" && u.name != "speed" &&
+        u.name != "turn_rate") {
+      continue;
+    }
+    // Clocks know nothing of motion.
+    if (channel == Channel::delay && is_rate(u.name)) continue;
+    found.push_back(plain(channel, u, Form::line, {u.name}, u.name, -2.0));
+  }
+  if (grounds.context.recordings().size() > 1) {
+    Candidate one;
+    one.effect.channel = channel;
+    one.effect.name = fmt::format("{} of its own in each session", name_of(channel));
+    one.effect.shape = {"1"};
+    one.effect.per_session = true;
+    one.form = Form::curve;
+    one.variable = "session";
+    one.log_prior = -2.0;
+    found.push_back(one);
+  }
+  return found;
+}
+
+/// The catalogue may have two names for one thing; all else is tried once.
+Candidates each_once(Candidates all) {
+  Candidates kept;
+  std::set<std::string> seen;
+  for (Candidate& one : all) {
     one.effect.coefficients.clear();
     std::string key(name_of(one.effect.channel));
     for (const Shape& shape : one.effect.shape) key += "|" + shape.text();
-    // The catalogue may have two names for one thing; all else is tried once.
-    if (!seen_.insert(key).second && one.form != Form::catalogue) return;
-    candidates_.push_back(std::move(one));
+    if (one.effect.per_session) key += "|per session";
+    if (!seen.insert(key).second && one.form != Form::catalogue) continue;
+    kept.push_back(std::move(one));
   }
-
-  void take_catalogue() {
-    for (const CatalogueEntry& entry : catalogue()) {
-      if (!is_possible(entry.channel, has_, context_.robot())) continue;
-      Candidate one;
-      if (entry.of_covariate()) {
-        std::vector<std::string> names(entry.also_of.begin(), entry.also_of.end());
-        names.insert(names.end(), covariates_.begin(), covariates_.end());
-        for (const std::string& name : names) {
-          one.effect = catalogue_effect(entry, name);
-          one.variable = name;
-          one.log_prior = suits(entry, name);
-          add(one);
-        }
-      } else if (entry.has_parameters()) {
-        take_catalogue_family(entry);
-      } else {
-        one.effect = catalogue_effect(entry);
-        add(one);
-      }
-    }
-  }
-
-  void take_catalogue_family(const CatalogueEntry& entry) {
-    Candidate one;
-    one.effect.name = std::string(entry.name);
-    one.effect.channel = entry.channel;
-    one.family = std::string(entry.name);
-    one.pattern = entry.pattern;
-    for (const OpenParameter& parameter : entry.parameters) {
-      one.parameters.push_back({std::string(parameter.name), parameter.usual});
-    }
-    if (entry.parameters.size() == 3) {
-      one.variable = "place";
-      take_places(one, {0.75, 1.5});
-      // A patch may have no sharp edge, an anomaly may have one.
-      Candidate other = one;
-      const bool disc = entry.pattern.front() != kDiscPattern;
-      other.pattern = {disc ? kDiscPattern : kBellPattern};
-      other.effect.name =
-          fmt::format("{} {}", name_of(entry.channel), disc ? "within a circle" : "at a place");
-      other.family = other.effect.name;
-      other.form = Form::place;
-      other.log_prior = -1.0;
-      take_places(other, {0.75, 1.5});
-    } else {
-      one.variable = "speed";
-      take_thresholds(one, "speed");
-    }
-  }
-
-  void take_places(Candidate one, const std::vector<double>& radii) {
-    if (!(area_.step > 0.0)) return;
-    one.search = {{area_.step, area_.low.x(), area_.high.x()},
-                  {area_.step, area_.low.y(), area_.high.y()},
-                  {0.5 * area_.step, 0.1 * area_.step, 4.0 * area_.step}};
-    for (const double radius : radii) {
-      for (const Vector2& centre : area_.centres) {
-        add(with_parameters(one, {centre.x(), centre.y(), radius * area_.step}));
-      }
-    }
-  }
-
-  void take_thresholds(Candidate one, const std::string& name) {
-    for (const Spread& u : variables_) {
-      if (u.name != name || u.distinct < 3) continue;
-      const double range = u.most - u.least;
-      one.search = {{0.2 * range, u.least + 0.02 * range, u.most - 0.02 * range}};
-      std::set<double> tried;
-      for (const double share : {0.15, 0.3, 0.5, 0.7, 0.85}) {
-        const double c = u.quantile(share);
-        if (c > one.search[0].least && c < one.search[0].most && tried.insert(c).second) {
-          add(with_parameters(one, {c}));
-        }
-      }
-    }
-  }
-
-  void take_drive_channel(Channel channel) {
-    const bool wheel =
-        channel == Channel::left || channel == Channel::right || channel == Channel::wheels;
-    Spread heading;
-    heading.name = "heading";
-    if (!wheel && channel != Channel::drift) {
-      add(plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -2.0));
-      add(plain(channel, heading, Form::curve, {"sin(2*heading)", "cos(2*heading)"},
-                "twice the heading", -3.0));
-      add(plain(channel, heading, Form::curve,
-                {"sin(heading)", "cos(heading)", "sin(2*heading)", "cos(2*heading)"},
-                "a curve of heading", -3.0));
-      Candidate bell;
-      bell.effect.channel = channel;
-      bell.effect.name = fmt::format("{} at a place", name_of(channel));
-      bell.form = Form::place;
-      bell.variable = "place";
-      bell.family = bell.effect.name;
-      bell.pattern = {kBellPattern};
-      bell.parameters = {{"x", 0.0}, {"y", 0.0}, {"r", 0.0}};
-      bell.log_prior = -3.0;
-      if (channel != Channel::compass) take_places(bell, {1.0});
-    }
-    for (const Spread& u : variables_) {
-      const bool covariate = is_covariate(u.name);
-      if (wheel && !covariate && u.name != "t" && u.name != "distance" && u.name != "speed") {
-        continue;
-      }
-      if (channel == Channel::drift && !covariate && u.name != "t") continue;
-      take_forms(channel, u, covariate);
-    }
-  }
-
-  void take_forms(Channel channel, const Spread& u, bool covariate) {
-    const std::string& n = u.name;
-    // On a leg that is all but straight the sign of the turn rate is noise of the wheels, the same
-    // that a difference between them would explain.
-    if (n == "turn_rate" && channel != Channel::turn && channel != Channel::travel &&
-        channel != Channel::compass) {
-      return;
-    }
-    // A covariate that is far from 0 throughout (a temperature) is taken from its mean.
-    const double middle = 0.5 * (u.least + u.most);
-    const bool centred = covariate && !u.two_sided() && std::abs(middle) > 1.5 * (u.most - u.least);
-    const double mean = centred ? rounded_within(u.mean, u.most - u.least) : 0.0;
-    const std::string v = centred ? filled("(" + n + "-{mean})", {{"mean", mean}}) : n;
-    add(plain(channel, u, Form::line, {v}, n, covariate ? -1.0 : -2.0));
-    if (channel != Channel::drift && (covariate || n == "speed" || n == "t")) {
-      add(plain(channel, u, Form::with_heading, {v + "*sin(heading)", v + "*cos(heading)"},
-                n + " and heading", -3.0));
-    }
-    if (u.distinct < 3) return;
-    const bool signs = u.two_sided() && n != "x" && n != "y";
-    if (signs && !covariate) {
-      add(plain(channel, u, Form::magnitude, {"abs(" + n + ")"}, "the size of " + n, -2.5));
-      add(plain(channel, u, Form::sense, {"sign(" + n + ")"}, "the sign of " + n, -2.5));
-    }
-    if (n == "x" || n == "y" || n == "acceleration") return;
-    add(plain(channel, u, Form::square, {v + "^2"}, n + " squared", -2.5));
-    Candidate step = plain(channel, u, Form::step, {}, "a step in " + n, -2.5);
-    step.family = step.effect.name;
-    step.pattern = {"(1+sign(" + n + "-{c}))/2"};
-    step.parameters = {{"c", 0.0}};
-    take_thresholds(step, n);
-    if (covariate || n == "speed") {
-      Candidate threshold = plain(channel, u, Form::threshold, {}, n + " above a threshold", -2.5);
-      threshold.family = threshold.effect.name;
-      threshold.pattern = {"max(0, " + n + "-{c})"};
-      threshold.parameters = {{"c", 0.0}};
-      take_thresholds(threshold, n);
-    }
-    if (u.distinct < 6) return;
-    const std::vector<Shape> bells = bells_over(u);
-    if (bells.empty()) return;
-    add(plain(channel, u, Form::curve, bells, "a curve of " + n, -3.0));
-  }
-
-  void take_view_channel(Channel channel) {
-    Spread heading;
-    heading.name = "heading";
-    if (channel != Channel::delay) {
-      add(plain(channel, heading, Form::curve, {"sin(heading)", "cos(heading)"}, "heading", -3.0));
-    }
-    for (const Spread& u : variables_) {
-      const bool covariate = is_covariate(u.name);
-      if (!covariate && u.name != "t" && u.name != "session" && u.name != "speed" &&
-          u.name != "turn_rate") {
-        continue;
-      }
-      // Clocks know nothing of motion.
-      if (channel == Channel::delay && is_rate(u.name)) continue;
-      add(plain(channel, u, Form::line, {u.name}, u.name, -2.0));
-    }
-    if (context_.recordings().size() > 1) {
-      Candidate one;
-      one.effect.channel = channel;
-      one.effect.name = fmt::format("{} of its own in each session", name_of(channel));
-      one.effect.shape = {"1"};
-      one.effect.per_session = true;
-      one.form = Form::curve;
-      one.variable = "session";
-      one.log_prior = -2.0;
-      candidates_.push_back(one);
-    }
-  }
-
-  const ShapeContext& context_;
-  Area area_;
-  Measured has_;
-  std::vector<Spread> variables_;
-  std::vector<std::string> covariates_;
-  std::vector<Candidate> candidates_;
-  std::set<std::string> seen_;
-};
+  return kept;
+}
 
 }  // namespace
 
 std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& context) {
-  return Gatherer(fit, context).run();
+  const Grounds grounds = grounds_of(fit, context);
+  Candidates all = of_catalogue(grounds);
+  for (const Channel channel :
+       {Channel::travel,  Channel::turn,   Channel::difference, Channel::creep,
+        Channel::compass, Channel::drift,  Channel::left,       Channel::right,
+        Channel::wheels,  Channel::gyro,   Channel::gyro_scale, Channel::sideways,
+        Channel::wheel1,  Channel::wheel2, Channel::wheel3,     Channel::wheel4,
+        Channel::wheel5,  Channel::wheel6, Channel::steer,      Channel::steer_gain}) {
+    if (grounds.allow(channel)) append(all, of_drive_channel(channel, grounds));
+  }
+  for (const Channel channel :
+       {Channel::lever, Channel::lever_left, Channel::range, Channel::range_scale, Channel::bearing,
+        Channel::delay, Channel::truth_heading, Channel::antenna, Channel::antenna_left,
+        Channel::fix_delay, Channel::sighting_yaw}) {
+    if (grounds.allow(channel)) append(all, of_view_channel(channel, grounds));
+  }
+  return each_once(std::move(all));
 }
 
 }  // namespace trussmap

@@ -215,68 +215,90 @@ void test_shapes(const FitState& fit, const NoiseLikelihood& under, std::vector<
   tests.push_back(shape_test("autocorrelation", found.correlation, correlation));
 }
 
+/// A law that the data tell of, and what they say.
+struct TestedLaw {
+  NoiseLaw law;
+  NoiseTest test;
+};
+
+/// Random signs for the traces that scores need.
+Eigen::MatrixXd random_signs(int rows) {
+  std::mt19937_64 random(1);
+  Eigen::MatrixXd probes(rows, kProbes);
+  for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
+  return probes;
+}
+
+NoiseTest test_of(const NoiseLaw& law, const LawScore& score, NoiseLikelihood& likelihood) {
+  NoiseTest test;
+  test.law = law.name;
+  test.unit = law.unit;
+  test.p_value = skewed_tail(score.z, score.skewness);
+  double variance = std::max(0.0, score.variance);
+  test.score = score.z > 0.0 ? score.z * score.z : 0.0;
+  if (test.p_value < kWorthFitting) {
+    const NoiseLikelihood::Best best = likelihood.best(law, variance);
+    variance = best.variance;
+    test.score = best.gain;
+  }
+  test.size = std::sqrt(variance);
+  test.stated = law.stated;
+  return test;
+}
+
+/// Each by itself; `apart`: a basis of what is not to be taken for noise.
+std::vector<TestedLaw> test_laws(const FitState& fit, const ScoreTest& tests,
+                                 const Eigen::MatrixXd& apart, NoiseLikelihood& likelihood) {
+  const RecordingProblem& problem = fit.problem;
+  const RecordingSystem& system = tests.system();
+  const FitProjection P(fit, problem, system, apart, tests.fitted_rows());
+  std::vector<Eigen::MatrixXd> own;
+  for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));
+  const Eigen::MatrixXd probes = P.times(random_signs(system.rows()));
+  const Eigen::VectorXd r = P.times(system.residuals());
+  std::vector<TestedLaw> result;
+  for (NoiseLaw& law : noise_laws(fit, tests.context())) {
+    const LawScore score = score_of(law, problem, system, P, own, r, probes);
+    if (!score.seen) continue;
+    NoiseTest test = test_of(law, score, likelihood);
+    result.push_back({std::move(law), std::move(test)});
+  }
+  return result;
+}
+
+void adjust_p(std::vector<NoiseTest>& tests) {
+  std::vector<double> p_values;
+  p_values.reserve(tests.size());
+  for (const NoiseTest& test : tests) p_values.push_back(test.p_value);
+  const std::vector<double> adjusted = holm(p_values);
+  for (std::size_t k = 0; k < tests.size(); ++k) tests[k].p_adjusted = adjusted[k];
+}
+
 }  // namespace
 
 std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tests,
                                        const Eigen::MatrixXd& nuisance) {
   tests.forget();
-  const RecordingProblem& problem = fit.problem;
-  const RecordingSystem& system = tests.system();
   const Eigen::MatrixXd apart = nuisance.cols() > 0 ? orthonormal_basis(nuisance, kSameDirection)
-                                                    : Eigen::MatrixXd(system.rows(), 0);
-  const FitProjection P(fit, problem, system, apart, tests.fitted_rows());
-  std::vector<Eigen::MatrixXd> own;
-  for (std::size_t k = 0; k < problem.measurements.size(); ++k) own.push_back(P.own_block(k));
-  std::mt19937_64 random(1);
-  Eigen::MatrixXd probes(system.rows(), kProbes);
-  for (double& sign : probes.reshaped()) sign = (random() & 1U) != 0U ? 1.0 : -1.0;
-  probes = P.times(std::move(probes));
-  const Eigen::VectorXd r = P.times(system.residuals());
-
+                                                    : Eigen::MatrixXd(tests.system().rows(), 0);
   NoiseLikelihood likelihood(fit, apart);
+  const std::vector<TestedLaw> laws = test_laws(fit, tests, apart, likelihood);
   std::vector<NoiseTest> result;
-  std::vector<NoiseLaw> laws;
-  for (NoiseLaw& law : noise_laws(fit, tests.context())) {
-    const LawScore score = score_of(law, problem, system, P, own, r, probes);
-    if (!score.seen) continue;
-    NoiseTest test;
-    test.law = law.name;
-    test.unit = law.unit;
-    test.p_value = skewed_tail(score.z, score.skewness);
-    double variance = std::max(0.0, score.variance);
-    test.score = score.z > 0.0 ? score.z * score.z : 0.0;
-    if (test.p_value < kWorthFitting) {
-      const NoiseLikelihood::Best best = likelihood.best(law, variance);
-      variance = best.variance;
-      test.score = best.gain;
-    }
-    test.size = std::sqrt(variance);
-    test.stated = law.stated;
-    result.push_back(std::move(test));
-    laws.push_back(std::move(law));
-  }
-
-  const auto adjust_p = [&result] {
-    std::vector<double> p_values;
-    p_values.reserve(result.size());
-    for (const NoiseTest& test : result) p_values.push_back(test.p_value);
-    const std::vector<double> adjusted = holm(p_values);
-    for (std::size_t k = 0; k < result.size(); ++k) result[k].p_adjusted = adjusted[k];
-  };
+  for (const TestedLaw& one : laws) result.push_back(one.test);
   const auto claim = [&](std::size_t k) {
-    return result[k].score - (k < laws.size() ? laws[k].margin : 0.0);
+    return result[k].score - (k < laws.size() ? laws[k].law.margin : 0.0);
   };
   if (!result.empty()) {
-    adjust_p();
+    adjust_p(result);
     std::size_t best = 0;
     for (std::size_t k = 1; k < result.size(); ++k) {
       if (claim(k) > claim(best)) best = k;
     }
     const double size = result[best].p_adjusted < kSignificance ? result[best].size : 0.0;
-    static_cast<void>(likelihood.deviance(laws[best], size * size));
+    static_cast<void>(likelihood.deviance(laws[best].law, size * size));
   }
   test_shapes(fit, likelihood, result);
-  adjust_p();
+  adjust_p(result);
   std::vector<std::size_t> order(result.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::stable_sort(order.begin(), order.end(),

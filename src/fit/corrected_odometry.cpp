@@ -6,11 +6,10 @@
 #include "drive/row_motion.hpp"
 #include "drive/wheel_kinematics.hpp"
 #include "effects/channel_physics.hpp"
-#include "effects/steering.hpp"
-#include "fit/effect_columns.hpp"
-#include "fit/online_terms.hpp"
+#include "fit/online_effects.hpp"
 #include "odometry/row_reckoner.hpp"
 #include "odometry/wheels_and_gyro.hpp"
+#include "recording/variable_names.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -30,10 +29,193 @@ struct Reckoning {
   double turned_variance = 0.0;  ///< rad^2, since the start, until a reading comes
 
   [[nodiscard]] Pose map_pose(const Pose& pose) const { return compose(start_map, pose); }
+  [[nodiscard]] Pose map_pose() const { return map_pose(reckoner.at().pose); }
 };
 
 [[noreturn]] void refuse(const std::string& why) {
   throw std::invalid_argument(why);
+}
+
+OdometryInputs checked(OdometryInputs inputs) {
+  std::vector<std::string> taken = reserved_variables();
+  for (const std::string& name : inputs.covariates) {
+    if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
+      refuse("covariate \"" + name + "\" has the name of another variable");
+    }
+    taken.push_back(name);
+  }
+  return inputs;
+}
+
+void check_sensors(const WheelRow& row, const OdometryInputs& inputs) {
+  if (std::isinf(row.compass)) refuse("a compass reading is infinite");
+  if (std::isinf(row.yaw_rate)) refuse("a yaw rate is infinite");
+  if (!inputs.gyro && !std::isnan(row.yaw_rate)) {
+    refuse("a row has a yaw rate, but the robot was said to have no gyro");
+  }
+  if (!inputs.compass && !std::isnan(row.compass)) {
+    refuse("a row has a compass reading, but the robot was said to have no compass");
+  }
+}
+
+void check_covariates(std::span<const double> covariates, const OdometryInputs& inputs) {
+  if (covariates.size() != inputs.covariates.size()) {
+    refuse(joined("a row has ", covariates.size(), " covariates, expected ",
+                  inputs.covariates.size()));
+  }
+  for (std::size_t k = 0; k < covariates.size(); ++k) {
+    if (std::isfinite(covariates[k])) continue;
+    refuse("covariate \"" + inputs.covariates[k] + "\" is not finite");
+  }
+}
+
+/// What wheels and gyro say of one row.
+class RowAtHand {
+ public:
+  RowAtHand(Robot robot, const Noise& noise, bool gyro)
+      : robot_(std::move(robot)), noise_(noise), gyro_(gyro) {
+    if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
+    drive_.left = drive_.right = {0.0};
+    if (robot_.drive == DriveKind::differential) return;
+    kinematics_.emplace(robot_);
+    kinematics_->prepare(drive_, 1);
+  }
+
+  void check(const WheelRow& row) const {
+    if (!std::isfinite(row.duration) || row.duration <= 0.0) {
+      refuse("a row lasts " + short_text(row.duration) + " s, expected more than 0");
+    }
+    if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
+      refuse("a row's travel is not finite");
+    }
+    if (row.readings.size() != drive_.wheels.size()) {
+      refuse(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
+                    expected_readings()));
+    }
+    if (kinematics_ && (row.left != 0.0 || row.right != 0.0)) {
+      refuse("a row has travels left and right, expected readings of " + expected_readings());
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      if (is_possible_reading(row.readings[k])) continue;
+      refuse(joined("column ", drive_.wheels[k].name, " reads ", short_text(row.readings[k]),
+                    ", expected a travel in metres or an angle in radians"));
+    }
+  }
+
+  /// The row as it is read, what the gyro adds to it.
+  GyroShare take(const WheelRow& row) {
+    if (!kinematics_) {
+      drive_.left.front() = row.left;
+      drive_.right.front() = row.right;
+      return share_of(row);
+    }
+    for (std::size_t k = 0; k < row.readings.size(); ++k) {
+      drive_.wheels[k].reading.front() = row.readings[k];
+    }
+    if (!kinematics_->move(drive_, 0)) {
+      refuse("a steering angle of " + short_text(row.readings.back()) +
+             " rad leaves the measured wheel no way ahead, expected a smaller one");
+    }
+    return share_of(row);
+  }
+
+  /// The same, steered by so many rad more.
+  GyroShare steer(const WheelRow& row, double more) {
+    if (kinematics_ && !kinematics_->move(drive_, 0, more)) {
+      refuse("a steering angle of " + short_text(row.readings.back() + more) +
+             " rad, which the model's steering effects lead to, leaves the measured wheel no way "
+             "ahead");
+    }
+    return share_of(row);
+  }
+
+  /// As wheels and gyro together say.
+  ReckonedRow recorded(const WheelRow& row, const GyroShare& gyro) {
+    ReckonedRow result{together(gyro, robot_), row.duration, 0.0, row.compass};
+    result.sideways = gyro.sideways;
+    if (!drive_.sideways.empty()) result.sideways += gyro.aside * gyro.excess;
+    result.noise = noise_of(result, gyro);
+    return result;
+  }
+
+  /// The row less what is added to it.
+  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const DrivePattern& more) {
+    ReckonedRow clear = row;
+    const WheelTravel turned = wheel_travel({0.0, 0.0, more.turn}, robot_);
+    clear.travel = {row.travel.left + more.advance + turned.left,
+                    row.travel.right + more.advance + turned.right};
+    clear.slip = more.slip;
+    clear.noise = noise_of(clear, gyro);
+    return clear;
+  }
+
+  /// As shapes of the rates see it.
+  [[nodiscard]] BodyMotion body(const ReckonedRow& row, const GyroShare& gyro) const {
+    if (kinematics_) return body_motion(row.travel, robot_, row.sideways);
+    return body_motion({gyro.left, gyro.right}, robot_, gyro.sideways);
+  }
+
+  /// As channels see it.
+  [[nodiscard]] RowMotion shown(const ReckonedRow& row, const GyroShare& gyro) const {
+    RowMotion shown = row_motion(gyro, row.duration, robot_);
+    if (kinematics_) shown.wheels = &drive_.wheels;
+    return shown;
+  }
+
+  [[nodiscard]] Motion motion(const ReckonedRow& row) const {
+    return {displacement_of(body_motion(row.travel, robot_, row.slip + row.sideways)),
+            covariance_of(row, robot_, noise_)};
+  }
+
+  [[nodiscard]] const Robot& robot() const { return robot_; }
+  [[nodiscard]] const Noise& noise() const { return noise_; }
+
+ private:
+  [[nodiscard]] GyroShare share_of(const WheelRow& row) const {
+    return gyro_share(drive_, 0, row.yaw_rate, row.duration, robot_, noise_);
+  }
+
+  /// Nothing of two wheels without a gyro: then that of the wheels.
+  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
+    if (!gyro_ && !kinematics_) return std::nullopt;
+    drive_.left.front() = row.travel.left;
+    drive_.right.front() = row.travel.right;
+    drive_.gyro.clear();
+    if (gyro_) drive_.gyro.push_back(gyro);
+    return row_noise(drive_, 0, 1.0, row.duration, robot_, noise_);
+  }
+
+  [[nodiscard]] std::string expected_readings() const {
+    if (!kinematics_) return "none of two wheels, but left and right";
+    std::string names;
+    for (const WheelColumn& one : drive_.wheels) names += (names.empty() ? "" : ", ") + one.name;
+    return names;
+  }
+
+  Robot robot_;
+  Noise noise_;
+  bool gyro_;
+  std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
+  Drive drive_;                                ///< of this row alone
+};
+
+/// Where a row leads from now.
+Reckoning reckoned(const Reckoning& now, ReckonedRow row, const RowAtHand& by, bool compass) {
+  Reckoning after = now;
+  const double reading = row.reading;
+  if (compass && !now.heading_known) {
+    row.reading = kAbsent;
+    after.reckoner.take(row, by.robot(), by.noise());
+    after.turned_variance += covariance_of(row, by.robot(), by.noise())(2, 2);
+    if (std::isnan(reading)) return after;
+    after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
+    after.reckoner.add_first_variance(reading_variance(by.noise()) + after.turned_variance);
+    after.heading_known = true;
+    return after;
+  }
+  row.reading -= now.start_map.heading;
+  after.reckoner.take(row, by.robot(), by.noise());
+  return after;
 }
 
 }  // namespace
@@ -41,58 +223,40 @@ struct Reckoning {
 class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
  public:
   State(const Model& model, OdometryInputs inputs)
-      : robot_(model.robot),
-        noise_(model.noise),
-        inputs_(std::move(inputs)),
+      : at_hand_(model.robot, model.noise, inputs.gyro),
+        inputs_(checked(std::move(inputs))),
+        effects_(model.effects, inputs_.covariates),
         covariates_(inputs_.covariates.size(), kAbsent),
-        now_{RowReckoner({}, inputs_.compass)} {
-    if (!(robot_.wheelbase > 0.0)) refuse("the wheelbase must be above 0 m");
-    one_row_.left = one_row_.right = {0.0};
-    if (robot_.drive != DriveKind::differential) {
-      kinematics_.emplace(robot_);
-      kinematics_->prepare(one_row_, 1);
-    }
-    std::vector<std::string> taken = reserved_variables();
-    for (const std::string& name : inputs_.covariates) {
-      if (std::find(taken.begin(), taken.end(), name) != taken.end()) {
-        refuse("covariate \"" + name + "\" has the name of another variable");
-      }
-      taken.push_back(name);
-    }
-    for (const Effect& effect : model.effects) add(effect);
-  }
+        now_{RowReckoner({}, inputs_.compass)} {}
 
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
-    check(row, covariates);
-    take_wheels(row);
-    const GyroShare gyro = gyro_share(one_row_, 0, row.yaw_rate, row.duration, robot_, noise_);
-    const ReckonedRow recorded = as_recorded(row, gyro);
+    at_hand_.check(row);
+    check_sensors(row, inputs_);
+    check_covariates(covariates, inputs_);
+    const GyroShare gyro = at_hand_.take(row);
+    const ReckonedRow recorded = at_hand_.recorded(row, gyro);
     const WheelWay wheels{gyro.left, gyro.right, gyro.sideways};
-    const BodyMotion both = kinematics_
-                                ? body_motion(recorded.travel, robot_, recorded.sideways)
-                                : body_motion({wheels.left, wheels.right}, robot_, wheels.sideways);
-    const CausalRow facts = variables_.next(wheels, both, row.duration);
+    const BodyMotion both = at_hand_.body(recorded, gyro);
+    const OnlineFacts facts{variables_.next(wheels, both, row.duration), covariates};
     // Shapes that speak of the pose see it first as the row says, then as corrected.
-    const bool twice =
-        steering_.see_the_pose() || drives_.see_the_pose() || readings_.see_the_pose();
+    const bool twice = effects_.see_the_pose();
     ReckonedRow clear = recorded;
-    Reckoning after = twice ? reckoned(clear) : now_;
+    Reckoning after = twice ? reckoned(now_, clear, at_hand_, inputs_.compass) : now_;
     for (int pass = twice ? 0 : 1; pass < 2; ++pass) {
-      if (steering_.all().empty()) {
-        clear = cleared(recorded, gyro, facts, covariates, after);
+      if (!effects_.steer()) {
+        clear = cleared(recorded, gyro, facts, after);
       } else {
-        const GyroShare share = steered(row, facts, covariates, after);
-        clear = cleared(as_recorded(row, share), share, facts, covariates, after);
+        const double more = effects_.steering(facts, middle_of(after), row.readings);
+        const GyroShare steered = at_hand_.steer(row, more);
+        clear = cleared(at_hand_.recorded(row, steered), steered, facts, after);
       }
-      after = reckoned(clear);
+      after = reckoned(now_, clear, at_hand_, inputs_.compass);
     }
     variables_.take(wheels, both, row.duration);
-    last_ = facts;
+    last_ = facts.row;
     std::copy(covariates.begin(), covariates.end(), covariates_.begin());
     now_ = after;
-    return {{displacement_of(body_motion(clear.travel, robot_, clear.slip + clear.sideways)),
-             covariance_of(clear, robot_, noise_)},
-            now_.reckoner.at()};
+    return {at_hand_.motion(clear), pose()};
   }
 
   [[nodiscard]] const PoseEstimate& pose() const { return now_.reckoner.at(); }
@@ -100,7 +264,7 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
   void reset() {
     PoseEstimate start;
     if (now_.heading_known) start.covariance(2, 2) = pose().covariance(2, 2);
-    now_ = {RowReckoner(start, inputs_.compass), now_.map_pose(pose().pose), now_.heading_known};
+    now_ = {RowReckoner(start, inputs_.compass), now_.map_pose(), now_.heading_known};
   }
 
   void set_map_pose(const Pose& pose_map) {
@@ -112,213 +276,41 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
   }
 
   [[nodiscard]] CorrectedSighting corrected(const Sighting& sighting) const {
+    const OnlineFacts facts{last_, covariates_};
     CorrectedSighting result{sighting};
-    OnlineTerms delays = delays_;
-    delays.fill(last_, {}, covariates_);
-    for (const OnlineTerm& term : delays.all()) {
-      result.sighting.t -= term.coefficient * delays.value(term);
-    }
-    OnlineTerms views = views_;
-    views.fill(last_, now_.map_pose(pose().pose), covariates_);
-    ViewPattern sum;
-    for (const OnlineTerm& term : views.all()) {
-      const double g = term.coefficient * views.value(term);
-      const ViewPattern more = view_pattern(term.channel, g, 0.0, 0.0);
-      sum.ahead += more.ahead;
-      sum.left += more.left;
-      sum.range += more.range;
-      sum.range_scale += more.range_scale;
-      sum.bearing += more.bearing;
-      sum.yaw += more.yaw;
-    }
-    result.sensor_robot = {sum.ahead, sum.left};
-    result.sighting.yaw = wrap_angle(sighting.yaw - sum.yaw);
+    result.sighting.t = effects_.cleared_time(sighting.t, facts);
+    const ViewPattern added = effects_.view(facts, now_.map_pose());
+    result.sensor_robot = {added.ahead, added.left};
+    result.sighting.yaw = wrap_angle(sighting.yaw - added.yaw);
     if (sighting.standing()) return result;
-    result.sighting.range = std::max((sighting.range - sum.range) / (1.0 + sum.range_scale), 0.0);
-    result.sighting.bearing = wrap_angle(sighting.bearing - sum.bearing);
+    result.sighting.range =
+        std::max((sighting.range - added.range) / (1.0 + added.range_scale), 0.0);
+    result.sighting.bearing = wrap_angle(sighting.bearing - added.bearing);
     return result;
   }
 
  private:
-  void add(const Effect& effect) {
-    const std::vector<double> coefficients = coefficients_of(effect, 1);
-    const ActsOn acts = acts_on(effect.channel);
-    OnlineTerms& terms = effect.channel == Channel::delay ? delays_
-                         : acts == ActsOn::views          ? views_
-                         : acts == ActsOn::readings       ? readings_
-                         : is_steering(effect.channel)    ? steering_
-                                                          : drives_;
-    for (std::size_t k = 0; k < effect.shape.size(); ++k) {
-      try {
-        terms.add({effect.channel, coefficients[k], effect.shape[k], effect.name},
-                  inputs_.covariates);
-      } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument("effect \"" + effect.name + "\": " + error.what());
-      }
-    }
-  }
-
-  void check(const WheelRow& row, std::span<const double> covariates) const {
-    if (!std::isfinite(row.duration) || row.duration <= 0.0) {
-      refuse("a row lasts " + short_text(row.duration) + " s, expected more than 0");
-    }
-    if (!std::isfinite(row.left) || !std::isfinite(row.right)) {
-      refuse("a row's travel is not finite");
-    }
-    if (row.readings.size() != one_row_.wheels.size()) {
-      refuse(joined("a row has readings of ", row.readings.size(), " wheels, expected ",
-                    expected_readings()));
-    }
-    if (kinematics_ && (row.left != 0.0 || row.right != 0.0)) {
-      refuse("a row has travels left and right, expected readings of " + expected_readings());
-    }
-    for (std::size_t k = 0; k < row.readings.size(); ++k) {
-      if (is_possible_reading(row.readings[k])) continue;
-      refuse(joined("column ", one_row_.wheels[k].name, " reads ", short_text(row.readings[k]),
-                    ", expected a travel in metres or an angle in radians"));
-    }
-    if (std::isinf(row.compass)) refuse("a compass reading is infinite");
-    if (std::isinf(row.yaw_rate)) refuse("a yaw rate is infinite");
-    if (!inputs_.gyro && !std::isnan(row.yaw_rate)) {
-      refuse("a row has a yaw rate, but the robot was said to have no gyro");
-    }
-    if (!inputs_.compass && !std::isnan(row.compass)) {
-      refuse("a row has a compass reading, but the robot was said to have no compass");
-    }
-    if (covariates.size() != inputs_.covariates.size()) {
-      refuse(joined("a row has ", covariates.size(), " covariates, expected ",
-                    inputs_.covariates.size()));
-    }
-    for (std::size_t k = 0; k < covariates.size(); ++k) {
-      if (std::isfinite(covariates[k])) continue;
-      refuse("covariate \"" + inputs_.covariates[k] + "\" is not finite");
-    }
-  }
-
-  [[nodiscard]] std::string expected_readings() const {
-    if (!kinematics_) return "none of two wheels, but left and right";
-    std::string names;
-    for (const WheelColumn& one : one_row_.wheels) names += (names.empty() ? "" : ", ") + one.name;
-    return names;
-  }
-
-  /// What the row's wheels say, as a drive of this row alone.
-  void take_wheels(const WheelRow& row) {
-    if (!kinematics_) {
-      one_row_.left.front() = row.left;
-      one_row_.right.front() = row.right;
-      return;
-    }
-    for (std::size_t k = 0; k < row.readings.size(); ++k) {
-      one_row_.wheels[k].reading.front() = row.readings[k];
-    }
-    if (kinematics_->move(one_row_, 0)) return;
-    refuse("a steering angle of " + short_text(row.readings.back()) +
-           " rad leaves the measured wheel no way ahead, expected a smaller one");
-  }
-
-  /// The row as wheels and gyro together say.
-  ReckonedRow as_recorded(const WheelRow& row, const GyroShare& gyro) {
-    ReckonedRow result{together(gyro, robot_), row.duration, 0.0, row.compass};
-    result.sideways = gyro.sideways;
-    if (!one_row_.sideways.empty()) result.sideways += gyro.aside * gyro.excess;
-    result.noise = noise_of(result, gyro);
-    return result;
-  }
-
-  /// Nothing of two wheels without a gyro: then that of the wheels.
-  [[nodiscard]] std::optional<ArcNoise> noise_of(const ReckonedRow& row, const GyroShare& gyro) {
-    if (!inputs_.gyro && !kinematics_) return std::nullopt;
-    one_row_.left.front() = row.travel.left;
-    one_row_.right.front() = row.travel.right;
-    one_row_.gyro.clear();
-    if (inputs_.gyro) one_row_.gyro.push_back(gyro);
-    return row_noise(one_row_, 0, 1.0, row.duration, robot_, noise_);
-  }
-
   /// The row in its middle, with `after` where it leads as far as is known.
   [[nodiscard]] Pose middle_of(const Reckoning& after) const {
     const Pose before = after.map_pose(pose().pose);
-    const Pose end = after.map_pose(after.reckoner.at().pose);
+    const Pose end = after.map_pose();
     return {0.5 * (before.x + end.x), 0.5 * (before.y + end.y),
             before.heading + 0.5 * wrap_angle(end.heading - before.heading)};
   }
 
-  /// The row at hand, steered as the effects say; what the gyro adds to it then.
-  GyroShare steered(const WheelRow& row, const CausalRow& facts, std::span<const double> covariates,
-                    const Reckoning& after) {
-    steering_.fill(facts, middle_of(after), covariates);
-    double more = 0.0;  // rad
-    for (const OnlineTerm& term : steering_.all()) {
-      const double g = term.coefficient * steering_.value(term);
-      more += term.channel == Channel::steer ? g : g * row.readings.back();
-    }
-    if (kinematics_ && !kinematics_->move(one_row_, 0, more)) {
-      refuse("a steering angle of " + short_text(row.readings.back() + more) +
-             " rad, which the model's steering effects lead to, leaves the measured wheel no way "
-             "ahead");
-    }
-    return gyro_share(one_row_, 0, row.yaw_rate, row.duration, robot_, noise_);
-  }
-
   /// The row less what the effects add to it; `after` is where it leads as far as is known.
-  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const CausalRow& facts,
-                      std::span<const double> covariates, const Reckoning& after) {
-    const Pose middle = middle_of(after);
-    const Pose end = after.map_pose(after.reckoner.at().pose);
-    RowMotion shown = row_motion(gyro, row.duration, robot_);
-    if (kinematics_) shown.wheels = &one_row_.wheels;
-    DrivePattern more;
-    drives_.fill(facts, middle, covariates);
-    for (const OnlineTerm& term : drives_.all()) {
-      const DrivePattern unit = drive_pattern(term.channel, drives_.value(term), shown);
-      more.advance += term.coefficient * unit.advance;
-      more.slip += term.coefficient * unit.slip;
-      more.turn += term.coefficient * unit.turn;
-    }
-    ReckonedRow clear = row;
-    const WheelTravel turned = wheel_travel({0.0, 0.0, more.turn}, robot_);
-    clear.travel = {row.travel.left + more.advance + turned.left,
-                    row.travel.right + more.advance + turned.right};
-    clear.slip = more.slip;
-    clear.noise = noise_of(clear, gyro);
+  ReckonedRow cleared(const ReckonedRow& row, const GyroShare& gyro, const OnlineFacts& facts,
+                      const Reckoning& after) {
+    const RowMotion shown = at_hand_.shown(row, gyro);
+    ReckonedRow clear = at_hand_.cleared(row, gyro, effects_.drive(facts, middle_of(after), shown));
     if (std::isnan(row.reading)) return clear;
-    readings_.fill(facts, end, covariates);
-    for (const OnlineTerm& term : readings_.all()) {
-      clear.reading -= term.coefficient * readings_.value(term);
-    }
+    clear.reading = effects_.cleared_reading(clear.reading, facts, after.map_pose());
     return clear;
   }
 
-  /// Where a row leads from now.
-  [[nodiscard]] Reckoning reckoned(ReckonedRow row) const {
-    Reckoning after = now_;
-    const double reading = row.reading;
-    if (inputs_.compass && !now_.heading_known) {
-      row.reading = kAbsent;
-      after.reckoner.take(row, robot_, noise_);
-      after.turned_variance += covariance_of(row, robot_, noise_)(2, 2);
-      if (std::isnan(reading)) return after;
-      after.start_map.heading = wrap_angle(reading - after.reckoner.at().pose.heading);
-      after.reckoner.add_first_variance(reading_variance(noise_) + after.turned_variance);
-      after.heading_known = true;
-      return after;
-    }
-    row.reading -= now_.start_map.heading;
-    after.reckoner.take(row, robot_, noise_);
-    return after;
-  }
-
-  Robot robot_;
-  Noise noise_;
+  RowAtHand at_hand_;
   OdometryInputs inputs_;
-  std::optional<WheelKinematics> kinematics_;  ///< of other wheels than two
-  Drive one_row_;                              ///< the row at hand
-  OnlineTerms steering_{OnlineTerms::Instant::middle};
-  OnlineTerms drives_{OnlineTerms::Instant::middle};
-  OnlineTerms readings_{OnlineTerms::Instant::end};
-  OnlineTerms views_{OnlineTerms::Instant::end};
-  OnlineTerms delays_{OnlineTerms::Instant::end};
+  OnlineEffects effects_;
   CausalVariables variables_;
   CausalRow last_;
   std::vector<double> covariates_;  ///< of the last row

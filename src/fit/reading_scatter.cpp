@@ -139,57 +139,81 @@ double ReadingScatter::minus_two_log(const ReadingNoise& noise) const {
   }
 }
 
+/// Of a segment: start heading less b, then the processes.
 template <int Count>
-double ReadingScatter::filtered(const ReadingNoise& noise) const {
-  const std::vector<NoiseProcess>& processes = noise.processes;
-  const double white = noise.white * noise.white + kLeastVariance;
-  const TurnLaws laws = {noise.wheels, noise.heading_per_s, noise.heading_per_rad};
+struct ReadingScatter::Filter {
   using Square = Eigen::Matrix<double, Count + 1, Count + 1>;
   using Column = Eigen::Matrix<double, Count + 1, 1>;
+  struct Innovation {
+    double error = 0.0;     ///< rad
+    double variance = 0.0;  ///< rad^2
+  };
+
+  const ReadingNoise& noise;
+  Column x = Column::Zero();
+  Square P = Square::Zero();
+  Column seen = Column::Ones();  ///< (1, then 1 for the compass's)
+  Column keeps = Column::Ones();
+  double last = -1.0;  ///< s; rows mostly last equally long
+
+  explicit Filter(const ReadingNoise& by) : noise(by) {
+    P(0, 0) = kDiffuse;
+    for (int p = 0; p < Count; ++p) {
+      const NoiseProcess& one = noise.processes[idx(p)];
+      if (!is_walk(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
+      if (acts_on(one.channel) == ActsOn::drives) seen[p + 1] = 0.0;
+    }
+  }
+
+  void drive(const Row& row) {
+    P(0, 0) += row.turn_variance({noise.wheels, noise.heading_per_s, noise.heading_per_rad});
+    for (int p = 0; p < Count; ++p) {
+      const NoiseProcess& one = noise.processes[idx(p)];
+      const int at = p + 1;
+      const bool by_way = goes_with_distance(one.process);
+      const double lag = by_way ? row.way : row.motion.duration;
+      if (is_correlated(one.process) && (by_way || lag != last)) {
+        keeps[at] = std::exp(-lag / one.length);
+      }
+      const double keep = keeps[at];
+      if (seen[at] == 0.0) {
+        const double turn = drive_pattern(one.channel, 0.5 * (1.0 + keep), row.motion).turn;
+        x[0] += turn * x[at];
+        P.row(0) += turn * P.row(at);
+        P.col(0) += turn * P.col(at);
+      }
+      if (!is_chain(one.process)) continue;
+      x[at] *= keep;
+      P.row(at) *= keep;
+      P.col(at) *= keep;
+      P(at, at) += one.sd * one.sd * (is_correlated(one.process) ? 1.0 - keep * keep : lag);
+    }
+    last = row.motion.duration;
+  }
+
+  Innovation take(double y) {
+    const double white = noise.white * noise.white + kLeastVariance;
+    const Column gain = P * seen;
+    const double variance = seen.dot(gain) + white;
+    const double error = y - seen.dot(x);
+    x += gain * (error / variance);
+    P -= gain * gain.transpose() / variance;
+    return {error, variance};
+  }
+};
+
+template <int Count>
+double ReadingScatter::filtered(const ReadingNoise& noise) const {
   constexpr double kLargest = 1e100;
   double sum = 0.0;
   double product = 1.0;  // of variances: one logarithm for many
   for (const std::vector<Row>& rows : segments_) {
-    Column x = Column::Zero();  // start heading less b, then the processes
-    Square P = Square::Zero();
-    P(0, 0) = kDiffuse;
-    Column seen = Column::Ones();  // (1, then 1 for the compass's)
-    Column keeps = Column::Ones();
-    for (int p = 0; p < Count; ++p) {
-      const NoiseProcess& one = processes[idx(p)];
-      if (!is_walk(one.process)) P(p + 1, p + 1) = one.sd * one.sd;
-      if (acts_on(one.channel) == ActsOn::drives) seen[p + 1] = 0.0;
-    }
+    Filter<Count> filter(noise);
     bool first = true;
-    double last = -1.0;  // rows mostly last equally long
     for (const Row& row : rows) {
-      P(0, 0) += row.turn_variance(laws);
-      for (int p = 0; p < Count; ++p) {
-        const NoiseProcess& one = processes[idx(p)];
-        const int at = p + 1;
-        const bool by_way = goes_with_distance(one.process);
-        const double lag = by_way ? row.way : row.motion.duration;
-        if (is_correlated(one.process) && (by_way || lag != last)) {
-          keeps[at] = std::exp(-lag / one.length);
-        }
-        const double keep = keeps[at];
-        if (seen[at] == 0.0) {
-          const double turn = drive_pattern(one.channel, 0.5 * (1.0 + keep), row.motion).turn;
-          x[0] += turn * x[at];
-          P.row(0) += turn * P.row(at);
-          P.col(0) += turn * P.col(at);
-        }
-        if (!is_chain(one.process)) continue;
-        x[at] *= keep;
-        P.row(at) *= keep;
-        P.col(at) *= keep;
-        P(at, at) += one.sd * one.sd * (is_correlated(one.process) ? 1.0 - keep * keep : lag);
-      }
-      last = row.motion.duration;
+      filter.drive(row);
       if (std::isnan(row.y)) continue;
-      const Column gain = P * seen;
-      const double variance = seen.dot(gain) + white;
-      const double error = row.y - seen.dot(x);
+      const auto [error, variance] = filter.take(row.y);
       if (!first) {
         product *= variance;
         sum += error * error / variance;
@@ -199,8 +223,6 @@ double ReadingScatter::filtered(const ReadingNoise& noise) const {
         }
       }
       first = false;
-      x += gain * (error / variance);
-      P -= gain * gain.transpose() / variance;
     }
   }
   return sum + std::log(product);

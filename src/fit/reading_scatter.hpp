@@ -73,6 +73,8 @@ class ReadingScatter {
   };
   /// With so many of the processes.
   template <int Count>
+  struct Filter;
+  template <int Count>
   [[nodiscard]] double filtered(const ReadingNoise& noise) const;
 
   static constexpr int kHabits = 5;

@@ -4,8 +4,7 @@
 // g and S of fleet rows (trussmap/fleet.hpp) by one list of columns, and what is left of them when
 // some columns are taken as present:
 //
-//   g_k   <- g_k - S_kp g_p/S_pp      S_kl <- S_kl - S_kp S_pl/S_pp      chi^2 <- chi^2 -
-//   g_p^2/S_pp
+//   g_k <- g_k - S_kp g_p/S_pp     S_kl <- S_kl - S_kp S_pl/S_pp     chi^2 <- chi^2 - g_p^2/S_pp
 //
 // one column p after the other (sweeps). Columns of which nothing is left are passed over. A column
 // that a row does not have is 0 there: that row says nothing of it.

@@ -174,23 +174,35 @@ void UpdatableFactor::change(bool add, const std::vector<std::vector<FactorEntry
 }
 
 void UpdatableFactor::add_row(int place, const std::vector<FactorEntry>& column) {
+  const AddedColumn added = fill_row(place, column);
+  const std::vector<FactorEntry> down = fill_column(place, added);
+  pivots_[idx(place)] = added.pivot;
+  if (!(added.pivot > 0.0)) throw NotPositiveDefinite(place);
+  if (down.empty()) {
+    compact();
+  } else {
+    change(false, {down});
+  }
+}
+
+UpdatableFactor::AddedColumn UpdatableFactor::fill_row(int place,
+                                                       const std::vector<FactorEntry>& column) {
   // L11 y = a12, in the order of the columns that it reaches; what these add below the new row
   // comes with it.
   std::priority_queue<int, std::vector<int>, std::greater<>> reached;
-  std::vector<int> below;
+  AddedColumn added;
   const auto reach = [&](int row) {
     if (marked_[idx(row)] != 0) return;
     marked_[idx(row)] = 1;
     if (row < place) {
       reached.push(row);
     } else {
-      below.push_back(row);
+      added.below.push_back(row);
     }
   };
-  double pivot = 0.0;
   for (const FactorEntry& entry : column) {
     if (entry.row == place) {
-      pivot = entry.value;
+      added.pivot = entry.value;
     } else {
       reach(entry.row);
       work_[idx(entry.row)][0] = entry.value;
@@ -221,28 +233,26 @@ void UpdatableFactor::add_row(int place, const std::vector<FactorEntry>& column)
       reach(row[k]);
       work_[idx(row[k])][0] -= value[k] * y;
     }
-    pivot -= l * y;
+    added.pivot -= l * y;
   }
-  std::sort(below.begin(), below.end());
-  const std::vector<int> missing = missing_in(place, below);
+  std::sort(added.below.begin(), added.below.end());
+  return added;
+}
+
+std::vector<FactorEntry> UpdatableFactor::fill_column(int place, const AddedColumn& added) {
+  const std::vector<int> missing = missing_in(place, added.below);
   if (!missing.empty()) insert(place, missing);
   std::vector<FactorEntry> down;
   const Column& own = columns_[idx(place)];
   for (int k = 0; k < own.count; ++k) {
     const int row = rows_[own.begin + idx(k)];
-    const double l = work_[idx(row)][0] / pivot;
+    const double l = work_[idx(row)][0] / added.pivot;
     values_[own.begin + idx(k)] = l;
     work_[idx(row)][0] = 0.0;
-    down.push_back({row, l * std::sqrt(std::max(0.0, pivot))});
+    down.push_back({row, l * std::sqrt(std::max(0.0, added.pivot))});
   }
-  for (const int row : below) marked_[idx(row)] = 0;
-  pivots_[idx(place)] = pivot;
-  if (!(pivot > 0.0)) throw NotPositiveDefinite(place);
-  if (down.empty()) {
-    compact();
-  } else {
-    change(false, {down});
-  }
+  for (const int row : added.below) marked_[idx(row)] = 0;
+  return down;
 }
 
 bool UpdatableFactor::follow_each_other(int first, int count) const {

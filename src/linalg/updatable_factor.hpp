@@ -6,8 +6,8 @@
 //   update     A + W W'    along the paths of W's columns to the root of the elimination tree
 //   downdate   A - W W'    (Davis and Hager, SIAM J. Matrix Anal. Appl. 20, 606, 1999; by method C1
 //                          of Gill, Golub, Murray and Saunders, Math. Comp. 28, 505, 1974)
-//   add_row    a row and column of the identity become others (Davis and Hager, ibid. 26, 621,
-//   2005)
+//   add_row    a row and column of the identity become others
+//                          (Davis and Hager, ibid. 26, 621, 2005)
 //
 // Rows of a column are kept in ascending order; the first is the column's parent in the tree.
 // Everything is in the order of the factor.
@@ -61,6 +61,14 @@ class UpdatableFactor {
   /// Those of `rows` that the column has not.
   [[nodiscard]] std::vector<int> missing_in(int column, const std::vector<int>& rows) const;
   [[nodiscard]] int parent_of(int column) const;
+  /// What a row and column that come in leave of their pivot, and the rows below.
+  struct AddedColumn {
+    double pivot = 0.0;
+    std::vector<int> below;  ///< ascending; marked, their numbers in work_
+  };
+  AddedColumn fill_row(int place, const std::vector<FactorEntry>& column);
+  /// What the rest of the factor is to be downdated by.
+  std::vector<FactorEntry> fill_column(int place, const AddedColumn& added);
   /// Moves columns together when half of the storage is holes.
   void compact();
   /// Each column's rows are its successor and those of its successor.

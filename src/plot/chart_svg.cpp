@@ -58,8 +58,14 @@ struct Pen {
     return y.pixel(layer.columns[column], row) + shift(y, layer);
   }
 
+  [[nodiscard]] bool sideways() const { return !y.categories.empty(); }
+
   [[nodiscard]] std::string path(const ChartLayer& layer) const;
   [[nodiscard]] std::string band(const ChartLayer& layer) const;
+  [[nodiscard]] std::string segment(const ChartLayer& layer, std::size_t row) const;
+  [[nodiscard]] std::string ellipse(const ChartLayer& layer, std::size_t row) const;
+  [[nodiscard]] std::string interval(const ChartLayer& layer, std::size_t row) const;
+  [[nodiscard]] std::string bar(const ChartLayer& layer, std::size_t row) const;
   [[nodiscard]] std::string mark(const ChartLayer& layer, std::size_t row) const;
   [[nodiscard]] std::string draw(const ChartLayer& layer) const;
 };
@@ -113,65 +119,74 @@ std::string Pen::band(const ChartLayer& layer) const {
                      paper(layer.colour));
 }
 
-std::string Pen::mark(const ChartLayer& layer, std::size_t row) const {
+std::string Pen::segment(const ChartLayer& layer, std::size_t row) const {
+  double width = layer.size > 0.0 ? layer.size : layer.shade.empty() ? 2.5 : 1.0;
+  if (!layer.shade.empty()) width *= 2.0 + 4.0 * std::min(1.0, std::abs(layer.shade[row]));
+  return rule(at_x(layer, 0, row), at_y(layer, 1, row), at_x(layer, 2, row), at_y(layer, 3, row),
+              colour(layer, row), width, layer.dashed);
+}
+
+std::string Pen::ellipse(const ChartLayer& layer, std::size_t row) const {
   const std::string ink = colour(layer, row);
-  const bool sideways = !y.categories.empty();
+  const double unit =
+      std::abs(x.pixel(x.range.high) - x.pixel(x.range.low)) / (x.range.high - x.range.low);
+  return fmt::format(
+      "<ellipse rx=\"{}\" ry=\"{}\" transform=\"translate({} {}) rotate({})\" fill=\"{}\" "
+      "fill-opacity=\"0.18\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
+      px(std::max(1.5, unit * layer.columns[2].numbers[row])),
+      px(std::max(1.5, unit * layer.columns[3].numbers[row])), px(at_x(layer, 0, row)),
+      px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * kDegrees), ink, ink);
+}
+
+std::string Pen::interval(const ChartLayer& layer, std::size_t row) const {
+  const std::string ink = colour(layer, row);
+  const double radius = layer.size > 0.0 ? layer.size : 4.0;
+  if (sideways()) {
+    const double across = at_y(layer, 0, row);
+    return rule(at_x(layer, 2, row), across, at_x(layer, 3, row), across, ink, 2.0, false) +
+           dot(at_x(layer, 1, row), across, radius, ink);
+  }
+  const double along = at_x(layer, 0, row);
+  return rule(along, at_y(layer, 2, row), along, at_y(layer, 3, row), ink, 2.0, false) +
+         dot(along, at_y(layer, 1, row), radius, ink);
+}
+
+std::string Pen::bar(const ChartLayer& layer, std::size_t row) const {
+  const std::string ink = colour(layer, row);
+  const ChartScale& names = sideways() ? y : x;
+  const double room = std::abs(names.last - names.first) /
+                      static_cast<double>(std::max<std::size_t>(1, names.categories.size()));
+  const double width = layer.size > 0.0 ? layer.size : names.categories.empty() ? 3.0 : 0.7 * room;
+  return sideways() ? rule(x.pixel(0.0), at_y(layer, 0, row), at_x(layer, 1, row),
+                           at_y(layer, 0, row), ink, width, false, "butt")
+                    : rule(at_x(layer, 0, row), y.pixel(0.0), at_x(layer, 0, row),
+                           at_y(layer, 1, row), ink, width, false, "butt");
+}
+
+std::string Pen::mark(const ChartLayer& layer, std::size_t row) const {
   switch (layer.kind) {
     case LayerKind::dots:
       return dot(at_x(layer, 0, row), at_y(layer, 1, row), layer.size > 0.0 ? layer.size : 4.0,
-                 ink);
-    case LayerKind::segments: {
-      const double wide = layer.size > 0.0 ? layer.size : layer.shade.empty() ? 2.5 : 1.0;
-      const double width = layer.shade.empty()
-                               ? wide
-                               : wide * (2.0 + 4.0 * std::min(1.0, std::abs(layer.shade[row])));
-      return rule(at_x(layer, 0, row), at_y(layer, 1, row), at_x(layer, 2, row),
-                  at_y(layer, 3, row), ink, width, layer.dashed);
-    }
-    case LayerKind::ellipses: {
-      const double unit =
-          std::abs(x.pixel(x.range.high) - x.pixel(x.range.low)) / (x.range.high - x.range.low);
-      return fmt::format(
-          "<ellipse rx=\"{}\" ry=\"{}\" transform=\"translate({} {}) rotate({})\" fill=\"{}\" "
-          "fill-opacity=\"0.18\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
-          px(std::max(1.5, unit * layer.columns[2].numbers[row])),
-          px(std::max(1.5, unit * layer.columns[3].numbers[row])), px(at_x(layer, 0, row)),
-          px(at_y(layer, 1, row)), px(-layer.columns[4].numbers[row] * kDegrees), ink, ink);
-    }
-    case LayerKind::intervals: {
-      const double radius = layer.size > 0.0 ? layer.size : 4.0;
-      if (sideways) {
-        const double across = at_y(layer, 0, row);
-        return rule(at_x(layer, 2, row), across, at_x(layer, 3, row), across, ink, 2.0, false) +
-               dot(at_x(layer, 1, row), across, radius, ink);
-      }
-      const double along = at_x(layer, 0, row);
-      return rule(along, at_y(layer, 2, row), along, at_y(layer, 3, row), ink, 2.0, false) +
-             dot(along, at_y(layer, 1, row), radius, ink);
-    }
-    case LayerKind::bars: {
-      const ChartScale& names = sideways ? y : x;
-      const double room = std::abs(names.last - names.first) /
-                          static_cast<double>(std::max<std::size_t>(1, names.categories.size()));
-      const double width = layer.size > 0.0           ? layer.size
-                           : names.categories.empty() ? 3.0
-                                                      : 0.7 * room;
-      return sideways ? rule(x.pixel(0.0), at_y(layer, 0, row), at_x(layer, 1, row),
-                             at_y(layer, 0, row), ink, width, false, "butt")
-                      : rule(at_x(layer, 0, row), y.pixel(0.0), at_x(layer, 0, row),
-                             at_y(layer, 1, row), ink, width, false, "butt");
-    }
+                 colour(layer, row));
+    case LayerKind::segments:
+      return segment(layer, row);
+    case LayerKind::ellipses:
+      return ellipse(layer, row);
+    case LayerKind::intervals:
+      return interval(layer, row);
+    case LayerKind::bars:
+      return bar(layer, row);
     case LayerKind::labels:
       return fmt::format(
           "<text class=\"tick\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
           px(at_x(layer, 0, row)), px(at_y(layer, 1, row) - 7.0),
           xml_escaped(layer.columns[2].texts[row]));
     case LayerKind::level:
-      return rule(x.first, at_y(layer, 0, row), x.last, at_y(layer, 0, row), ink, 1.5,
-                  layer.dashed);
+      return rule(x.first, at_y(layer, 0, row), x.last, at_y(layer, 0, row), colour(layer, row),
+                  1.5, layer.dashed);
     case LayerKind::upright:
-      return rule(at_x(layer, 0, row), y.first, at_x(layer, 0, row), y.last, ink, 1.5,
-                  layer.dashed);
+      return rule(at_x(layer, 0, row), y.first, at_x(layer, 0, row), y.last, colour(layer, row),
+                  1.5, layer.dashed);
     default:
       return {};
   }

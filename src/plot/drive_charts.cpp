@@ -87,6 +87,80 @@ double reach_of(const Robot& robot, const std::vector<WheelPlace>& places,
   return reach > 0.0 ? reach : 1.0;
 }
 
+/// The layers of a robot's wheels, whose strokes are so long, m.
+struct WheelLayers {
+  double length = 0.0;
+  Strokes frame{"", "faint", 1.5};
+  Strokes wheels{"", "1", 8.0};
+  Strokes others{"", "faint", 8.0};
+  Strokes rollers{"", "2", 2.0};
+  Strokes turned{"", "2", 2.0};
+  ChartLayer names{LayerKind::labels, "", {{"right [m]"}, {"ahead [m]"}, {"column"}}, "ink"};
+
+  /// Before a wheel in front, behind one in the rear, beside one between them.
+  void name(const Vector2& at, const std::string& text) {
+    const bool between = at.x() == 0.0 && at.y() != 0.0;
+    const double beside = between ? std::copysign(length, at.y()) : 0.0;
+    const double before = between ? 0.0 : at.x() > 0.0 ? 0.75 * length : -1.3 * length;
+    names.columns[0].numbers.push_back(-at.y() - beside);
+    names.columns[1].numbers.push_back(at.x() + before);
+    names.columns[2].texts.push_back(text);
+  }
+
+  void add_read(const WheelPlace& one, const std::string& column) {
+    const Vector2 at(one.x, one.y);
+    frame.add(Vector2::Zero(), at);
+    wheels.add_about(at, one.direction, length);
+    if (one.roller != 0.0) rollers.add_about(at, one.direction + one.roller, 1.1 * length);
+    name(at, column);
+  }
+
+  void add_idle(const Vector2& from, const Vector2& at) {
+    frame.add(from, at);
+    others.add_about(at, 0.0, length);
+  }
+
+  void add_steered(const Vector2& at, const std::optional<Range>& steered) {
+    if (!steered) return;
+    turned.add_about(at, steered->low, 1.3 * length);
+    turned.add_about(at, steered->high, 1.3 * length);
+  }
+
+  /// `cross`: the arms of the cross in the middle, m.
+  void add_to(Chart& chart, double cross) const {
+    for (const Strokes* one : {&frame, &others, &wheels, &rollers, &turned}) one->add_to(chart);
+    Strokes centre("", "ink", 2.0);
+    centre.add_about(Vector2::Zero(), 0.0, cross);
+    centre.add_about(Vector2::Zero(), 0.5 * std::numbers::pi, cross);
+    centre.add_to(chart);
+    chart.layers.push_back(names);
+  }
+};
+
+WheelLayers wheel_layers(const Robot& robot, const std::vector<WheelPlace>& places,
+                         const std::vector<Vector2>& idle, double length,
+                         const std::optional<Range>& steered) {
+  WheelLayers layers{length};
+  layers.turned.dash();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    layers.add_read(places[k], robot.drive == DriveKind::tricycle
+                                   ? robot.columns[0] + ", " + robot.columns[1]
+                                   : robot.columns[k]);
+  }
+  for (const Vector2& at : idle) layers.add_idle(Vector2::Zero(), at);
+  const Vector2 front(robot.length, 0.0);
+  if (robot.drive == DriveKind::tricycle) layers.add_steered(front, steered);
+  if (robot.drive == DriveKind::ackermann) {
+    layers.frame.add(Vector2::Zero(), front);
+    for (const Vector2& rear : idle) {
+      layers.add_idle(front, front + rear);
+      layers.add_steered(front + rear, steered);
+    }
+    layers.name(front, robot.columns[1]);
+  }
+  return layers;
+}
+
 }  // namespace
 
 Chart wheels_chart(const Robot& robot, const std::optional<Range>& steered) {
@@ -100,66 +174,11 @@ Chart wheels_chart(const Robot& robot, const std::optional<Range>& steered) {
   const std::vector<WheelPlace> places = wheel_places(robot);
   if (places.empty()) return chart;
 
-  const bool steers = is_of_drive(Channel::steer, robot);
   const std::vector<Vector2> idle = idle_wheels(robot);
   const double reach = reach_of(robot, places, idle);
   const double length = 0.45 * reach;
-  Strokes frame("", "faint", 1.5);
-  Strokes wheels("", "1", 8.0);
-  Strokes others("", "faint", 8.0);
-  Strokes rollers("", "2", 2.0);
-  Strokes turned("", "2", 2.0);
-  turned.dash();
-  ChartLayer names{LayerKind::labels, "", {{"right [m]"}, {"ahead [m]"}, {"column"}}, "ink"};
-  // Before a wheel in front, behind one in the rear, beside one between them.
-  const auto name = [&](const Vector2& at, const std::string& text) {
-    const bool between = at.x() == 0.0 && at.y() != 0.0;
-    const double beside = between ? std::copysign(length, at.y()) : 0.0;
-    const double before = between ? 0.0 : at.x() > 0.0 ? 0.75 * length : -1.3 * length;
-    names.columns[0].numbers.push_back(-at.y() - beside);
-    names.columns[1].numbers.push_back(at.x() + before);
-    names.columns[2].texts.push_back(text);
-  };
-  const auto steered_wheel = [&](const Vector2& at) {
-    if (!steered) return;
-    turned.add_about(at, steered->low, 1.3 * length);
-    turned.add_about(at, steered->high, 1.3 * length);
-  };
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const WheelPlace& one = places[k];
-    const Vector2 at(one.x, one.y);
-    frame.add(Vector2::Zero(), at);
-    wheels.add_about(at, one.direction, length);
-    if (one.roller != 0.0) rollers.add_about(at, one.direction + one.roller, 1.1 * length);
-    name(at, robot.drive == DriveKind::tricycle ? robot.columns[0] + ", " + robot.columns[1]
-                                                : robot.columns[k]);
-  }
-  for (const Vector2& at : idle) {
-    frame.add(Vector2::Zero(), at);
-    others.add_about(at, 0.0, length);
-  }
-  if (robot.drive == DriveKind::tricycle) steered_wheel({robot.length, 0.0});
-  if (robot.drive == DriveKind::ackermann) {
-    const Vector2 front(robot.length, 0.0);
-    frame.add(Vector2::Zero(), front);
-    for (const Vector2& rear : idle) {
-      const Vector2 at = front + rear;
-      frame.add(front, at);
-      others.add_about(at, 0.0, length);
-      steered_wheel(at);
-    }
-    name(front, robot.columns[1]);
-  }
-  frame.add_to(chart);
-  others.add_to(chart);
-  wheels.add_to(chart);
-  rollers.add_to(chart);
-  turned.add_to(chart);
-  Strokes centre("", "ink", 2.0);
-  centre.add_about(Vector2::Zero(), 0.0, 0.12 * reach);
-  centre.add_about(Vector2::Zero(), 0.5 * std::numbers::pi, 0.12 * reach);
-  centre.add_to(chart);
-  chart.layers.push_back(std::move(names));
+  wheel_layers(robot, places, idle, length, steered).add_to(chart, 0.12 * reach);
+  const bool steers = is_of_drive(Channel::steer, robot);
   const double front = steers ? robot.length : reach;
   const double back = steers ? 0.0 : reach;
   chart.x.range = Range{-reach - 2.0 * length, reach + 2.0 * length};

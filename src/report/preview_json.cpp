@@ -47,10 +47,9 @@ ordered_json rivals_json(const EffectPreview& preview) {
   ordered_json list = ordered_json::array();
   const std::vector<Effect>& rivals = preview.evidence.rivals;
   for (std::size_t k = 0; k < rivals.size(); ++k) {
-    const auto predicted =
-        k < preview.rivals_predicted.size() ? preview.rivals_predicted[k] : std::nullopt;
+    const bool predicted = k < preview.rivals_predicted.size();
     list.push_back({{"name", name_in_words(rivals[k])},
-                    {"leaves_mm", millimetres(predicted)},
+                    {"leaves_mm", predicted ? millimetres(preview.rivals_predicted[k]) : nullptr},
                     {"verdict", duel_verdict(preview.evidence.estimate.effect, rivals[k],
                                              preview.rivals_behind.at(k))}});
   }

@@ -10,11 +10,10 @@
 //   ackermann                goes to and fro on arcs of its tightest bend, each turning it further
 //                            the same way; drives some legs backwards
 //
-//      <--.  2            A turn a in n arcs of about a/n, forwards (1, 3) and backwards (2). Each
-//        / \  .           pair takes the robot about R (a/n)^2 to the inner side: the more arcs,
-//        the
-//       /   \  `. 3       less room. A small turn is one arc. Arcs forwards are longer than those
-//      1     `---         backwards: the mean speed over a while is never just 0.
+//      <--.  2          A turn a in n arcs of about a/n, forwards (1, 3) and backwards (2). Each
+//        / \  .         pair takes the robot about R (a/n)^2 to the inner side: the more arcs, the
+//       /   \  `. 3     less room. A small turn is one arc. Arcs forwards are longer than those
+//      1     `---       backwards: the mean speed over a while is never just 0.
 #pragma once
 
 #include "trussmap/model.hpp"

@@ -6,9 +6,11 @@
 #include "simulation/driving_checks.hpp"
 #include "simulation/further_columns.hpp"
 #include "simulation/leg_shape.hpp"
+#include "simulation/motion_so_far.hpp"
 #include "trussmap/simulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -23,191 +25,36 @@ constexpr double kEase = 0.8;  // of its tightest bend: how sharply a robot bend
 
 using std::numbers::pi;
 
-/// The path so far, to which segments are added.
-class Path {
+/// What is drawn for a path, in the order in which it is driven.
+class PathDraws {
  public:
-  Path(const Mesh& mesh, const DrivingStyle& style, std::uint64_t seed, const PathBias& bias,
-       const DrivingManner& manner)
-      : mesh_(mesh),
-        style_(style),
-        bias_(bias),
-        manner_(manner),
-        random_(random_stream(seed, Stream::path)) {
-    warm_at_ = uniform(0.0, 2.0 * pi);
-  }
+  PathDraws(const DrivingStyle& style, const DrivingManner& manner, std::uint64_t seed)
+      : style_(style), manner_(manner), random_(random_stream(seed, Stream::path)) {}
 
-  void start_at(int landmark) {
-    pose_ = {0.0, 0.0, 0.0};
-    set_position(stop_near(landmark) - sensor());
-    motion_.start = pose_;
-    change_surroundings();
-    if (style_.first_rest > 0.0) rest(style_.first_rest);
-    stop(landmark);
-  }
-
-  /// Drives from the landmark where the robot stands to another; `spin_first` turns it round twice
-  /// to the left and twice to the right before.
-  void go(int landmark, bool spin_first) {
-    if (chance(style_.rest_share)) rest(uniform(style_.shortest_rest, style_.longest_rest));
-    if (spin_first) {
-      turn_round(4.0 * pi);
-      turn_round(-4.0 * pi);
-    }
-    const Vector2 target = stop_near(landmark);
-    const double speed = uniform(style_.slowest, style_.fastest);
-    const bool has_corner = chance(style_.corner_share);
-    const double side = uniform(-1.0, 1.0);
-    course_ = draw_course();
-    if (has_corner) {
-      const Vector2 way = target - pose_.position();
-      drive(pose_.position() + 0.5 * way + side * style_.corner_reach * quarter_turn(way), speed);
-    }
-    arriving_ = true;
-    drive(target, speed);
-    arriving_ = false;
-    stop(landmark);
-    if (style_.overrun > 0.0) drive_on(style_.overrun, speed);
-    change_surroundings();
-  }
-
-  [[nodiscard]] TrueMotion take() {
-    if (style_.last_rest > 0.0) rest(style_.last_rest);
-    return std::move(motion_);
-  }
-
- private:
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
   bool chance(double share) { return uniform(0.0, 1.0) < share; }
+  double turn_rate() { return uniform(style_.slowest_turn, style_.fastest_turn); }
 
-  Vector2 stop_near(int landmark) {
+  /// How far off a landmark the robot stops, m.
+  Vector2 standing() {
     const double dx = normal_(random_);
     const double dy = normal_(random_);
-    return mesh_.positions[idx(landmark)] + style_.standing * Vector2(dx, dy);
-  }
-
-  /// The next stop's sensor as seen from the axle, in the axes of a robot of heading 0.
-  [[nodiscard]] Vector2 sensor() const {
-    const std::size_t stop = motion_.stops.size();
-    return stop < bias_.sensor.size() ? bias_.sensor[stop] : Vector2::Zero();
+    return style_.standing * Vector2(dx, dy);
   }
 
   /// Where the robot's next leg leads in its own axes: of length 1.
-  Vector2 draw_course() {
+  Vector2 course() {
     if (manner_.backwards > 0.0 && chance(manner_.backwards)) return {-1.0, 0.0};
     if (manner_.aside == 0.0) return {1.0, 0.0};
     const double aside = uniform(-manner_.aside, manner_.aside);
     return {std::cos(aside), std::sin(aside)};
   }
 
-  /// How many rows the next segment has: as many as are wanted, or as an earlier path's.
-  int rows_of_segment(int wanted) {
-    const std::size_t segment = motion_.segments.size();
-    motion_.segments.push_back(segment < bias_.segments.size() ? bias_.segments[segment] : wanted);
-    return motion_.segments.back();
-  }
-
-  [[nodiscard]] double jump_of(std::size_t row) const {
-    return row < bias_.jump.size() ? bias_.jump[row] : 0.0;
-  }
-
-  [[nodiscard]] double slip_of(std::size_t row) const {
-    return row < bias_.slip.size() ? bias_.slip[row] : 0.0;
-  }
-
-  /// Where so much way on the course takes the robot whose axis ahead is this on average, and the
-  /// slip of the row with it.
-  [[nodiscard]] Vector2 step_of(double way, const Vector2& ahead, std::size_t row) const {
-    const Vector2 step = way * ahead;
-    Vector2 moved = course_.x() * step;
-    if (course_.y() != 0.0) moved += course_.y() * quarter_turn(step);
-    if (!bias_.slip.empty()) moved += slip_of(row) * course_.x() * quarter_turn(step);
-    return moved;
-  }
-
-  void set_position(const Vector2& position) {
-    pose_.x = position.x();
-    pose_.y = position.y();
-  }
-
-  /// Time at the end of a number of rows, in whole nanoseconds so that 3 x 0.1 s is not
-  /// 0.30000000000000004.
-  [[nodiscard]] double time_after(std::size_t rows) const {
-    return std::round(static_cast<double>(rows) * style_.row_duration * 1e9) / 1e9;
-  }
-
-  void stop(int landmark) {
-    const std::size_t rows = motion_.rows.size();
-    motion_.stops.push_back({time_after(rows), landmark, rows, pose_});
-  }
-
-  void change_surroundings() {
-    constexpr std::array<double, 4> kLoads = {0.0, 5.0, 12.0, 20.0};
-    const bool reload = chance(style_.load_change_share);
-    const auto load = static_cast<std::size_t>(uniform(0.0, kLoads.size()));
-    const bool press_switch = chance(style_.lights_change_share);
-    if (reload) surroundings_.payload_kg = kLoads[std::min(load, kLoads.size() - 1)];
-    if (press_switch) surroundings_.lights = 1.0 - surroundings_.lights;
-  }
-
-  /// A day of the place, twenty minutes long, to the thermometer's thousandth of a degree.
-  [[nodiscard]] double temperature(double t) const {
-    return std::round(1e3 * (20.0 + 6.0 * std::sin(t / 200.0 + warm_at_))) / 1e3;
-  }
-
-  /// The row that ends at the present pose.
-  void add_row(Activity activity, double speed, double turn_rate, double jump = 0.0) {
-    const double t = time_after(motion_.rows.size() + 1);
-    surroundings_.temperature_C = temperature(t);
-    const double slip_speed = slip_of(motion_.rows.size()) * speed;
-    motion_.rows.push_back({t, style_.row_duration, speed, turn_rate, activity, pose_,
-                            surroundings_, slip_speed, jump});
-  }
-
-  /// A row of driving on the course, m and m/s, between two headings.
-  void drive_row(double way, double speed, double first, double last) {
-    set_position(pose_.position() + step_of(way, unit_step(first, last), motion_.rows.size()));
-    pose_.heading = last;
-    add_row(Activity::drive, speed * course_.x(), (last - first) / style_.row_duration);
-    motion_.rows.back().sideways = speed * course_.y();
-  }
-
-  void rest(double seconds) {
-    const int rows = rows_of_segment(whole_rows(seconds, style_.row_duration));
-    for (int k = 0; k < rows; ++k) add_row(Activity::rest, 0.0, 0.0);
-  }
-
-  void spin(double angle) {
-    const double wanted_rate = uniform(style_.slowest_turn, style_.fastest_turn);
-    int rows = rows_of_segment(
-        angle == 0.0 ? 0 : whole_rows(std::abs(angle) / wanted_rate, style_.row_duration));
-    if (rows == 0 && angle != 0.0) rows = motion_.segments.back() = 1;
-    const double before = pose_.heading;
-    for (int k = 1; k <= rows; ++k) {
-      const double heading = before + angle * k / rows;
-      const double jump = jump_of(motion_.rows.size());
-      set_position(pose_.position() + jump * unit_step(pose_.heading, heading));
-      pose_.heading = heading;
-      add_row(Activity::spin, 0.0, angle / (rows * style_.row_duration), jump);
-    }
-  }
-
-  /// Where a spin by an angle, which is next, will leave the robot by its jumps, from here.
-  [[nodiscard]] Vector2 jumped(double angle) const {
-    Vector2 sum = Vector2::Zero();
-    const std::size_t segment = motion_.segments.size();
-    const int rows = segment < bias_.segments.size() ? bias_.segments[segment] : 0;
-    for (int k = 0; k < rows; ++k) {
-      const double from = pose_.heading + angle * k / rows;
-      sum += jump_of(motion_.rows.size() + idx(k)) * unit_step(from, from + angle / rows);
-    }
-    return sum;
-  }
-
   /// A bend that leaves the leg, so long [m], a leg: not so large that it leads back to where it
   /// began, nor sharper than the robot's tightest.
-  LegShape draw_shape(const std::vector<double>& profile, double leg) {
+  LegShape shape(const std::vector<double>& profile, double leg) {
     LegShape shape;
     const double sharpest = kEase * leg / manner_.turning_radius;
     do {
@@ -222,164 +69,269 @@ class Path {
     return shape;
   }
 
-  /// How many segments the next turn has, by an earlier path.
-  [[nodiscard]] std::size_t segments_of_turn() const {
-    const std::size_t turn = motion_.turns.size();
-    return turn < bias_.turns.size() ? idx(arcs_of_turn(bias_.turns[turn], manner_)) : 1;
+  Surroundings next(Surroundings now) {
+    constexpr std::array<double, 4> kLoads = {0.0, 5.0, 12.0, 20.0};
+    const bool reload = chance(style_.load_change_share);
+    const auto load = static_cast<std::size_t>(uniform(0.0, kLoads.size()));
+    const bool press_switch = chance(style_.lights_change_share);
+    if (reload) now.payload_kg = kLoads[std::min(load, kLoads.size() - 1)];
+    if (press_switch) now.lights = 1.0 - now.lights;
+    return now;
   }
 
-  void drive(const Vector2& target, double wanted_speed) {
-    const double dt = style_.row_duration;
-    const Vector2 straight = target - pose_.position();
-    const std::size_t segment = motion_.segments.size() + segments_of_turn();
-    const int rows = segment < bias_.segments.size()
-                         ? bias_.segments[segment]
-                         : whole_rows(straight.norm() / wanted_speed, dt);
-    const int ramp_rows = std::min(static_cast<int>(std::lround(style_.ramp / dt)), rows / 2);
-    const std::vector<double> profile = speed_profile(rows, ramp_rows);
-    LegShape shape = draw_shape(profile, straight.norm());
-    shape.end = end_on_course(shape, profile);
-    const Vector2 way =
-        manner_.turning_radius > 0.0 ? turn_in_arcs(target, shape) : turn_on_spot(target, shape);
-    const double length = way.norm() / shape.end.norm();
+ private:
+  const DrivingStyle& style_;
+  const DrivingManner& manner_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
 
-    const double offset = pose_.heading - shape.headings.front();
-    const double speed = length / (rows * dt);
-    rows_of_segment(rows);
-    for (int k = 1; k <= rows; ++k) {
-      const double share = profile[idx(k - 1)];
-      drive_row(length / rows * share, speed * share, offset + shape.headings[idx(k - 1)],
-                offset + shape.headings[idx(k)]);
+/// What a path is laid by.
+struct PathRules {
+  const DrivingStyle& style;
+  const PathBias& bias;
+  const DrivingManner& manner;
+};
+
+struct PlannedLeg {
+  Vector2 target;               ///< m
+  Vector2 sensor;               ///< what is to be there at its end, from the axle; robot axes, m
+  Vector2 course;               ///< where it leads, robot axes, of length 1
+  std::vector<double> profile;  ///< of its rows, shares of the mean speed
+  LegShape shape;
+};
+
+/// From here to where the axle must stop for the sensor to be on the target: that depends on the
+/// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
+Vector2 way_to(const Vector2& target, const PlannedLeg& leg, const Pose& here) {
+  const Vector2 straight = target - here.position();
+  if (leg.sensor.isZero(0.0)) return straight;
+  Vector2 way = straight;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const double arrival = direction(way) - direction(leg.shape.end) + leg.shape.headings.back();
+    way = straight - rotation(arrival) * leg.sensor;
+  }
+  return way;
+}
+
+/// What is to be turned before a leg of this shape leads there, rad.
+double turn_to(const Vector2& way, const LegShape& shape, const Pose& here) {
+  const double turned = direction(way) - direction(shape.end);
+  return wrap_angle(turned + shape.headings.front() - here.heading);
+}
+
+/// How many segments the next turn has, by an earlier path.
+std::size_t segments_of_turn(const TrueMotion& motion, const PathRules& rules) {
+  const std::vector<double>& turns = rules.bias.turns;
+  const std::size_t turn = motion.turns.size();
+  return turn < turns.size() ? idx(arcs_of_turn(turns[turn], rules.manner)) : 1;
+}
+
+/// Of the leg that comes after the next turn; `straight`: its length, m.
+std::vector<double> profile_of_leg(double straight, double wanted_speed, const TrueMotion& motion,
+                                   const PathRules& rules) {
+  const double dt = rules.style.row_duration;
+  const int rows = rules.bias.rows_of(motion.segments.size() + segments_of_turn(motion, rules),
+                                      whole_rows(straight / wanted_speed, dt));
+  return speed_profile(rows,
+                       std::min(static_cast<int>(std::lround(rules.style.ramp / dt)), rows / 2));
+}
+
+/// Where the leg leads if it is 1 m long, its course and the slip of its rows considered.
+Vector2 end_on_course(const PlannedLeg& leg, const TrueMotion& motion, const PathRules& rules) {
+  if (rules.bias.slip.empty()) {
+    if (leg.course.y() == 0.0) return leg.course.x() * leg.shape.end;
+    return leg.course.x() * leg.shape.end + leg.course.y() * quarter_turn(leg.shape.end);
+  }
+  std::size_t first = motion.rows.size();
+  for (std::size_t k = 0; k < segments_of_turn(motion, rules); ++k) {
+    first += idx(rules.bias.rows_of(motion.segments.size() + k, 0));
+  }
+  Vector2 end = Vector2::Zero();
+  for (std::size_t k = 0; k < leg.profile.size(); ++k) {
+    const Vector2 ahead = unit_step(leg.shape.headings[k], leg.shape.headings[k + 1]);
+    end += leg.profile[k] / static_cast<double>(leg.profile.size()) *
+           rules.bias.step_of(1.0, ahead, leg.course, first + k);
+  }
+  return end;
+}
+
+/// Where a spin by an angle, which is next, will leave the robot by its jumps, from here.
+Vector2 jumped(double angle, const MotionSoFar& so_far, const PathBias& bias) {
+  const TrueMotion& motion = so_far.motion();
+  Vector2 sum = Vector2::Zero();
+  const int rows = bias.rows_of(motion.segments.size(), 0);
+  for (int k = 0; k < rows; ++k) {
+    const double from = so_far.pose().heading + angle * k / rows;
+    sum += bias.jump_of(motion.rows.size() + idx(k)) * unit_step(from, from + angle / rows);
+  }
+  return sum;
+}
+
+/// Where the leg has to lead after a spin, m.
+Vector2 way_after_spin(const PlannedLeg& leg, const MotionSoFar& so_far, const PathBias& bias) {
+  const Pose& here = so_far.pose();
+  Vector2 way = way_to(leg.target, leg, here);
+  for (int pass = 0; pass < kPasses && !bias.jump.empty(); ++pass) {
+    const double turn = turn_to(way, leg.shape, here);
+    way = way_to(leg.target - jumped(turn, so_far, bias), leg, here);
+  }
+  return way;
+}
+
+/// A turn in arcs, and where the leg has to lead after it, m.
+struct TurnInArcs {
+  double turn = 0.0;  ///< rad
+  std::vector<int> rows;
+  Vector2 way;
+};
+
+/// From here, m, by a turn in arcs, which is next.
+Vector2 moved_by_arcs(double turn, const std::vector<int>& rows, const MotionSoFar& so_far,
+                      const PathRules& rules) {
+  Vector2 sum = Vector2::Zero();
+  double heading = so_far.pose().heading;
+  std::size_t at = so_far.motion().rows.size();
+  for (const ArcRow& row : turning_arcs(turn, rules.manner.turning_radius, rows)) {
+    sum += rules.bias.step_of(row.way, unit_step(heading, heading + row.turn), {1.0, 0.0}, at++);
+    heading += row.turn;
+  }
+  return sum;
+}
+
+/// As way_after_spin, where the arcs, at so many rad/s, take the robot off its place.
+TurnInArcs turn_in_arcs(const PlannedLeg& leg, double about, const std::vector<double>& rates,
+                        const MotionSoFar& so_far, const PathRules& rules) {
+  const std::vector<int>& known = rules.bias.segments;
+  const std::span<const int> earlier =
+      std::span(known).subspan(std::min(known.size(), so_far.motion().segments.size()));
+  const auto rows_of = [&](double turn) {
+    return rows_of_arcs(turn, rates, rules.style.row_duration, earlier);
+  };
+  TurnInArcs result{about, {}, {}};
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const Vector2 moved = moved_by_arcs(result.turn, rows_of(result.turn), so_far, rules);
+    result.way = way_to(leg.target - moved, leg, so_far.pose());
+    result.turn = about + wrap_angle(turn_to(result.way, leg.shape, so_far.pose()) - about);
+  }
+  result.rows = rows_of(result.turn);
+  return result;
+}
+
+/// The path so far, to which segments are added.
+class Path {
+ public:
+  Path(const Mesh& mesh, const PathRules& rules, std::uint64_t seed)
+      : mesh_(mesh),
+        rules_(rules),
+        draws_(rules.style, rules.manner, seed),
+        so_far_(rules.style, rules.bias, draws_.uniform(0.0, 2.0 * pi)) {}
+
+  void start_at(int landmark) {
+    so_far_.start_at(stop_near(landmark) - sensor());
+    so_far_.surround(draws_.next(so_far_.surroundings()));
+    if (rules_.style.first_rest > 0.0) so_far_.rest(rules_.style.first_rest);
+    so_far_.stop(landmark);
+  }
+
+  /// Drives from the landmark where the robot stands to another; `spin_first` turns it round twice
+  /// to the left and twice to the right before.
+  void go(int landmark, bool spin_first) {
+    const DrivingStyle& style = rules_.style;
+    if (draws_.chance(style.rest_share)) {
+      so_far_.rest(draws_.uniform(style.shortest_rest, style.longest_rest));
     }
-  }
-
-  /// What is to be turned before a leg of this shape leads there, rad.
-  [[nodiscard]] double turn_to(const Vector2& way, const LegShape& shape) const {
-    const double turned = direction(way) - direction(shape.end);
-    return wrap_angle(turned + shape.headings.front() - pose_.heading);
-  }
-
-  /// Returns where the leg has to lead then, m.
-  Vector2 turn_on_spot(const Vector2& target, const LegShape& shape) {
-    Vector2 way = way_to(target, shape);
-    for (int pass = 0; pass < kPasses && !bias_.jump.empty(); ++pass) {
-      way = way_to(target - jumped(turn_to(way, shape)), shape);
+    if (spin_first) {
+      turn_round(4.0 * pi);
+      turn_round(-4.0 * pi);
     }
-    spin(turn_to(way, shape));
-    return way;
+    const Vector2 target = stop_near(landmark);
+    const double speed = draws_.uniform(style.slowest, style.fastest);
+    const bool has_corner = draws_.chance(style.corner_share);
+    const double side = draws_.uniform(-1.0, 1.0);
+    const Vector2 course = draws_.course();
+    if (has_corner) {
+      const Vector2 here = so_far_.pose().position();
+      const Vector2 way = target - here;
+      const Vector2 corner = here + 0.5 * way + side * style.corner_reach * quarter_turn(way);
+      drive({corner, Vector2::Zero(), course, {}, {}}, speed);
+    }
+    drive({target, sensor(), course, {}, {}}, speed);
+    so_far_.stop(landmark);
+    if (style.overrun > 0.0) so_far_.drive_on(style.overrun, speed, course);
+    so_far_.surround(draws_.next(so_far_.surroundings()));
   }
 
-  /// The same where the arcs take the robot off its place. Their number is an earlier path's.
-  Vector2 turn_in_arcs(const Vector2& target, const LegShape& shape) {
-    const Vector2 course = std::exchange(course_, Vector2(1.0, 0.0));
-    Vector2 way = way_to(target, shape);
-    const std::size_t at = motion_.turns.size();
-    const double about = at < bias_.turns.size() ? bias_.turns[at] : turn_to(way, shape);
-    std::vector<double> rates(idx(arcs_of_turn(about, manner_)));
-    for (double& rate : rates) rate = uniform(style_.slowest_turn, style_.fastest_turn);
-    double turn = about;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      way = way_to(target - moved_by_arcs(turn, rates), shape);
-      turn = about + wrap_angle(turn_to(way, shape) - about);
-    }
-    const std::vector<int> rows = rows_of_arcs(turn, rates);
-    motion_.turns.push_back(about);
-    motion_.segments.insert(motion_.segments.end(), rows.begin(), rows.end());
-    for (const ArcRow& row : turning_arcs(turn, manner_.turning_radius, rows)) {
-      drive_row(row.way, row.way / style_.row_duration, pose_.heading, pose_.heading + row.turn);
-    }
-    course_ = course;
-    return way;
+  [[nodiscard]] TrueMotion take() {
+    if (rules_.style.last_rest > 0.0) so_far_.rest(rules_.style.last_rest);
+    return so_far_.motion();
   }
 
-  /// Of a turn, which is next.
-  [[nodiscard]] std::vector<int> rows_of_arcs(double turn, const std::vector<double>& rates) const {
-    const std::size_t known = std::min(bias_.segments.size(), motion_.segments.size());
-    return trussmap::rows_of_arcs(turn, rates, style_.row_duration,
-                                  std::span(bias_.segments).subspan(known));
-  }
+ private:
+  Vector2 stop_near(int landmark) { return mesh_.positions[idx(landmark)] + draws_.standing(); }
 
-  /// From here, m.
-  [[nodiscard]] Vector2 moved_by_arcs(double turn, const std::vector<double>& rates) const {
-    Vector2 sum = Vector2::Zero();
-    double heading = pose_.heading;
-    std::size_t at = motion_.rows.size();
-    for (const ArcRow& row :
-         turning_arcs(turn, manner_.turning_radius, rows_of_arcs(turn, rates))) {
-      sum += step_of(row.way, unit_step(heading, heading + row.turn), at++);
-      heading += row.turn;
-    }
-    return sum;
+  /// The next stop's, as seen from the axle, in the axes of a robot of heading 0.
+  [[nodiscard]] Vector2 sensor() const {
+    return rules_.bias.sensor_at(so_far_.motion().stops.size());
   }
 
   /// On the spot, or in circles.
   void turn_round(double angle) {
-    if (manner_.turning_radius == 0.0) return spin(angle);
-    course_ = {1.0, 0.0};
-    const double rate = uniform(style_.slowest_turn, style_.fastest_turn);
-    const int rows = rows_of_segment(whole_rows(std::abs(angle) / rate, style_.row_duration));
-    for (const ArcRow& row : turning_arcs(angle, manner_.turning_radius, {rows})) {
-      drive_row(row.way, row.way / style_.row_duration, pose_.heading, pose_.heading + row.turn);
-    }
+    const double radius = rules_.manner.turning_radius;
+    const double rate = draws_.turn_rate();
+    if (radius == 0.0) return so_far_.spin(angle, rate);
+    so_far_.circle(angle, radius, rate);
   }
 
-  /// Where the leg leads if it is 1 m long, its course and the slip of its rows considered.
-  [[nodiscard]] Vector2 end_on_course(const LegShape& shape,
-                                      const std::vector<double>& profile) const {
-    if (bias_.slip.empty()) {
-      if (course_.y() == 0.0) return course_.x() * shape.end;
-      return course_.x() * shape.end + course_.y() * quarter_turn(shape.end);
-    }
-    std::size_t first = motion_.rows.size();
-    for (std::size_t k = 0; k < segments_of_turn(); ++k) {
-      const std::size_t segment = motion_.segments.size() + k;
-      if (segment < bias_.segments.size()) first += idx(bias_.segments[segment]);
-    }
-    Vector2 end = Vector2::Zero();
-    for (std::size_t k = 0; k < profile.size(); ++k) {
-      const Vector2 ahead = unit_step(shape.headings[k], shape.headings[k + 1]);
-      end += profile[k] / static_cast<double>(profile.size()) * step_of(1.0, ahead, first + k);
-    }
-    return end;
+  /// Turns to a leg, whose shape is still to be drawn, and drives it.
+  void drive(PlannedLeg leg, double wanted_speed) {
+    const double straight = (leg.target - so_far_.pose().position()).norm();
+    leg.profile = profile_of_leg(straight, wanted_speed, so_far_.motion(), rules_);
+    leg.shape = draws_.shape(leg.profile, straight);
+    leg.shape.end = end_on_course(leg, so_far_.motion(), rules_);
+    const Vector2 way = rules_.manner.turning_radius > 0.0 ? turn_in_arcs_to(leg) : spin_to(leg);
+    const double offset = so_far_.pose().heading - leg.shape.headings.front();
+    std::vector<double> headings = leg.shape.headings;
+    for (double& heading : headings) heading = offset + heading;
+    so_far_.drive(way.norm() / leg.shape.end.norm(), leg.course, leg.profile, headings);
   }
 
-  /// From here to where the axle must stop for the sensor to be on the target: that depends on the
-  /// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
-  [[nodiscard]] Vector2 way_to(const Vector2& target, const LegShape& shape) const {
-    Vector2 straight = target - pose_.position();
-    const Vector2 ahead = arriving_ ? sensor() : Vector2::Zero();
-    if (ahead.isZero(0.0)) return straight;
-    Vector2 way = straight;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      const double arrival = direction(way) - direction(shape.end) + shape.headings.back();
-      way = straight - rotation(arrival) * ahead;
-    }
+  /// Returns where the leg has to lead then, m.
+  Vector2 spin_to(const PlannedLeg& leg) {
+    const Vector2 way = way_after_spin(leg, so_far_, rules_.bias);
+    so_far_.spin(turn_to(way, leg.shape, so_far_.pose()), draws_.turn_rate());
     return way;
   }
 
-  /// Straight on.
-  void drive_on(double length, double wanted_speed) {
-    const int rows = rows_of_segment(whole_rows(length / wanted_speed, style_.row_duration));
-    for (int k = 0; k < rows; ++k) {
-      drive_row(length / rows, length / (rows * style_.row_duration), pose_.heading, pose_.heading);
-    }
+  /// The same in arcs. Their number is an earlier path's.
+  Vector2 turn_in_arcs_to(const PlannedLeg& leg) {
+    const std::vector<double>& turns = rules_.bias.turns;
+    const std::size_t at = so_far_.motion().turns.size();
+    const Vector2 way = way_to(leg.target, leg, so_far_.pose());
+    const double about = at < turns.size() ? turns[at] : turn_to(way, leg.shape, so_far_.pose());
+    std::vector<double> rates(idx(arcs_of_turn(about, rules_.manner)));
+    for (double& rate : rates) rate = draws_.turn_rate();
+    const TurnInArcs arcs = turn_in_arcs(leg, about, rates, so_far_, rules_);
+    so_far_.turn_in_arcs(about, arcs.turn, rules_.manner.turning_radius, arcs.rows);
+    return arcs.way;
   }
 
   const Mesh& mesh_;
-  const DrivingStyle& style_;
-  const PathBias& bias_;
-  const DrivingManner& manner_;
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
-  double warm_at_ = 0.0;         ///< phase of the temperature, rad
-  bool arriving_ = false;        ///< driving to a landmark, not to a corner
-  Vector2 course_ = {1.0, 0.0};  ///< where the leg leads, robot axes
-  Pose pose_;
-  Surroundings surroundings_;
-  TrueMotion motion_;
+  PathRules rules_;
+  PathDraws draws_;
+  MotionSoFar so_far_;
 };
 
 }  // namespace
+
+Vector2 PathBias::step_of(double way, const Vector2& ahead, const Vector2& course,
+                          std::size_t row) const {
+  const Vector2 step = way * ahead;
+  Vector2 moved = course.x() * step;
+  if (course.y() != 0.0) moved += course.y() * quarter_turn(step);
+  if (!slip.empty()) moved += slip_of(row) * course.x() * quarter_turn(step);
+  return moved;
+}
 
 TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const DrivingStyle& style,
                     std::uint64_t seed, const PathBias& bias, const DrivingManner& manner) {
@@ -389,7 +341,7 @@ TrueMotion lay_path(const Mesh& mesh, const std::vector<int>& walk, const Drivin
   const auto spins_until = [&](std::size_t leg) {
     return leg * static_cast<std::size_t>(style.full_spins) / legs;
   };
-  Path path(mesh, style, seed, bias, manner);
+  Path path(mesh, {style, bias, manner}, seed);
   path.start_at(walk.front());
   for (std::size_t k = 0; k < legs; ++k) {
     path.go(walk[k + 1], spins_until(k + 1) > spins_until(k));

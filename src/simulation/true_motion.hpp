@@ -34,6 +34,24 @@ struct PathBias {
   std::vector<Vector2> sensor;  ///< per stop: what meets the landmark, from the axle; robot axes, m
   std::vector<int> segments;    ///< rows of each segment, of an earlier path of the same seed
   std::vector<double> turns;    ///< likewise TrueMotion::turns
+
+  [[nodiscard]] double slip_of(std::size_t row) const {
+    return row < slip.size() ? slip[row] : 0.0;
+  }
+  [[nodiscard]] double jump_of(std::size_t row) const {
+    return row < jump.size() ? jump[row] : 0.0;
+  }
+  [[nodiscard]] Vector2 sensor_at(std::size_t stop) const {
+    return stop < sensor.size() ? sensor[stop] : Vector2::Zero();
+  }
+  [[nodiscard]] int rows_of(std::size_t segment, int otherwise) const {
+    return segment < segments.size() ? segments[segment] : otherwise;
+  }
+
+  /// Where so much way on a course (robot axes, of length 1) takes the robot whose axis ahead is
+  /// this on average, and the slip of the row with it.
+  [[nodiscard]] Vector2 step_of(double way, const Vector2& ahead, const Vector2& course,
+                                std::size_t row) const;
 };
 
 /// Lays the path along a walk (landmarks of the mesh, successive ones different). The robot starts
