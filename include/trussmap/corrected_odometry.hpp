@@ -80,9 +80,9 @@ class CorrectedOdometry {
  public:
   /// Effects without coefficients count as 0; one that is `per_session` must have those of one
   /// session. Throws std::invalid_argument, naming the effect, where it has no shape, a number of
-  /// coefficients that does not match, or a shape with a variable that the robot does not supply;
-  /// and where a covariate's name is a variable's already, the wheelbase is not positive, or the
-  /// robot has not the columns or lengths of its drive.
+  /// coefficients that does not match, a shape with a variable that the robot does not supply, or
+  /// is of another drive than the robot's; and where a covariate's name is a variable's already,
+  /// the wheelbase is not positive, or the robot has not the columns or lengths of its drive.
   explicit CorrectedOdometry(const Model& model, const OdometryInputs& inputs = {});
   ~CorrectedOdometry();
   CorrectedOdometry(CorrectedOdometry&&) noexcept;

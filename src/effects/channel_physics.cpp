@@ -3,8 +3,10 @@
 #include "effects/channel_physics.hpp"
 
 #include "effects/channel_record.hpp"
+#include "text/number_text.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace trussmap {
 
@@ -35,6 +37,13 @@ bool is_recordable(Channel channel) {
 bool is_of_drive(Channel channel, const Robot& robot) {
   const auto of_drive = record_of(channel).of_drive;
   return of_drive == nullptr || of_drive(robot);
+}
+
+void require_of_drive(const Effect& effect, const Robot& robot) {
+  if (is_of_drive(effect.channel, robot)) return;
+  throw std::invalid_argument(joined("effect \"", effect.name, "\": channel \"",
+                                     name_of(effect.channel), "\" is of another drive than ",
+                                     name_of(robot.drive)));
 }
 
 DrivePattern drive_pattern(Channel channel, double g, const RowMotion& row) {

@@ -51,6 +51,8 @@ enum class ActsOn { drives, readings, views };
 /// Whether the robot's drive has what the channel acts on: one of its wheels, its steering, a way
 /// to the side, a left and a right wheel.
 [[nodiscard]] bool is_of_drive(Channel channel, const Robot& robot);
+/// Throws std::invalid_argument, naming the effect, where it is not.
+void require_of_drive(const Effect& effect, const Robot& robot);
 
 /// What is added to a whole row.
 struct DrivePattern {

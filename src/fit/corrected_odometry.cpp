@@ -227,7 +227,9 @@ class __attribute__((visibility("hidden"))) CorrectedOdometry::State {
         inputs_(checked(std::move(inputs))),
         effects_(model.effects, inputs_.covariates),
         covariates_(inputs_.covariates.size(), kAbsent),
-        now_{RowReckoner({}, inputs_.compass)} {}
+        now_{RowReckoner({}, inputs_.compass)} {
+    for (const Effect& effect : model.effects) require_of_drive(effect, model.robot);
+  }
 
   CorrectedRow drive(const WheelRow& row, std::span<const double> covariates) {
     at_hand_.check(row);

@@ -10,6 +10,8 @@
 #include "trussmap/model_file.hpp"
 #include "trussmap/write_files.hpp"
 
+#include <stdexcept>
+
 #include <fmt/format.h>
 
 namespace trussmap {
@@ -140,11 +142,11 @@ Model model_of(const toml::table& root, const std::string& file) {
   try {
     Model model = read_sections(root);
     for (const Effect& effect : model.effects) {
-      if (is_of_drive(effect.channel, model.robot)) continue;
-      throw TomlFault{
-          static_cast<std::size_t>(effect.line),
-          fmt::format("effect \"{}\": channel \"{}\" is of another drive than {}", effect.name,
-                      name_of(effect.channel), name_of(model.robot.drive))};
+      try {
+        require_of_drive(effect, model.robot);
+      } catch (const std::invalid_argument& error) {
+        throw TomlFault{static_cast<std::size_t>(effect.line), error.what()};
+      }
     }
     return model;
   } catch (const TomlFault& fault) {

@@ -204,6 +204,20 @@ TEST(CorrectedOdometry, RatesOfARealRobotAreLateAndNothingElse) {
   expect_late_only(read.recording, read.model.robot, Channel::advance, "arc_angle", -0.1);
 }
 
+/// Two wheels have no steering that could be scaled.
+TEST(CorrectedOdometry, RefusesEffectsOfAnotherDrive) {
+  Model model;
+  model.effects.push_back(catalogue_effect("steering gain"));
+  try {
+    const CorrectedOdometry odometry(model);
+    FAIL() << "taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "effect \"steering gain\": channel \"steer_gain\" is of another drive than "
+                 "differential");
+  }
+}
+
 /// Without a compass rows make up the pose; each has the covariance of its own arc.
 TEST(CorrectedOdometry, RowsMakeUpThePose) {
   const Recording recording = simulated(false);
