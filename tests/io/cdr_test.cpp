@@ -6,7 +6,6 @@
 
 #include "io/bag_lines.hpp"
 
-
 #include <gtest/gtest.h>
 
 namespace trussmap {
