@@ -100,7 +100,7 @@ struct ScaleSums::Free {
     force.col(0) = by_place.col(0);
     force.rightCols<2>() =
         by_place.col(0) * modes[n].t.transpose() + by_place.rightCols<2>() * modes[n].L.transpose();
-    f.segment<kUnknowns>(kUnknowns * rank[n]) +=
+    f.segment<kUnknowns>(Eigen::Index{kUnknowns} * rank[n]) +=
         Eigen::Map<const Eigen::Matrix<double, kUnknowns, 1>>(force.data());
   }
   [[nodiscard]] GroupForce numbers(std::size_t n) const {
