@@ -284,6 +284,7 @@ std::vector<NoiseTest> test_noise_laws(const FitState& fit, const ScoreTest& tes
   NoiseLikelihood likelihood(fit, apart);
   const std::vector<TestedLaw> laws = test_laws(fit, tests, apart, likelihood);
   std::vector<NoiseTest> result;
+  result.reserve(laws.size());
   for (const TestedLaw& one : laws) result.push_back(one.test);
   const auto claim = [&](std::size_t k) {
     return result[k].score - (k < laws.size() ? laws[k].law.margin : 0.0);

@@ -104,7 +104,7 @@ struct PlannedLeg {
 /// From here to where the axle must stop for the sensor to be on the target: that depends on the
 /// heading of arrival, which depends on the way. Far shorter than the way, a lever converges.
 Vector2 way_to(const Vector2& target, const PlannedLeg& leg, const Pose& here) {
-  const Vector2 straight = target - here.position();
+  Vector2 straight = target - here.position();
   if (leg.sensor.isZero(0.0)) return straight;
   Vector2 way = straight;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -298,7 +298,7 @@ class Path {
 
   /// Returns where the leg has to lead then, m.
   Vector2 spin_to(const PlannedLeg& leg) {
-    const Vector2 way = way_after_spin(leg, so_far_, rules_.bias);
+    Vector2 way = way_after_spin(leg, so_far_, rules_.bias);
     so_far_.spin(turn_to(way, leg.shape, so_far_.pose()), draws_.turn_rate());
     return way;
   }
