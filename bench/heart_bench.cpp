@@ -66,20 +66,12 @@ std::vector<SeedErrors> all_seeds(const TourOptions& options) {
   return run_tour_seeds(options, numbers);
 }
 
-Mesh uneven_mesh(int side, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> step(1.0, 10.0);
-  const auto lines = [&] {
-    std::vector<double> at{0.0};
-    while (static_cast<int>(at.size()) < side) at.push_back(at.back() + step(random));
-    return at;
-  };
-  const std::vector<double> x = lines();
-  return mesh_of_lines(x, lines());
-}
-
+/// Of this spacing, m, or uneven.
 Mesh mesh_of(int side, bool uneven, double spacing, std::uint64_t seed) {
-  return uneven ? uneven_mesh(side, seed) : even_mesh({side, side}, spacing);
+  if (!uneven) return even_mesh({side, side}, spacing);
+  std::mt19937_64 random(seed);
+  const std::vector<double> x = random_lines(side, 1.0, 10.0, random);
+  return mesh_of_lines(x, random_lines(side, 1.0, 10.0, random));
 }
 
 /// What is left of an error after tour 3: of the elastic map, and of the optimal one, which says

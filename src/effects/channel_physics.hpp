@@ -61,6 +61,14 @@ struct DrivePattern {
   double turn = 0.0;     ///< rad more turn
   double compass = 0.0;  ///< rad by which the reading exceeds the heading
   double excess = 0.0;   ///< rad that the gyro's turn is more beyond the wheels'
+
+  void add(double times, const DrivePattern& unit) {
+    advance += times * unit.advance;
+    slip += times * unit.slip;
+    turn += times * unit.turn;
+    compass += times * unit.compass;
+    excess += times * unit.excess;
+  }
 };
 
 using ViewVector = Eigen::Matrix<double, 9, 1>;  ///< a ViewPattern's numbers, in its order
@@ -81,6 +89,18 @@ struct ViewPattern {
   [[nodiscard]] ViewVector vector() const {
     return (ViewVector() << ahead, left, heading, range, range_scale, bearing, x, y, yaw)
         .finished();
+  }
+
+  void add(double times, const ViewPattern& unit) {
+    ahead += times * unit.ahead;
+    left += times * unit.left;
+    heading += times * unit.heading;
+    range += times * unit.range;
+    range_scale += times * unit.range_scale;
+    bearing += times * unit.bearing;
+    x += times * unit.x;
+    y += times * unit.y;
+    yaw += times * unit.yaw;
   }
 };
 

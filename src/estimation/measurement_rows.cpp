@@ -173,18 +173,7 @@ ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offse
   ViewPattern sum;
   for (std::size_t k = 0; k < border.size(); ++k) {
     const ViewPattern* pattern = unit_view_of(border[k], one);
-    if (pattern == nullptr) continue;
-    const ViewPattern& unit = *pattern;
-    const double a = offsets[static_cast<Eigen::Index>(k)];
-    sum.ahead += a * unit.ahead;
-    sum.left += a * unit.left;
-    sum.heading += a * unit.heading;
-    sum.range += a * unit.range;
-    sum.range_scale += a * unit.range_scale;
-    sum.bearing += a * unit.bearing;
-    sum.x += a * unit.x;
-    sum.y += a * unit.y;
-    sum.yaw += a * unit.yaw;
+    if (pattern != nullptr) sum.add(offsets[static_cast<Eigen::Index>(k)], *pattern);
   }
   return sum;
 }

@@ -30,13 +30,7 @@ DrivePattern sum_at(const EffectParameters& border, const Eigen::VectorXd& offse
   for (std::size_t k = 0; k < border.size(); ++k) {
     const auto& drives = border[k].drives;
     if (drives.empty() || drives[session].empty()) continue;
-    const double a = offsets[static_cast<Eigen::Index>(k)];
-    const DrivePattern& unit = drives[session][row];
-    sum.advance += a * unit.advance;
-    sum.slip += a * unit.slip;
-    sum.turn += a * unit.turn;
-    sum.compass += a * unit.compass;
-    sum.excess += a * unit.excess;
+    sum.add(offsets[static_cast<Eigen::Index>(k)], drives[session][row]);
   }
   return sum;
 }

@@ -52,10 +52,7 @@ DrivePattern OnlineEffects::drive(const OnlineFacts& facts, const Pose& middle,
   DrivePattern more;
   drives_.fill(facts.row, middle, facts.covariates);
   for (const OnlineTerm& term : drives_.all()) {
-    const DrivePattern unit = drive_pattern(term.channel, drives_.value(term), shown);
-    more.advance += term.coefficient * unit.advance;
-    more.slip += term.coefficient * unit.slip;
-    more.turn += term.coefficient * unit.turn;
+    more.add(term.coefficient, drive_pattern(term.channel, drives_.value(term), shown));
   }
   return more;
 }
@@ -81,13 +78,7 @@ ViewPattern OnlineEffects::view(const OnlineFacts& facts, const Pose& end) const
   ViewPattern sum;
   for (const OnlineTerm& term : views.all()) {
     const double g = term.coefficient * views.value(term);
-    const ViewPattern more = view_pattern(term.channel, g, 0.0, 0.0);
-    sum.ahead += more.ahead;
-    sum.left += more.left;
-    sum.range += more.range;
-    sum.range_scale += more.range_scale;
-    sum.bearing += more.bearing;
-    sum.yaw += more.yaw;
+    sum.add(1.0, view_pattern(term.channel, g, 0.0, 0.0));
   }
   return sum;
 }

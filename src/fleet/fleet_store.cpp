@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "store/database.hpp"
+#include "store/store_file.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/fleet.hpp"
@@ -41,17 +42,6 @@ auto naming(const fs::path& file, const Call& call) {
   } catch (const std::invalid_argument& error) {
     throw InputError(file.string(), 0, joined("is a damaged fleet store: ", error.what()));
   }
-}
-
-fs::path place_of(const fs::path& file) {
-  if (file.empty()) throw InputError("fleet store", 0, "has no name, expected a file");
-  std::error_code failed;
-  fs::path place = fs::absolute(file, failed);
-  if (failed) throw InputError(file.string(), 0, "cannot be found: " + failed.message());
-  if (fs::is_directory(place, failed)) {
-    throw InputError(file.string(), 0, "is a folder, expected a fleet store");
-  }
-  return place;
 }
 
 // Lists of numbers as their bytes, lists of columns as fields and records.
@@ -288,7 +278,7 @@ void gather(std::map<DayKey, ShardRow>& rows, const fs::path& shard,
 }  // namespace
 
 void add_to_fleet(const fs::path& file, const FleetRow& row, bool replace) {
-  const fs::path place = place_of(file);
+  const fs::path place = place_of_database(file, "fleet store");
   naming(file, [&] {
     const Database database(place, Database::Access::write);
     in_turn(database, [&] {
@@ -308,7 +298,7 @@ void add_to_fleet(const fs::path& file, const FleetRow& row, bool replace) {
 }
 
 std::vector<FleetRow> read_fleet(const fs::path& file) {
-  const fs::path place = place_of(file);
+  const fs::path place = place_of_database(file, "fleet store");
   return naming(file, [&] {
     const Database database(place, Database::Access::read);
     database.run(kPatience);
@@ -323,7 +313,7 @@ std::size_t merge_fleets(const fs::path& out, const std::vector<fs::path>& shard
   if (rows.empty()) {
     throw InputError(out.string(), 0, "would have no rows, expected some in shards");
   }
-  const fs::path place = place_of(out);
+  const fs::path place = place_of_database(out, "fleet store");
   return naming(out, [&] {
     const Database database(place, Database::Access::write);
     std::size_t count = 0;

@@ -69,15 +69,6 @@ std::vector<RowRates> rates_shown(const TrueMotion& motion, const ChannelGains& 
   return rates;
 }
 
-void check_drive(const std::vector<Effect>& effects, const Robot& robot) {
-  for (const Effect& effect : effects) {
-    if (is_of_drive(effect.channel, robot)) continue;
-    throw std::invalid_argument(
-        fmt::format("effect \"{}\": channel \"{}\" is of another drive than {}", effect.name,
-                    name_of(effect.channel), name_of(robot.drive)));
-  }
-}
-
 }  // namespace
 
 ChannelGains channel_gains(const std::vector<Effect>& effects, const MotionVariables& variables) {
@@ -107,7 +98,7 @@ MotionUnderEffects lay_path_under(const Mesh& mesh, const std::vector<int>& walk
                                   const DrivingStyle& style, const Robot& robot,
                                   const std::vector<Effect>& effects, Rates rates,
                                   std::uint64_t seed) {
-  check_drive(effects, robot);
+  for (const Effect& effect : effects) require_of_drive(effect, robot);
   const DrivingManner manner = manner_of(robot);
   MotionUnderEffects result;
   result.motion = lay_path(mesh, walk, style, seed, {}, manner);

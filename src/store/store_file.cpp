@@ -30,14 +30,20 @@ bool is_map_store(const fs::path& file) {
   return ending == ".db" || ending == ".sqlite" || ending == ".sqlite3";
 }
 
-fs::path place_of_store(const fs::path& file) {
-  if (file.empty()) throw InputError("map store", 0, "has no name, expected a file");
+fs::path place_of_database(const fs::path& file, const std::string& kind) {
+  if (file.empty()) throw InputError(kind, 0, "has no name, expected a file");
   std::error_code failed;
   fs::path place = fs::absolute(file, failed);
   if (failed) throw InputError(file.string(), 0, "cannot be found: " + failed.message());
   if (fs::is_directory(place, failed)) {
-    throw InputError(file.string(), 0, "is a folder, expected a map store");
+    throw InputError(file.string(), 0, "is a folder, expected a " + kind);
   }
+  return place;
+}
+
+fs::path place_of_store(const fs::path& file) {
+  fs::path place = place_of_database(file, "map store");
+  std::error_code failed;
   constexpr std::uintmax_t kHeader = 100;  // bytes of the smallest database
   const std::uintmax_t size = fs::file_size(place, failed);
   if (!failed && size > 0 && size < kHeader) throw InputError(file.string(), 0, "is no map store");

@@ -15,8 +15,12 @@
 
 namespace trussmap {
 
-/// With a folder in front: SQLite gives a meaning of its own to some names, and takes a byte for
-/// nothing. Throws InputError where no store can be.
+/// With a folder in front: SQLite gives a meaning of its own to some names. `kind` of store in
+/// words. Throws InputError where no file can be.
+[[nodiscard]] std::filesystem::path place_of_database(const std::filesystem::path& file,
+                                                      const std::string& kind);
+
+/// Of a map store; SQLite takes a byte for nothing. Throws InputError where no store can be.
 [[nodiscard]] std::filesystem::path place_of_store(const std::filesystem::path& file);
 
 /// For as long as it is held nobody else writes. Throws InputError.

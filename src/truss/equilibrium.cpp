@@ -196,12 +196,9 @@ double Equilibrium::evaluate(const ElasticTruss& truss) {
 
 /// The factor goes with the truss, or is made anew.
 void Equilibrium::follow(const ElasticTruss& truss) {
-  const auto is_worn = [&] {
-    return truss.joints() > static_cast<int>(unknown_.size()) ||
-           cholesky_.factor_nonzeros() > kMostGrowth * nonzeros_ + kFewNonzeros ||
-           std::ssize(changed_) > kFewTurned;
-  };
-  if (!factored_ || is_worn()) {
+  if (!factored_ || truss.joints() > static_cast<int>(unknown_.size()) ||
+      cholesky_.factor_nonzeros() > kMostGrowth * nonzeros_ + kFewNonzeros ||
+      std::ssize(changed_) > kFewTurned) {
     factorise(truss);
     return;
   }
