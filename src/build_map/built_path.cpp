@@ -28,7 +28,7 @@ PathTie tie_of(const FitState& fit, const Measurement& one) {
   const Vector2 error =
       measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error.head<2>();
   PathTie tie;
-  tie.loop = one.kind == MeasurementKind::loop;
+  tie.loop = is_tie(one);
   tie.t = fit.problem.poses[pose(one.from)].t;
   tie.misfit = error.norm();
   if (tie.loop) {
@@ -50,7 +50,7 @@ void add_ties(const FitState& fit, std::vector<BuiltPath>& paths) {
     const Measurement& one = fit.problem.measurements[k];
     const bool out = next < left_out.size() && idx(left_out[next]) == k;
     if (out) ++next;
-    if (one.kind != MeasurementKind::fix && one.kind != MeasurementKind::loop) continue;
+    if (!is_tie(one) && !(is_robots_place(one) && may_be_wrong(one))) continue;
     PathTie tie = tie_of(fit, one);
     tie.left_out = out;
     paths[idx(one.session)].ties.push_back(tie);

@@ -84,9 +84,8 @@ double extent_of(const LandmarkGraph& map) {
 }
 
 int sightings_of(const RecordingProblem& problem) {
-  return static_cast<int>(
-      std::count_if(problem.measurements.begin(), problem.measurements.end(),
-                    [](const Measurement& one) { return is_sighting(one.kind); }));
+  return static_cast<int>(std::count_if(problem.measurements.begin(), problem.measurements.end(),
+                                        [](const Measurement& one) { return is_sighting(one); }));
 }
 
 std::string signed_text(double value, int digits) {
@@ -141,13 +140,13 @@ Supports supports_of(const FitState& fit) {
   std::vector<int> lost(problem.landmarks.size());
   std::vector<bool> stood_on(problem.landmarks.size());
   for (const Measurement& one : problem.measurements) {
-    if (!is_sighting(one.kind)) continue;
+    if (!is_sighting(one)) continue;
     ++kept[idx(one.to)];
-    if (one.kind == MeasurementKind::standing) stood_on[idx(one.to)] = true;
+    if (is_standing(one)) stood_on[idx(one.to)] = true;
   }
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = problem.measurements[idx(k)];
-    if (!is_sighting(one.kind)) continue;
+    if (!is_sighting(one)) continue;
     --kept[idx(one.to)];
     ++lost[idx(one.to)];
   }
@@ -165,7 +164,7 @@ void tell_left_out(const FitState& fit, std::vector<std::string>& warnings) {
   int count = 0;
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = fit.problem.measurements[idx(k)];
-    if (is_sighting(one.kind)) continue;
+    if (is_sighting(one)) continue;
     if (++count <= kNamed) warnings.push_back(describe(fit.problem, one) + " was left out");
   }
   if (count > kNamed) {
@@ -354,7 +353,7 @@ MapQuality quality_of(const BuiltMap& built, const MapFitState& best, const Reck
   result.misclosure_share = median(reckoned.misclosures);
   result.sightings = sightings_of(best.fit.problem);
   const auto lost = std::count_if(fit.left_out.begin(), fit.left_out.end(), [&](int k) {
-    return is_sighting(best.fit.problem.measurements[idx(k)].kind);
+    return is_sighting(best.fit.problem.measurements[idx(k)]);
   });
   result.left_out_share = static_cast<double>(lost) / std::max(1, result.sightings);
   result.from_adjusted =

@@ -57,22 +57,8 @@ std::vector<FreedError> freed_of(const FitState& fit) {
 double misfit_of(const FitState& fit, const Measurement& one) {
   const RecordingState& state = fit.adjustment.state;
   const Pose& pose = state.poses[idx(one.from - fit.problem.landmark_count())];
-  const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
-  const Matrix2 R = rotation(pose.heading);
-  const Vector2 to =
-      state.landmarks[idx(one.to)] - pose.position() - R * Vector2(view.ahead, view.left);
-  if (one.kind == MeasurementKind::standing) return to.norm();
-  if (one.kind == MeasurementKind::cartesian_view) {
-    return (to - R * rotation(view.heading) * one.value.head<2>()).norm();
-  }
-  if (one.kind == MeasurementKind::direction) {
-    const double sight = pose.heading + view.heading - view.bearing + one.value[0];
-    return to.norm() * std::abs(wrap_angle(direction(to) - sight));
-  }
-  const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
-  if (one.rows == 1) return std::abs(to.norm() - range);
-  const double bearing = one.value[1] - view.bearing + view.heading;
-  return (to - R * (range * rotation(bearing).col(0))).norm();
+  return one.kind->missed(one, pose, state.landmarks[idx(one.to)],
+                          view_of(fit.columns.border, offsets_of(fit), one));
 }
 
 }  // namespace
@@ -108,7 +94,7 @@ std::vector<RejectedSighting> left_out_of(const FitState& fit) {
   const RecordingProblem& problem = fit.problem;
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = problem.measurements[idx(k)];
-    if (!is_sighting(one.kind)) continue;
+    if (!is_sighting(one)) continue;
     result.push_back({problem.sessions[idx(one.session)],
                       problem.poses[idx(one.from - problem.landmark_count())].t,
                       problem.landmarks[idx(one.to)], misfit_of(fit, one)});
@@ -124,7 +110,7 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
     guides[s].yaw_left_out.resize(fit.recordings[s].sightings.size());
   }
   for (const Measurement& one : fit.problem.measurements) {
-    if (!is_sighting(one.kind)) continue;
+    if (!is_sighting(one)) continue;
     const std::size_t pose = idx(one.from - fit.problem.landmark_count());
     guides[idx(one.session)].headings[one.source] = fit.adjustment.state.poses[pose].heading;
   }
@@ -132,8 +118,8 @@ std::vector<SessionGuide> guides_of(const FitState& fit) {
     const Measurement& one = fit.problem.measurements[idx(k)];
     if (one.session < 0) continue;
     SessionGuide& guide = guides[idx(one.session)];
-    if (is_sighting(one.kind)) guide.left_out[one.source] = true;
-    if (one.kind == MeasurementKind::sighting_yaw) guide.yaw_left_out[one.source] = true;
+    if (is_sighting(one)) guide.left_out[one.source] = true;
+    if (is_yaw(one)) guide.yaw_left_out[one.source] = true;
   }
   return guides;
 }

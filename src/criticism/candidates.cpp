@@ -40,41 +40,33 @@ double suits(const CatalogueEntry& entry, const std::string& covariate) {
 
 /// What was measured, and so can show an effect.
 struct Measured {
-  bool compass = false;
-  bool gyro = false;
-  bool views = false;
-  bool bearings = false;  ///< alone
-  bool yaws = false;
-  bool truth = false;
-  bool fixes = false;
-  bool points = false;  ///< sightings or truth
+  std::set<std::string_view> noises;  ///< keys of its noise
+  bool points = false;                ///< sightings or truth
+
+  [[nodiscard]] bool has(std::string_view noise) const { return noises.contains(noise); }
 };
 
 Measured measured_in(const RecordingProblem& problem) {
-  Measured has;
+  Measured result;
   for (const Measurement& one : problem.measurements) {
-    has.compass |= one.kind == MeasurementKind::segment && one.rows == 4;
-    has.gyro |= one.kind == MeasurementKind::gyro;
-    has.views |= one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
-    has.bearings |= one.kind == MeasurementKind::direction;
-    has.yaws |= one.kind == MeasurementKind::sighting_yaw;
-    has.truth |= one.kind == MeasurementKind::truth;
-    has.fixes |= one.kind == MeasurementKind::fix;
-    has.points |= is_sighting(one.kind) || one.kind == MeasurementKind::truth;
+    for (Eigen::Index row = 0; row < one.rows; ++row) {
+      result.noises.insert(one.kind->noise(row));
+    }
+    result.points = result.points || is_sighting(one) || gives_pose(one);
   }
-  return has;
+  return result;
 }
 
-bool is_possible(Channel channel, const Measured& has, const Robot& robot) {
+bool is_possible(Channel channel, const Measured& measured, const Robot& robot) {
   if (!is_of_drive(channel, robot)) return false;
-  if (channel == Channel::compass) return has.compass;
-  if (channel == Channel::gyro || channel == Channel::gyro_scale) return has.gyro;
-  if (channel == Channel::truth_heading) return has.truth;
-  if (acts_on_fixes(channel)) return has.fixes;
-  if (channel == Channel::sighting_yaw) return has.yaws;
-  if (acts_on(channel) == ActsOn::views && !has.points) return false;
-  if (channel == Channel::bearing) return has.views || has.bearings;
-  if (channel == Channel::range || channel == Channel::range_scale) return has.views;
+  if (channel == Channel::compass) return measured.has("compass");
+  if (channel == Channel::gyro || channel == Channel::gyro_scale) return measured.has("gyro");
+  if (channel == Channel::truth_heading) return measured.has("truth");
+  if (acts_on_fixes(channel)) return measured.has("fix");
+  if (channel == Channel::sighting_yaw) return measured.has("yaw");
+  if (acts_on(channel) == ActsOn::views && !measured.points) return false;
+  if (channel == Channel::bearing) return measured.has("range") || measured.has("bearing");
+  if (channel == Channel::range || channel == Channel::range_scale) return measured.has("range");
   return true;
 }
 
@@ -118,12 +110,12 @@ std::vector<Shape> bells_over(const Spread& u) {
 struct Grounds {
   const ShapeContext& context;
   Area area;
-  Measured has;
+  Measured measured;
   std::vector<Spread> variables;
   std::vector<std::string> covariates;
 
   [[nodiscard]] bool allow(Channel channel) const {
-    return is_possible(channel, has, context.robot());
+    return is_possible(channel, measured, context.robot());
   }
   [[nodiscard]] bool is_covariate(const std::string& name) const {
     return std::find(covariates.begin(), covariates.end(), name) != covariates.end();

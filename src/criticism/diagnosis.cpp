@@ -149,11 +149,7 @@ class Diagnostician {
   [[nodiscard]] Unobservable why_unobservable(const Tested& one) const {
     const auto& measurements = state_.problem.measurements;
     Unobservable result{one.candidate.effect};
-    result.positions =
-        std::any_of(measurements.begin(), measurements.end(), [](const Measurement& measured) {
-          return measured.kind == MeasurementKind::survey ||
-                 measured.kind == MeasurementKind::truth || measured.kind == MeasurementKind::fix;
-        });
+    result.positions = std::any_of(measurements.begin(), measurements.end(), is_in_map_frame);
     const Score& score = one.score;
     const bool never = std::all_of(score.largest.begin(), score.largest.end(),
                                    [](double most) { return most == 0.0; });

@@ -39,8 +39,7 @@ void add_left_out(const FitState& fit, const ScoreTest& tests, std::vector<Ranke
     const Eigen::MatrixXd R =
         Eigen::MatrixXd::Identity(one.rows, one.rows) + fitted->covariance(whole, k);
     Ranked event;
-    event.test.kind =
-        one.kind == MeasurementKind::survey ? EventKind::landmark : EventKind::sighting;
+    event.test.kind = is_surveyed_place(one) ? EventKind::landmark : EventKind::sighting;
     event.test.name = describe(fit.problem, one);
     event.test.change = EventChange::left_out;
     event.test.score = r.dot(R.inverse() * r);

@@ -30,7 +30,7 @@ class Legs {
       : problem_(fit.problem), state_(fit.adjustment.state), system_(system) {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = problem_.measurements[k];
-      if (one.kind == MeasurementKind::segment) segment_from_[one.from] = k;
+      if (is_segment(one)) segment_from_[one.from] = k;
     }
   }
 
@@ -108,8 +108,8 @@ std::vector<LandmarkMisfit> landmarks_of(const RecordingProblem& problem,
   std::map<int, LandmarkMisfit> landmarks;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    const bool survey = one.kind == MeasurementKind::survey;
-    if (!survey && !is_sighting(one.kind)) continue;
+    const bool survey = is_surveyed_place(one);
+    if (!survey && !is_sighting(one)) continue;
     const int node = survey ? one.from : one.to;
     LandmarkMisfit& landmark = landmarks[node];
     landmark.landmark = problem.landmarks[idx(node)];

@@ -93,7 +93,7 @@ std::vector<NoiseLaw> of_drives(const FitState& fit, const ShapeContext& context
   context.prepare(ShapeContext::Instant::middle);
   parallel_for(problem.measurements.size(), [&](std::size_t k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::segment) return;
+    if (!is_segment(one)) return;
     const std::size_t session = idx(one.session);
     const std::vector<SegmentRow>& rows = problem.segments[one.source];
     const SegmentNoise segment = believed_noise(problem, k, fit.recordings, fit.model,
@@ -114,21 +114,21 @@ double stated_of(const std::string& law, const Noise& noise) {
   if (law == "per metre") return mean_wheel_noise(noise);
   if (law == "per metre, left wheel") return noise.left;
   if (law == "per metre, right wheel") return noise.right;
-  if (law == "compass") return noise.compass;
-  if (law == "sighting") return noise.sighting;
-  if (law == "range") return noise.range;
-  if (law == "fix") return noise.fix;
-  if (law == "yaw") return noise.yaw;
-  return law == "bearing" ? noise.bearing : 0.0;
+  for (const ReadingKey& one : reading_keys()) {
+    if (law == one.name) return noise.*one.member;
+  }
+  return 0.0;
 }
 
-/// The reading's own noise, row by row of each measurement.
-NoiseLaw of_readings(const FitState& fit, const char* name, const char* unit,
-                     const std::function<double(const Measurement&, int row)>& variance) {
-  NoiseLaw law{name, unit, 0.0, kReadings, {}};
+/// The reading's own noise, of those that do not answer for it themselves.
+NoiseLaw of_reading(const FitState& fit, const ReadingKey& noise) {
+  NoiseLaw law{noise.name, noise.unit, 0.0, kReadings, {}};
   for (const Measurement& one : fit.problem.measurements) {
     Matrix4 added = Matrix4::Zero();
-    for (int row = 0; row < one.rows; ++row) added(row, row) = variance(one, row);
+    for (Eigen::Index row = 0; row < one.rows && !one.own_sd; ++row) {
+      if (one.kind->noise(row) != noise.name) continue;
+      added(row, row) = is_segment(one) ? 1.0 / readings_of(fit.problem.segments[one.source]) : 1.0;
+    }
     law.added.push_back(added);
   }
   return law;
@@ -138,32 +138,7 @@ NoiseLaw of_readings(const FitState& fit, const char* name, const char* unit,
 
 std::vector<NoiseLaw> noise_laws(const FitState& fit, const ShapeContext& context) {
   std::vector<NoiseLaw> laws = of_drives(fit, context);
-  const auto add = [&](const char* name, const char* unit, auto&& variance) {
-    laws.push_back(of_readings(fit, name, unit, variance));
-  };
-  add("compass", "rad", [&](const Measurement& one, int row) {
-    if (one.kind != MeasurementKind::segment || row != 3) return 0.0;
-    return 1.0 / readings_of(fit.problem.segments[one.source]);
-  });
-  add("sighting", "m", [](const Measurement& one, int) {
-    return one.kind == MeasurementKind::standing ? 1.0 : 0.0;
-  });
-  add("range", "m", [](const Measurement& one, int row) {
-    const bool near = one.kind == MeasurementKind::cartesian_view;
-    return near || (one.kind == MeasurementKind::view && row == 0) ? 1.0 : 0.0;
-  });
-  add("fix", "m", [&](const Measurement& one, int) {
-    if (one.kind != MeasurementKind::fix) return 0.0;
-    // One that states its own sd answers for it.
-    return std::isnan(fit.recordings[idx(one.session)].fixes[one.source].sd) ? 1.0 : 0.0;
-  });
-  add("bearing", "rad", [](const Measurement& one, int row) {
-    const bool alone = one.kind == MeasurementKind::direction;
-    return alone || (one.kind == MeasurementKind::view && row == 1) ? 1.0 : 0.0;
-  });
-  add("yaw", "rad", [](const Measurement& one, int) {
-    return one.kind == MeasurementKind::sighting_yaw ? 1.0 : 0.0;
-  });
+  for (const ReadingKey& one : reading_keys()) laws.push_back(of_reading(fit, one));
   std::erase_if(laws, [](const NoiseLaw& law) {
     for (const Matrix4& added : law.added) {
       if (!added.isZero(0.0)) return false;

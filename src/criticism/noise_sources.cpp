@@ -36,35 +36,6 @@ Eigen::VectorXd redundancies(const RecordingSystem& system) {
 
 }  // namespace
 
-const char* noise_source(MeasurementKind kind, Eigen::Index row) {
-  switch (kind) {
-    case MeasurementKind::segment:
-      return row == 3 ? "compass" : "wheels";
-    case MeasurementKind::gyro:
-      return "gyro";
-    case MeasurementKind::standing:
-      return "sighting";
-    case MeasurementKind::view:
-      return row == 0 ? "range" : "bearing";
-    case MeasurementKind::direction:
-      return "bearing";
-    case MeasurementKind::cartesian_view:
-      return "range";
-    case MeasurementKind::sighting_yaw:
-      return "yaw";
-    case MeasurementKind::survey:
-    case MeasurementKind::survey_heading:
-      return "survey";
-    case MeasurementKind::truth:
-      return row == 2 ? "truth_heading" : "truth";
-    case MeasurementKind::fix:
-      return "fix";
-    case MeasurementKind::loop:
-      return row == 2 ? "loop_heading" : "loop";
-  }
-  return "";
-}
-
 std::vector<SourceCalibration> calibrate_sources(const FitState& fit, const ScoreTest& tests) {
   constexpr double kLeastRedundancy = 5.0;
   const RecordingSystem& system = tests.system();
@@ -74,7 +45,7 @@ std::vector<SourceCalibration> calibrate_sources(const FitState& fit, const Scor
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     const Measurement& one = fit.problem.measurements[k];
     for (int row = 0; row < one.rows; ++row) {
-      const std::string source = noise_source(one.kind, row);
+      const std::string source(one.kind->noise(row));
       if (!sums.contains(source)) order.push_back(source);
       auto& [squares, checked] = sums[source];
       const double r = system.residuals()[system.first_row(k) + row];
@@ -99,11 +70,11 @@ std::vector<SourceResiduals> residuals_by_source(const RecordingProblem& problem
     const Measurement& measured = problem.measurements[idx(one.measurement)];
     for (Eigen::Index row = 0; row < measured.rows; ++row) {
       if (!std::isfinite(one.minimal_detectable[row])) continue;
-      const char* source = noise_source(measured.kind, row);
+      const std::string_view source = measured.kind->noise(row);
       auto at = std::find_if(result.begin(), result.end(), [source](const SourceResiduals& other) {
         return other.source == source;
       });
-      if (at == result.end()) at = result.insert(result.end(), {source, {}});
+      if (at == result.end()) at = result.insert(result.end(), {std::string(source), {}});
       at->standardised.push_back(one.standardised[row]);
     }
   }

@@ -12,10 +12,6 @@
 
 namespace trussmap {
 
-/// The source of noise of one row of a measurement: "wheels", "compass", "sighting", "range",
-/// "bearing", "survey", "truth", "truth_heading".
-[[nodiscard]] const char* noise_source(MeasurementKind kind, Eigen::Index row);
-
 /// Sources in the order in which they first appear; those that are hardly checked are left out.
 [[nodiscard]] std::vector<SourceCalibration> calibrate_sources(const FitState& fit,
                                                                const ScoreTest& tests);

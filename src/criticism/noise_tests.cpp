@@ -110,7 +110,7 @@ class ShapeStatistics {
     for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
       const Measurement& one = problem.measurements[k];
       add_measurement(k, one, P);
-      if (one.kind != MeasurementKind::segment || P.left_out(k)) continue;
+      if (!is_segment(one) || P.left_out(k)) continue;
       double path = 0.0;
       for (const SegmentRow& row : problem.segments[one.source]) path += std::abs(row.path);
       if (path < kLeastDrive) continue;

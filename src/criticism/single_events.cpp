@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -49,7 +50,7 @@ class Collector {
   void add_legs() {
     std::map<int, std::size_t> segment_from;
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
-      if (at(k).kind == MeasurementKind::segment) segment_from[at(k).from] = k;
+      if (is_segment(at(k))) segment_from[at(k).from] = k;
     }
     for (const LegSpan& leg : leg_spans(fit_)) {
       const Measurement& from = at(leg.from);
@@ -121,10 +122,11 @@ class Collector {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
       if (projection_.left_out(k) || one.to < 0 || !problem_.is_landmark(one.to)) continue;
-      const EventChange change = one.kind == MeasurementKind::direction ? EventChange::bearing_off
-                                 : one.kind != MeasurementKind::view    ? EventChange::position_off
-                                 : one.rows > 1                         ? EventChange::view_off
-                                                                        : EventChange::range_off;
+      const std::string_view last = one.kind->noise(one.rows - 1);
+      const EventChange change = one.rows == 1 && last == "range" ? EventChange::range_off
+                                 : last != "bearing"              ? EventChange::position_off
+                                 : one.rows > 1                   ? EventChange::view_off
+                                                                  : EventChange::bearing_off;
       events_.push_back(
           {EventKind::sighting,
            describe(problem_, one),
@@ -135,7 +137,7 @@ class Collector {
   void add_surveys() {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
-      if (one.kind != MeasurementKind::survey || projection_.left_out(k)) continue;
+      if (!is_surveyed_place(one) || projection_.left_out(k)) continue;
       events_.push_back(
           {EventKind::landmark,
            problem_.landmarks[idx(one.from)],
@@ -167,7 +169,7 @@ class Collector {
     for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
       const Measurement& one = at(k);
       if (projection_.left_out(k)) continue;
-      if (one.kind == MeasurementKind::survey) surveyed.insert(one.from);
+      if (is_surveyed_place(one)) surveyed.insert(one.from);
       if (one.to < 0 || !problem_.is_landmark(one.to)) continue;
       std::vector<Visit>& of = visits[idx(one.to)];
       if (of.empty() || of.back().pose != one.from) of.push_back({one.session, one.from, {}});

@@ -6,6 +6,7 @@
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
 #include "effects/place_patterns.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "odometry/wheels_and_gyro.hpp"
 #include "statistics/multiple_tests.hpp"
 #include "text/number_text.hpp"
@@ -119,45 +120,29 @@ std::vector<Variable> variables_of(const FitState& fit) {
   return variables;
 }
 
-struct Kind {
-  std::string name;
-  Channel channel = Channel::travel;
-};
-
-std::vector<Kind> kinds_of(const FitState& fit) {
-  std::vector<Kind> kinds{{"stretch", Channel::travel},
-                          {"orientation", Channel::creep},
-                          {"turn", Channel::turn},
-                          {"bend", Channel::difference}};
-  const auto has = [&fit](auto&& what) {
-    return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(), what);
-  };
-  if (has([](const Measurement& one) {
-        return one.kind == MeasurementKind::segment && one.rows == 4;
-      })) {
-    kinds.push_back({"compass", Channel::compass});
+/// Of the drive, of what was measured, and of where the sensor sits.
+std::vector<NamedResidual> residuals_of(const FitState& fit) {
+  std::vector<NamedResidual> all{{"stretch", Channel::travel},
+                                 {"orientation", Channel::creep},
+                                 {"turn", Channel::turn},
+                                 {"bend", Channel::difference}};
+  for (const MeasurementKind* kind : kinds::all()) {
+    int rows = 0;
+    for (const Measurement& one : fit.problem.measurements) {
+      if (one.kind == kind) rows = std::max(rows, one.rows);
+    }
+    if (rows == 0) continue;
+    const std::vector<NamedResidual> own = kind->residuals(rows);
+    all.insert(all.end(), own.begin(), own.end());
   }
-  if (has([](const Measurement& one) { return one.kind == MeasurementKind::gyro; })) {
-    kinds.push_back({"gyro", Channel::gyro});
-  }
-  if (has([](const Measurement& one) { return one.kind == MeasurementKind::view; })) {
-    kinds.push_back({"sighting range", Channel::range});
-    kinds.push_back({"sighting bearing", Channel::bearing});
-  }
-  if (has([](const Measurement& one) { return one.kind == MeasurementKind::direction; })) {
-    kinds.push_back({"bearing", Channel::bearing});
-  }
-  if (has([](const Measurement& one) { return one.kind == MeasurementKind::sighting_yaw; })) {
-    kinds.push_back({"sighting yaw", Channel::sighting_yaw});
-  }
-  kinds.push_back({"sighting ahead", Channel::lever});
-  kinds.push_back({"sighting to the left", Channel::lever_left});
-  return kinds;
+  all.push_back({"sighting ahead", Channel::lever});
+  all.push_back({"sighting to the left", Channel::lever_left});
+  return all;
 }
 
 /// Whether the variable holds the very noise of this residual. The difference of the wheels is the
 /// turn rate: where the robot weaves, its noise decides many a sign.
-bool is_its_own_noise(const Kind& kind, const Variable& variable) {
+bool is_its_own_noise(const NamedResidual& kind, const Variable& variable) {
   return kind.channel == Channel::difference &&
          (variable.name == kTurnSense || variable.name == kSignedTurnRate);
 }
@@ -189,19 +174,19 @@ Eigen::MatrixXd mean_products(const std::vector<Shape>& shapes, const ShapeConte
 }  // namespace
 
 std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
-  const std::vector<Kind> kinds = kinds_of(fit);
+  const std::vector<NamedResidual> residuals = residuals_of(fit);
   const std::vector<Variable> variables = variables_of(fit);
   // Variable by variable, so that its shapes are evaluated once; listed kind by kind.
-  std::vector<std::vector<Trend>> found(kinds.size());
+  std::vector<std::vector<Trend>> found(residuals.size());
   for (const Variable& variable : variables) {
     std::vector<Candidate> candidates;
     std::vector<std::size_t> of;
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-      if (is_its_own_noise(kinds[k], variable)) continue;
+    for (std::size_t k = 0; k < residuals.size(); ++k) {
+      if (is_its_own_noise(residuals[k], variable)) continue;
       candidates.emplace_back();
       Effect& effect = candidates.back().effect;
-      effect.name = kinds[k].name + " against " + variable.name;
-      effect.channel = kinds[k].channel;
+      effect.name = residuals[k].name + " against " + variable.name;
+      effect.channel = residuals[k].channel;
       effect.shape = variable.shapes;
       of.push_back(k);
     }
@@ -210,7 +195,7 @@ std::vector<Trend> find_trends(const FitState& fit, const ScoreTest& tests) {
     visit_scores(tests, candidates, Resolution::exact, [&](std::size_t k, const Score& score) {
       if (score.dof == 0) return;
       Trend trend;
-      trend.kind = kinds[of[k]].name;
+      trend.kind = residuals[of[k]].name;
       trend.against = variable.name;
       trend.effect = candidates[k].effect;
       trend.effect.coefficients = score.coefficients;

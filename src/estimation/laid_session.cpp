@@ -14,14 +14,11 @@ SessionToLay::SessionToLay(const RecordingProblem& session, const EffectParamete
       drive_from(session.poses.size()),
       seen_at(session.poses.size()) {
   for (const Measurement& one : session.measurements) {
-    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::survey_heading ||
-        one.kind == MeasurementKind::gyro) {
-      continue;
-    }
+    if (one.session < 0) continue;
     const std::size_t pose = idx(one.from - session.landmark_count());
-    if (one.kind == MeasurementKind::segment) {
+    if (is_segment(one)) {
       drive_from[pose] = &one;
-    } else {
+    } else if (!is_driven(one)) {
       seen_at[pose].push_back(&one);
     }
   }
@@ -71,7 +68,7 @@ LaidSession lay_backwards(const SessionToLay& session, LaidSession laid, int fir
     const Pose& pose = laid.poses[idx(k)] = compose(laid.poses[idx(k + 1)], inverse(motion));
     for (const Measurement* one : session.seen_at[idx(k)]) {
       if (!locates(*one) || laid.landmarks[idx(one->to)]) continue;
-      laid.landmarks[idx(one->to)] = pose.position() + rotation(pose.heading) * offset_of(*one);
+      laid.landmarks[idx(one->to)] = one->kind->seen_from(*one, pose, {});
     }
   }
   return laid;

@@ -46,66 +46,14 @@ bool is_reading(Channel channel) {
          channel == Channel::sighting_yaw;
 }
 
-Matrix4 white_reading(Channel channel, const Measurement& one) {
-  Matrix4 variance = Matrix4::Zero();
-  if (one.kind == MeasurementKind::fix) {
-    const Eigen::Index axis = channel == Channel::fix_x ? 0 : 1;
-    variance(axis, axis) = 1.0;
-  } else if (one.kind == MeasurementKind::cartesian_view) {
-    const double size = channel == Channel::range ? 1.0 : one.value.head<2>().norm();
-    variance(0, 0) = variance(1, 1) = size * size;
-  } else if (one.kind == MeasurementKind::sighting_yaw) {
-    variance(0, 0) = 1.0;
-  } else if (channel == Channel::bearing) {
-    const int row = one.kind == MeasurementKind::direction ? 0 : 1;
-    variance(row, row) = 1.0;
-  } else {
-    variance(0, 0) = channel == Channel::range ? 1.0 : one.value[0] * one.value[0];
-  }
-  return variance;
-}
-
-bool acts_on_it(Channel channel, const Measurement& one) {
-  if (is_driven(one.kind)) return acts_on(channel) != ActsOn::views;
-  if (acts_on(channel) != ActsOn::views || one.session < 0) return false;
-  if (one.kind == MeasurementKind::loop) return false;
-  if (one.kind == MeasurementKind::fix || acts_on_fixes(channel)) {
-    return one.kind == MeasurementKind::fix && acts_on_fixes(channel);
-  }
-  const bool yaw = one.kind == MeasurementKind::sighting_yaw;
-  if (yaw || channel == Channel::sighting_yaw) {
-    return yaw && (channel == Channel::sighting_yaw || channel == Channel::delay);
-  }
-  if (channel == Channel::range || channel == Channel::range_scale) {
-    return one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
-  }
-  if (channel == Channel::bearing) {
-    return one.kind == MeasurementKind::direction ||
-           (one.kind == MeasurementKind::view && one.rows == 2);
-  }
-  return channel != Channel::truth_heading || one.kind == MeasurementKind::truth;
-}
-
 /// What a unit of g adds to the pattern of a view.
 ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
-  const Channel channel = lasting.channel;
   const Drive& drive = lasting.drive_of(one);
   const std::size_t row = row_at(drive, lasting.time_of(one));
   const double duration = std::max(drive.duration(row), 1e-9);
   const BodyMotion motion = body_motion(drive, row, lasting.robot);
-  ViewVector unit =
-      view_pattern(channel, 1.0, motion.forward / duration, motion.turn / duration).vector();
-  if (one.kind != MeasurementKind::cartesian_view) return unit;
-  // Of a near landmark the offset is measured: its error lies along the sight.
-  const Vector2 away = -one.value.head<2>().normalized();
-  const double size = channel == Channel::range         ? 1.0
-                      : channel == Channel::range_scale ? one.value.head<2>().norm()
-                                                        : 0.0;
-  if (size > 0.0) {
-    unit.setZero();
-    unit.head<2>() = size * away;
-  }
-  return unit;
+  return one.kind->unit_view(lasting.channel, one, motion.forward / duration,
+                             motion.turn / duration);
 }
 
 /// What a unit of g in each row adds to what was driven.
@@ -113,11 +61,10 @@ std::vector<Vector4> unit_rows(const ProcessToLay& lasting, const Measurement& o
   const std::vector<SegmentRow>& rows = lasting.problem.segments[one.source];
   const Drive& drive = lasting.drive_of(one);
   std::vector<Vector4> c =
-      one.kind == MeasurementKind::gyro
-          ? unit_excesses(drive, rows, lasting.problem.gyro_weights[one.source], lasting.channel,
-                          lasting.robot)
-          : unit_columns(drive, rows, lasting.influences[one.source], lasting.channel,
-                         lasting.robot);
+      is_segment(one) ? unit_columns(drive, rows, lasting.influences[one.source], lasting.channel,
+                                     lasting.robot)
+                      : unit_excesses(drive, rows, lasting.problem.gyro_weights[one.source],
+                                      lasting.channel, lasting.robot);
   for (Vector4& row : c) {
     if (one.rows < 4) row[3] = 0.0;
   }
@@ -142,11 +89,11 @@ LaidProcess lay_white(const ProcessToLay& lasting) {
   LaidProcess laid = nothing_of(lasting.problem);
   for (std::size_t k = 0; k < laid.terms.size(); ++k) {
     const Measurement& one = lasting.problem.measurements[k];
-    if (!acts_on_it(lasting.channel, one)) continue;
-    if (is_driven(one.kind)) {
+    if (!one.kind->shows(lasting.channel, one)) continue;
+    if (is_driven(one)) {
       for (const Vector4& row : unit_rows(lasting, one)) laid.within[k] += row * row.transpose();
     } else if (is_reading(lasting.channel)) {
-      laid.within[k] = white_reading(lasting.channel, one);
+      laid.within[k] = one.kind->reading_variance(lasting.channel, one);
     } else {
       laid.terms[k].push_back({static_cast<int>(laid.states.size()), unit_view(lasting, one)});
       laid.states.push_back({});
@@ -165,7 +112,7 @@ Chain chain_of(const ProcessToLay& lasting) {
   const RecordingProblem& problem = lasting.problem;
   std::vector<bool> wanted(problem.poses.size(), false);
   for (const Measurement& one : problem.measurements) {
-    if (acts_on_it(lasting.channel, one)) wanted[lasting.pose_of(one.from)] = true;
+    if (one.kind->shows(lasting.channel, one)) wanted[lasting.pose_of(one.from)] = true;
   }
   if (acts_on(lasting.channel) != ActsOn::views) wanted.assign(wanted.size(), true);
   Chain chain{{}, std::vector<int>(problem.poses.size(), -1)};
@@ -204,9 +151,9 @@ LaidProcess lay_chain(const ProcessToLay& lasting) {
   laid.states = std::move(states);
   for (std::size_t k = 0; k < laid.terms.size(); ++k) {
     const Measurement& one = lasting.problem.measurements[k];
-    if (!acts_on_it(lasting.channel, one)) continue;
+    if (!one.kind->shows(lasting.channel, one)) continue;
     const int state = at_pose[lasting.pose_of(one.from)];
-    if (!is_driven(one.kind)) {
+    if (!is_driven(one)) {
       laid.terms[k].push_back({state, unit_view(lasting, one)});
       continue;
     }
@@ -218,7 +165,7 @@ LaidProcess lay_chain(const ProcessToLay& lasting) {
     laid.within[k] = (0.5 * (laid.within[k] + laid.within[k].transpose())).eval();
     // Which states a segment has must not depend on the length.
     if (by_start.isZero(0.0)) continue;
-    const int end = one.kind == MeasurementKind::gyro ? one.from + 1 : one.to;
+    const int end = is_segment(one) ? one.to : one.from + 1;
     laid.terms[k].push_back(driven_term(state, by_start - keep * K));
     laid.terms[k].push_back(driven_term(at_pose[lasting.pose_of(end)], K));
   }
@@ -256,10 +203,10 @@ LaidProcess lay_constants(const ProcessToLay& lasting) {
   Passes passes;
   for (std::size_t k = 0; k < laid.terms.size(); ++k) {
     const Measurement& one = lasting.problem.measurements[k];
-    if (!acts_on_it(lasting.channel, one)) continue;
+    if (!one.kind->shows(lasting.channel, one)) continue;
     const double t = lasting.time_of(one);
     const std::vector<double>& legs = ends[idx(one.session)];
-    if (is_driven(one.kind)) {
+    if (is_driven(one)) {
       // A rest within a segment parts two legs.
       const std::vector<SegmentRow>& rows = lasting.problem.segments[one.source];
       for (const auto& [leg, sum] : sums_by_leg(rows, unit_rows(lasting, one), t, legs)) {

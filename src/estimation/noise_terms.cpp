@@ -54,7 +54,7 @@ void add_processes(RecordingProblem& problem, const std::vector<Recording>& reco
 }
 
 Vector4 error_by(const Measurement& measurement, const ByView& by_view, const NoiseTerm& term) {
-  if (is_driven(measurement.kind)) return -term.by.head<4>();
+  if (is_driven(measurement)) return -term.by.head<4>();
   return by_view * term.by;
 }
 

@@ -22,9 +22,9 @@ AfarReadings readings_from_afar(const SessionToLay& session, const LaidSession& 
   for (int k = 0; k < count; ++k) {
     const Pose& pose = laid.poses[idx(k)];
     for (const Measurement* one : session.seen_at[idx(k)]) {
-      if (!is_sighting(one->kind) || locates(*one) || laid.landmarks[idx(one->to)]) continue;
+      if (!is_sighting(*one) || locates(*one) || laid.landmarks[idx(one->to)]) continue;
       const double own = std::sqrt(covariance_of(*one)(0, 0));
-      if (one->kind == MeasurementKind::direction) {
+      if (begins_with(*one, "bearing")) {
         found.directions[one->to].push_back(
             {pose.position(), pose.heading + one->value[0], std::hypot(own, kHeadingSd)});
       } else {

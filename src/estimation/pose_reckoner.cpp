@@ -22,24 +22,6 @@ KnownCoefficients prior_of(const EffectParameters& border) {
   return prior;
 }
 
-Eigen::MatrixXd covariance_of(const Measurement& one) {
-  const Eigen::MatrixXd W = one.whitener.topLeftCorner(one.rows, one.rows);
-  return (W.transpose() * W).inverse();
-}
-
-Vector2 offset_of(const Measurement& one) {
-  switch (one.kind) {
-    case MeasurementKind::view:
-      return one.rows == 1 ? Vector2(one.value[0], 0.0)
-                           : Vector2(one.value[0] * rotation(one.value[1]).col(0));
-    case MeasurementKind::standing:
-    case MeasurementKind::cartesian_view:
-      return one.value.head<2>();
-    default:
-      return Vector2::Zero();
-  }
-}
-
 void PoseReckoner::place(const Pose& pose, const Matrix3& covariance,
                          const KnownCoefficients& coefficients) {
   pose_ = pose;
@@ -101,75 +83,38 @@ void PoseReckoner::drive(const Measurement& segment) {
 
 void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correct) {
   for (const Measurement* one : seen) {
-    if (one->kind == MeasurementKind::truth) meet_truth(*one);
+    if (gives_pose(*one)) meet(*one);
   }
-  if (correct) {
-    for (const Measurement* one : seen) {
-      if (one->kind == MeasurementKind::fix) meet_fix(*one);
-      if (is_sighting(one->kind) && landmarks_[idx(one->to)]) meet_landmark(*one);
-      if (one->kind == MeasurementKind::sighting_yaw) meet_orientation(*one);
+  for (const Measurement* one : seen) {
+    if (correct && is_known(*one)) meet(*one);
+  }
+  for (const Measurement* one : seen) {
+    if (locates(*one)) {
+      std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
+      if (!landmark) landmark = one->kind->seen_from(*one, pose_, {});
+    } else if (is_yaw(*one)) {
+      std::optional<double>& orientation = orientations_[idx(one->to - problem_.pose_end())];
+      if (!orientation) orientation = wrap_angle(pose_.heading + one->value[0]);
     }
   }
-  for (const Measurement* one : seen) {
-    if (!locates(*one)) continue;
-    std::optional<Vector2>& landmark = landmarks_[idx(one->to)];
-    if (!landmark) landmark = sighted(*one);
-  }
-  for (const Measurement* one : seen) {
-    if (one->kind != MeasurementKind::sighting_yaw) continue;
-    std::optional<double>& orientation = orientations_[idx(one->to - problem_.pose_end())];
-    if (!orientation) orientation = wrap_angle(pose_.heading + one->value[0]);
-  }
 }
 
-Vector2 PoseReckoner::sighted(const Measurement& one) const {
-  return pose_.position() + rotation(pose_.heading) * offset_of(one);
+bool PoseReckoner::is_known(const Measurement& one) const {
+  if (is_sighting(one)) return landmarks_[idx(one.to)].has_value();
+  if (is_yaw(one)) return orientations_[idx(one.to - problem_.pose_end())].has_value();
+  return is_robots_place(one) && !gives_pose(one);
 }
 
-void PoseReckoner::meet_truth(const Measurement& one) {
-  Eigen::VectorXd innovation = one.value.head<3>();
-  innovation -= Eigen::Vector3d(pose_.x, pose_.y, pose_.heading);
-  innovation[2] = wrap_angle(innovation[2]);
-  update(Eigen::MatrixXd::Identity(3, covariance_.cols()), innovation, covariance_of(one));
-}
-
-/// The antenna is taken to be at the robot, as nearly as a landmark is known.
-void PoseReckoner::meet_fix(const Measurement& one) {
-  Eigen::VectorXd innovation = one.value.head<2>();
-  innovation -= pose_.position();
-  Eigen::MatrixXd R = covariance_of(one);
-  R.diagonal().array() += options_.map_sd * options_.map_sd;
-  update(Eigen::MatrixXd::Identity(2, covariance_.cols()), innovation, R);
-}
-
-void PoseReckoner::meet_landmark(const Measurement& one) {
-  RecordingState state;
-  state.landmarks.assign(problem_.landmarks.size(), Vector2::Zero());
-  Measurement here = one;
-  here.from = problem_.landmark_count();
-  state.landmarks[idx(one.to)] = *landmarks_[idx(one.to)];
-  state.poses = {pose_};
-  const MeasurementRows rows = measurement_rows(problem_, here, state, one.value, {});
-  const Eigen::MatrixXd by_landmark = rows.by_to.topLeftCorner(one.rows, 2);
-  const Eigen::MatrixXd R = covariance_of(one) + options_.map_sd * options_.map_sd * by_landmark *
-                                                     by_landmark.transpose();
+void PoseReckoner::meet(const Measurement& one) {
+  Ends at;
+  at.from = pose_;
+  if (is_sighting(one)) at.landmark = *landmarks_[idx(one.to)];
+  if (is_yaw(one)) at.orientation = *orientations_[idx(one.to - problem_.pose_end())];
+  const MeasurementRows rows = one.kind->rows(one, at, one.value, {});
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(one.rows, covariance_.cols());
   H.leftCols<3>() = rows.by_from.topRows(one.rows);
-  update(H, -rows.error.head(one.rows), R);
-}
-
-/// An orientation is as certain as the heading that it was read from.
-void PoseReckoner::meet_orientation(const Measurement& one) {
-  constexpr double kOrientationSd = 0.05;  // rad
-  const std::optional<double>& orientation = orientations_[idx(one.to - problem_.pose_end())];
-  if (!orientation) return;
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(1, covariance_.cols());
-  H(0, 2) = 1.0;
-  Eigen::VectorXd innovation(1);
-  innovation << wrap_angle(*orientation - one.value[0] - pose_.heading);
-  Eigen::MatrixXd R = covariance_of(one);
-  R.array() += kOrientationSd * kOrientationSd;
-  update(H, innovation, R);
+  update(H, -rows.error.head(one.rows),
+         covariance_of(one) + one.kind->slack(one, rows, options_.map_sd));
 }
 
 void PoseReckoner::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,

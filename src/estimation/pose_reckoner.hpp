@@ -36,12 +36,6 @@ struct KnownCoefficients {
 /// What is known of a border's unknown coefficients before any measurement: their priors.
 [[nodiscard]] KnownCoefficients prior_of(const EffectParameters& border);
 
-/// Covariance of a measurement's rows.
-[[nodiscard]] Eigen::MatrixXd covariance_of(const Measurement& one);
-
-/// Where a sighting has its landmark, m, robot frame; along a bearing of 0 where it has none.
-[[nodiscard]] Vector2 offset_of(const Measurement& one);
-
 struct ReckonerOptions {
   double map_sd = 0.1;  ///< m per coordinate
   double gate = 0.0;    ///< squared standard deviations beyond which a sighting does not correct
@@ -75,11 +69,9 @@ class PoseReckoner {
     Eigen::Matrix<double, 4, Eigen::Dynamic> by_coefficients{4, 0};  ///< of the unknown ones
   };
   [[nodiscard]] Motion motion_of(const Measurement& segment) const;
-  [[nodiscard]] Vector2 sighted(const Measurement& one) const;
-  void meet_truth(const Measurement& one);
-  void meet_fix(const Measurement& one);
-  void meet_landmark(const Measurement& one);
-  void meet_orientation(const Measurement& one);
+  /// Whether what it sees has its place, or needs none.
+  [[nodiscard]] bool is_known(const Measurement& one) const;
+  void meet(const Measurement& one);
   void update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
               const Eigen::MatrixXd& R);
   void doubt();

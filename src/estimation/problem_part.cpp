@@ -14,20 +14,20 @@ struct PartNumbers {
 };
 
 bool lies_within(const RecordingProblem& problem, const Measurement& one, const PoseSpan& span) {
-  if (is_in_map_frame(one.kind) || one.kind == MeasurementKind::survey_heading) return false;
+  if (one.session < 0 || is_in_map_frame(one)) return false;
   const auto inside = [first = problem.pose_node(span.first), &span](int node) {
     return node >= first && node < first + span.count;
   };
-  if (!inside(one.from) || (is_between_poses(one.kind) && !inside(one.to))) return false;
+  if (!inside(one.from) || (is_between_poses(one) && !inside(one.to))) return false;
   // What a segment's gyro says goes with it.
-  return one.kind != MeasurementKind::gyro || inside(one.from + 1);
+  return !is_driven(one) || inside(one.from + 1);
 }
 
 /// What it sees gets its number in the part. False of a yaw whose sighting, just before, is not
 /// kept.
 bool number_seen(const RecordingProblem& problem, const Measurement& one, PartNumbers& numbers,
                  ProblemPart& part) {
-  if (one.kind == MeasurementKind::sighting_yaw) {
+  if (is_yaw(one)) {
     const int whole = one.to - problem.pose_end();
     const int landmark = numbers.landmark[idx(problem.oriented[idx(whole)])];
     if (landmark < 0) return false;
@@ -36,7 +36,7 @@ bool number_seen(const RecordingProblem& problem, const Measurement& one, PartNu
     number = static_cast<int>(part.orientations.size());
     part.orientations.push_back(whole);
     part.problem.oriented.push_back(landmark);
-  } else if (is_sighting(one.kind) && numbers.landmark[idx(one.to)] < 0) {
+  } else if (is_sighting(one) && numbers.landmark[idx(one.to)] < 0) {
     numbers.landmark[idx(one.to)] = static_cast<int>(part.landmarks.size());
     part.landmarks.push_back(one.to);
     part.problem.landmarks.push_back(problem.landmarks[idx(one.to)]);
@@ -49,19 +49,19 @@ void add_renumbered(const RecordingProblem& problem, const Measurement& one,
   const int offset = problem.pose_node(span.first);
   Measurement moved = one;
   moved.from = part.pose_node(one.from - offset);
-  if (is_between_poses(one.kind)) {
+  if (is_between_poses(one)) {
     moved.to = part.pose_node(one.to - offset);
-  } else if (one.kind == MeasurementKind::sighting_yaw) {
+  } else if (is_yaw(one)) {
     moved.to = part.pose_end() + numbers.orientation[idx(one.to - problem.pose_end())];
-  } else if (is_sighting(one.kind)) {
+  } else if (is_sighting(one)) {
     moved.to = numbers.landmark[idx(one.to)];
   }
-  if (one.kind == MeasurementKind::segment) {
+  if (is_segment(one)) {
     part.segments.push_back(problem.segments[one.source]);
     part.gyro_weights.push_back(problem.gyro_weights[one.source]);
   }
   // A gyro's rows come right after their segment.
-  if (is_driven(one.kind)) moved.source = part.segments.size() - 1;
+  if (is_driven(one)) moved.source = part.segments.size() - 1;
   part.measurements.push_back(moved);
 }
 
@@ -84,7 +84,7 @@ ProblemPart part_of(const RecordingProblem& problem, const PoseSpan& span,
   std::vector<const Measurement*> kept;
   for (const Measurement& one : problem.measurements) {
     if (!lies_within(problem, one, span)) continue;
-    if (placed != nullptr && is_sighting(one.kind) && !(*placed)[idx(one.to)]) continue;
+    if (placed != nullptr && is_sighting(one) && !(*placed)[idx(one.to)]) continue;
     if (number_seen(problem, one, numbers, part)) kept.push_back(&one);
   }
   const auto begin = problem.poses.begin() + span.first;
@@ -99,27 +99,23 @@ ProblemPart session_of(const RecordingProblem& problem, const PoseSpan& span) {
   std::vector<Measurement>& measurements = part.problem.measurements;
   for (const Measurement& one : problem.measurements) {
     const int pose = one.from - problem.pose_node(span.first);
-    const bool of_pose = one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix;
-    if (!of_pose || pose < 0 || pose >= span.count) continue;
+    if (!is_robots_place(one) || pose < 0 || pose >= span.count) continue;
     measurements.push_back(one);
     measurements.back().from = part.problem.pose_node(pose);
   }
   if (!has_compass(part.problem)) return part;
-  std::erase_if(measurements, [](const Measurement& one) { return is_of_orientation(one.kind); });
+  std::erase_if(measurements, [](const Measurement& one) { return is_of_orientation(one); });
   part.problem.oriented.clear();
   part.orientations.clear();
   return part;
 }
 
 bool has_compass(const RecordingProblem& problem) {
-  return std::any_of(
-      problem.measurements.begin(), problem.measurements.end(),
-      [](const Measurement& one) { return one.kind == MeasurementKind::segment && one.rows == 4; });
+  return std::any_of(problem.measurements.begin(), problem.measurements.end(), reads_compass);
 }
 
 bool has_loops(const RecordingProblem& problem) {
-  return std::any_of(problem.measurements.begin(), problem.measurements.end(),
-                     [](const Measurement& one) { return one.kind == MeasurementKind::loop; });
+  return std::any_of(problem.measurements.begin(), problem.measurements.end(), is_tie);
 }
 
 }  // namespace trussmap

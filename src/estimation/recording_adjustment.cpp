@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_adjustment.hpp"
 
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/multilateration.hpp"
 #include "estimation/recording_descent.hpp"
 #include "estimation/recording_robust.hpp"
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <string_view>
 
 namespace trussmap {
 namespace {
@@ -113,8 +116,8 @@ std::vector<double> orientation_sds(const RecordingSystem& system, const Recordi
   const std::vector<double> weights = weights_without(left_out, problem.measurements.size());
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (!is_of_orientation(one.kind) || weights[k] == 0.0) continue;
-    const int node = one.kind == MeasurementKind::sighting_yaw ? one.to : one.from;
+    if (!is_of_orientation(one) || weights[k] == 0.0) continue;
+    const int node = is_yaw(one) ? one.to : one.from;
     const std::size_t orientation = idx(node - problem.pose_end());
     sds[orientation] = std::sqrt(std::max(0.0, variances[orientation]));
   }
@@ -143,18 +146,13 @@ RobustFit robust_fit(RecordingSystem& system, const RecordingProblem& problem,
 
 /// In a word: what was left out.
 std::string kinds_left_out(const RecordingProblem& problem, const std::vector<int>& left_out) {
-  const auto any = [&](const auto& is) {
-    return std::any_of(left_out.begin(), left_out.end(),
-                       [&](int k) { return is(problem.measurements[idx(k)].kind); });
-  };
+  std::set<std::string_view> out;
+  for (const int k : left_out) out.insert(problem.measurements[idx(k)].kind->facts().several);
   std::string text;
-  const auto add = [&text](bool there, const char* what) {
-    if (there) text += (text.empty() ? "" : " or ") + std::string(what);
-  };
-  add(any(is_sighting), "sightings");
-  add(any([](MeasurementKind kind) { return kind == MeasurementKind::sighting_yaw; }), "yaws");
-  add(any([](MeasurementKind kind) { return kind == MeasurementKind::fix; }), "fixes");
-  add(any([](MeasurementKind kind) { return kind == MeasurementKind::loop; }), "loops");
+  for (const MeasurementKind* kind : kinds::all()) {
+    const std::string_view several = kind->facts().several;
+    if (out.erase(several) > 0) text.append(text.empty() ? "" : " or ").append(several);
+  }
   return text;
 }
 
@@ -261,9 +259,9 @@ std::vector<std::string> mirror_warnings(const RecordingProblem& problem,
       weights_without(adjustment.left_out, problem.measurements.size());
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::survey) told[idx(one.from)] = true;
-    if (!is_sighting(one.kind) || weights[k] == 0.0) continue;
-    const bool range_alone = one.kind == MeasurementKind::view && one.rows == 1;
+    if (is_surveyed_place(one)) told[idx(one.from)] = true;
+    if (!is_sighting(one) || weights[k] == 0.0) continue;
+    const bool range_alone = one.rows == 1 && begins_with(one, "range");
     if (!range_alone) {
       told[idx(one.to)] = true;
       continue;

@@ -10,15 +10,11 @@
 namespace trussmap {
 namespace {
 
-bool in_map(const Measurement& one) {
-  return is_in_map_frame(one.kind);
-}
-
 void refuse_loose_sessions(const RecordingProblem& problem) {
   const std::vector<int> untied = untied_poses(problem);
   if (untied.empty()) return;
   const bool absolute =
-      std::any_of(problem.measurements.begin(), problem.measurements.end(), in_map);
+      std::any_of(problem.measurements.begin(), problem.measurements.end(), is_in_map_frame);
   const std::string& session = problem.sessions[idx(problem.poses[idx(untied[0])].session)];
   throw SolveError(session + (absolute ? " floats" : " stands apart") +
                    ": no landmark ties it to " +
@@ -34,10 +30,10 @@ std::vector<int> untied_poses(const RecordingProblem& problem, const std::vector
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     if (!weights.empty() && weights[k] == 0.0) continue;
-    if (is_of_orientation(one.kind)) continue;
-    absolute = absolute || in_map(one);
-    if (one.to < 0 && !in_map(one)) continue;
-    ties.push_back({one.from, in_map(one) ? map_frame : one.to});
+    if (is_of_orientation(one)) continue;
+    absolute = absolute || is_in_map_frame(one);
+    if (one.to < 0 && !is_in_map_frame(one)) continue;
+    ties.push_back({one.from, is_in_map_frame(one) ? map_frame : one.to});
   }
   std::vector<int> untied;
   if (problem.poses.empty()) return untied;
@@ -53,32 +49,13 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
   refuse_loose_sessions(problem);
   bool position = false;
   bool direction = false;
-  int fixes = 0;
-  std::set<int> surveyed;
+  std::set<int> places;  // nodes
   for (const Measurement& one : problem.measurements) {
-    switch (one.kind) {
-      case MeasurementKind::survey:
-        position = true;
-        surveyed.insert(one.from);
-        break;
-      case MeasurementKind::survey_heading:
-        direction = true;
-        break;
-      case MeasurementKind::truth:
-        position = direction = true;
-        break;
-      case MeasurementKind::fix:
-        position = true;
-        ++fixes;
-        break;
-      case MeasurementKind::segment:
-        direction = direction || one.rows == 4;
-        break;
-      default:
-        break;
-    }
+    position = position || is_in_map_frame(one);
+    if (is_in_map_frame(one)) places.insert(one.from);
+    direction = direction || gives_pose(one) || reads_compass(one) || is_surveyed_heading(one);
   }
-  direction = direction || surveyed.size() >= 2 || fixes >= 2 || (fixes > 0 && !surveyed.empty());
+  direction = direction || places.size() >= 2;
   const bool any_pose = !problem.poses.empty();
   const bool landmarks = problem.landmark_count() > 0;
   return {!position && landmarks, !direction && any_pose, !position && !landmarks && any_pose};

@@ -3,10 +3,9 @@
 #include "estimation/recording_problem.hpp"
 
 #include "estimation/gyro_excess.hpp"
-#include "estimation/measured_rows.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/noise_states.hpp"
 #include "estimation/session_instants.hpp"
-#include "linalg/dense.hpp"
 #include "parallel/parallel_for.hpp"
 #include "recording/time_spans.hpp"
 #include "text/number_text.hpp"
@@ -17,8 +16,6 @@
 #include <set>
 #include <tuple>
 #include <utility>
-
-#include <Eigen/LU>
 
 namespace trussmap {
 namespace {
@@ -57,30 +54,14 @@ SessionSegments segments_of(const SessionPoses& poses, const Drive& drive, const
     const auto& [from, to] = ends[k];
     std::vector<SegmentRow>& rows = segments.rows[k];
     rows = segment_rows(drive, from->first, to->first, model.robot);
-    const SegmentMotion motion = segment_motion(rows);
     Measurement& one = segments.measured[k];
-    one.kind = MeasurementKind::segment;
+    one = kinds::segment_measured(segment_motion(rows),
+                                  segment_covariance(drive, rows, model.robot, model.noise));
     one.from = from->second;
     one.to = to->second;
-    one.rows = std::isnan(motion.mean_heading) ? 3 : 4;
-    one.value << motion.displacement.x, motion.displacement.y, motion.displacement.heading,
-        one.rows == 4 ? motion.mean_heading : 0.0;
-    one.whitener = whitener_of(segment_covariance(drive, rows, model.robot, model.noise), one.rows);
     one.session = poses.session;
   });
   return segments;
-}
-
-Measurement gyro_measured(const GyroExcess& excess, const Measurement& segment) {
-  Measurement one;
-  one.kind = MeasurementKind::gyro;
-  one.from = segment.from;
-  one.rows = excess.rows;
-  one.value = excess.value;
-  one.whitener.topLeftCorner(one.rows, one.rows).setIdentity();
-  one.session = segment.session;
-  one.source = segment.source;
-  return one;
 }
 
 RecordingProblem with_segments(RecordingProblem problem, SessionSegments segments,
@@ -91,7 +72,13 @@ RecordingProblem with_segments(RecordingProblem problem, SessionSegments segment
     GyroExcess excess = gyro_excess(drive, segments.rows[k], model.robot, model.noise);
     problem.segments.push_back(std::move(segments.rows[k]));
     problem.measurements.push_back(one);
-    if (excess.rows > 0) problem.measurements.push_back(gyro_measured(excess, one));
+    if (excess.rows > 0) {
+      Measurement gyro = kinds::gyro_measured(excess);
+      gyro.from = one.from;
+      gyro.session = one.session;
+      gyro.source = one.source;
+      problem.measurements.push_back(gyro);
+    }
     problem.gyro_weights.push_back(std::move(excess.weights));
   }
   return problem;
@@ -119,8 +106,8 @@ GrowingProblem with_sightings(GrowingProblem growing, const std::vector<Sighting
       problem.measurements.push_back(one);
     };
     const int landmark = numbered(growing.landmark_node, sightings[k].landmark, problem.landmarks);
-    add(measured_by(sightings[k], noise), landmark);
-    if (const auto yaw = yaw_measured(sightings[k], noise)) {
+    add(kinds::measured_by(sightings[k], noise), landmark);
+    if (const auto yaw = kinds::yaw_measured(sightings[k], noise)) {
       add(*yaw, numbered(growing.orientation, landmark, problem.oriented));
     }
   }
@@ -139,16 +126,16 @@ RecordingProblem with_places(RecordingProblem problem, const Recording& recordin
     problem.measurements.push_back(one);
   };
   for (const std::size_t k : used.truth) {
-    add(measured_by(recording.truth[k], noise), recording.truth[k].t, k);
+    add(kinds::measured_by(recording.truth[k], noise), recording.truth[k].t, k);
   }
   for (const std::size_t k : used.fixes) {
-    add(measured_by(recording.fixes[k], noise), recording.fixes[k].t, k);
+    add(kinds::measured_by(recording.fixes[k], noise), recording.fixes[k].t, k);
   }
   for (std::size_t k = 0; used.loops && k < recording.loops.size(); ++k) {
     const Loop& loop = recording.loops[k];
     const auto to = poses.at.find(loop.t2);
     if (to == poses.at.end()) continue;
-    Measurement one = measured_by(loop, noise);
+    Measurement one = kinds::measured_by(loop, noise);
     one.to = to->second;
     add(one, loop.t, k);
   }
@@ -191,33 +178,33 @@ GrowingProblem with_surveys(GrowingProblem growing, const std::vector<Recording>
       const auto node = growing.landmark_node.find(point.landmark);
       if (node == growing.landmark_node.end()) continue;
       if (places.emplace(node->second, point.x, point.y).second) {
-        add(measured_by(point, noise), node->second, k);
+        add(kinds::measured_by(point, noise), node->second, k);
       }
       const auto orientation = growing.orientation.find(node->second);
       if (std::isnan(point.heading) || orientation == growing.orientation.end()) continue;
       if (headings.emplace(node->second, point.x, point.y, point.heading).second) {
-        add(heading_measured(point, noise), orientation->second, k);
+        add(kinds::heading_measured(point, noise), orientation->second, k);
       }
     }
   }
   return growing;
 }
 
+/// Of what its type counts.
+int node_of(const RecordingProblem& problem, NodeType type, int number) {
+  switch (type) {
+    case NodeType::pose:
+      return problem.pose_node(number);
+    case NodeType::orientation:
+      return problem.pose_end() + number;
+    case NodeType::landmark:
+    case NodeType::none:
+      break;
+  }
+  return number;
+}
+
 }  // namespace
-
-Matrix4 whitener_of(const Matrix4& covariance, int rows) {
-  Matrix4 result = Matrix4::Zero();
-  const Eigen::MatrixXd block = covariance.topLeftCorner(rows, rows);
-  result.topLeftCorner(rows, rows) = DenseCholesky(block).inverse_factor();
-  return result;
-}
-
-Matrix4 whitener_with(const Matrix4& whitener, const Matrix4& more, int rows) {
-  if (more.isZero(0.0)) return whitener;
-  Matrix4 colour = Matrix4::Zero();
-  colour.topLeftCorner(rows, rows) = whitener.topLeftCorner(rows, rows).inverse();
-  return whitener_of(colour * colour.transpose() + more, rows);
-}
 
 RecordingProblem make_problem(const std::vector<Recording>& recordings, const Model& model,
                               const ProblemOptions& options) {
@@ -228,61 +215,36 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
   if (options.survey) growing = with_surveys(std::move(growing), recordings, model.noise);
   RecordingProblem problem = std::move(growing.problem);
   for (Measurement& one : problem.measurements) {
-    if (one.kind == MeasurementKind::survey) continue;
-    if (one.kind == MeasurementKind::survey_heading) {
-      one.from += problem.pose_end();
-      continue;
-    }
-    one.from = problem.pose_node(one.from);
-    if (one.kind == MeasurementKind::sighting_yaw) one.to += problem.pose_end();
-    if (is_between_poses(one.kind)) one.to = problem.pose_node(one.to);
+    one.from = node_of(problem, one.kind->facts().from, one.from);
+    one.to = node_of(problem, one.kind->facts().to, one.to);
   }
   add_processes(problem, recordings, model);
   return problem;
 }
 
 std::string describe(const RecordingProblem& problem, const Measurement& measurement) {
-  const auto time = [&](int node) {
-    return fixed_text(problem.poses[idx(node - problem.landmark_count())].t, 3);
+  const KindFacts& facts = measurement.kind->facts();
+  std::string words(facts.words);
+  const auto at = [&](const char* when, int node) {
+    words += when + fixed_text(problem.time_of(node), 3) + " s";
   };
-  const std::string session = problem.sessions.size() > 1 && measurement.session >= 0
-                                  ? " of " + problem.sessions[idx(measurement.session)]
-                                  : std::string();
-  switch (measurement.kind) {
-    case MeasurementKind::segment:
-      return "drive from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
-             session;
-    case MeasurementKind::gyro:
-      return "gyro from t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::standing:
-      return "standing on landmark " + problem.landmarks[idx(measurement.to)] +
-             " at t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::view:
-    case MeasurementKind::cartesian_view:
-    case MeasurementKind::direction:
-      return "sight of landmark " + problem.landmarks[idx(measurement.to)] +
-             " at t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::sighting_yaw:
-      return "yaw of landmark " + problem.landmark_of(measurement.to) +
-             " at t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::survey_heading:
-      return "surveyed heading of landmark " + problem.landmark_of(measurement.from);
-    case MeasurementKind::survey:
-      return "survey of landmark " + problem.landmarks[idx(measurement.from)];
-    case MeasurementKind::truth:
-      return "truth at t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::fix:
-      return "fix at t = " + time(measurement.from) + " s" + session;
-    case MeasurementKind::loop:
-      return "loop from t = " + time(measurement.from) + " s to " + time(measurement.to) + " s" +
-             session;
+  if (is_sighting(measurement)) words += " landmark " + problem.landmarks[idx(measurement.to)];
+  if (is_surveyed_place(measurement)) {
+    words += " landmark " + problem.landmarks[idx(measurement.from)];
   }
-  return "measurement";
-}
-
-bool locates(const Measurement& one) {
-  return is_sighting(one.kind) && one.kind != MeasurementKind::direction &&
-         !(one.kind == MeasurementKind::view && one.rows == 1);
+  if (is_yaw(measurement)) words += " landmark " + problem.landmark_of(measurement.to);
+  if (is_surveyed_heading(measurement)) {
+    words += " landmark " + problem.landmark_of(measurement.from);
+  }
+  if (facts.from == NodeType::pose) {
+    const bool lasts = is_driven(measurement) || is_between_poses(measurement);
+    at(lasts ? " from t = " : " at t = ", measurement.from);
+  }
+  if (is_between_poses(measurement)) at(" to ", measurement.to);
+  if (problem.sessions.size() > 1 && measurement.session >= 0) {
+    words += " of " + problem.sessions[idx(measurement.session)];
+  }
+  return words;
 }
 
 }  // namespace trussmap

@@ -11,29 +11,12 @@
 //     orientations of landmarks with a yaw         after the poses                    1 each
 //     coefficients of effects                      none: a dense border               1 each
 //
-//   measurement          between                rows
-//     segment              pose, next pose        motion (3), mean compass innovation (0 or 1)
-//     gyro               segment's first pose   gyro against wheels (1 to 4, gyro_excess.hpp); of
-//                                               no pose, but of effects
-//     standing           pose, landmark         landmark in robot axes (2)                  m
-//     view               pose, landmark         range, bearing (2), range alone (1)         m, rad
-//     cartesian_view          pose, landmark         the same in robot axes (2): a range within
-//     three
-//                                               of its sds says nothing of a direction      m
-//     direction          pose, landmark         bearing alone (1)                           rad
-//     sighting_yaw       pose, orientation      the landmark's axis less the heading (1)    rad
-//     survey_heading     orientation            in the map (1)                              rad
-//     survey             landmark               x, y (2)                                    m
-//     truth              pose                   x, y, heading (3)                           m, rad
-//     fix                pose                   x, y of the antenna (2)                     m
-//     loop               pose, pose             the second in the first's axes (3)          m, rad
-//
-// A segment's four numbers share the wheels' noise (segment_motion.hpp); all else is independent.
-// What was driven before the first and after the last of what is measured carries nothing and is
-// left out.
+// Measurements lie between nodes; each is of a kind (measurement_kind.hpp, kinds/). A segment's
+// four numbers share the wheels' noise (segment_motion.hpp); all else is independent. What was
+// driven before the first and after the last of what is measured carries nothing and is left out.
 #pragma once
 
-#include "estimation/segment_motion.hpp"
+#include "estimation/measurement_kind.hpp"
 #include "geometry/index.hpp"
 #include "trussmap/model.hpp"
 #include "trussmap/recording.hpp"
@@ -43,75 +26,6 @@
 #include <vector>
 
 namespace trussmap {
-
-enum class MeasurementKind {
-  segment,
-  gyro,
-  standing,
-  view,
-  cartesian_view,
-  direction,
-  sighting_yaw,
-  survey,
-  survey_heading,
-  truth,
-  fix,
-  loop
-};
-
-/// Of the drive: what its rows add up to.
-[[nodiscard]] constexpr bool is_driven(MeasurementKind kind) {
-  return kind == MeasurementKind::segment || kind == MeasurementKind::gyro;
-}
-
-/// Of a landmark: standing on it, or seeing it.
-[[nodiscard]] constexpr bool is_sighting(MeasurementKind kind) {
-  return kind == MeasurementKind::standing || kind == MeasurementKind::view ||
-         kind == MeasurementKind::cartesian_view || kind == MeasurementKind::direction;
-}
-
-/// Of a landmark's orientation: it says nothing of a place.
-[[nodiscard]] constexpr bool is_of_orientation(MeasurementKind kind) {
-  return kind == MeasurementKind::sighting_yaw || kind == MeasurementKind::survey_heading;
-}
-
-/// Of a place in the map's frame, whatever was driven.
-[[nodiscard]] constexpr bool is_in_map_frame(MeasurementKind kind) {
-  return kind == MeasurementKind::survey || kind == MeasurementKind::truth ||
-         kind == MeasurementKind::fix;
-}
-
-[[nodiscard]] constexpr bool is_between_poses(MeasurementKind kind) {
-  return kind == MeasurementKind::segment || kind == MeasurementKind::loop;
-}
-
-/// What may be wrong as a whole, and is then left out: a landmark misread, a fix by an echo, a
-/// place taken for another.
-[[nodiscard]] constexpr bool may_be_wrong(MeasurementKind kind) {
-  return is_sighting(kind) || kind == MeasurementKind::sighting_yaw ||
-         kind == MeasurementKind::fix || kind == MeasurementKind::loop;
-}
-
-struct Measurement;
-
-/// Whether a sighting says where its landmark is from the robot: a range or a bearing alone does
-/// not.
-[[nodiscard]] bool locates(const Measurement& one);
-
-struct Measurement {
-  MeasurementKind kind = MeasurementKind::segment;
-  int from = -1;                    ///< node
-  int to = -1;                      ///< node; -1: none
-  int rows = 0;                     ///< 1 to 4
-  Vector4 value = Vector4::Zero();  ///< measured; a segment's last is its mean heading
-  /// Added to the value: by segment_noise.hpp, and by student_tails.hpp to a sighting's.
-  Vector4 value_offset = Vector4::Zero();
-  Matrix4 whitener = Matrix4::Zero();  ///< rows x rows: inverse of the covariance's Cholesky factor
-  double tails = 0.0;  ///< degrees of freedom of Student's t (student_tails.hpp); 0: normal
-  int session = -1;    ///< -1: survey
-  /// Row of the session's stream; of what is driven, the segment.
-  std::size_t source = 0;
-};
 
 /// A scalar unknown of a noise process (noise_states.hpp): z = keep z_previous + N(0, sd^2).
 struct NoiseState {
@@ -161,6 +75,8 @@ struct RecordingProblem {
     return is_landmark(node) ? 2 : is_orientation(node) ? 1 : 3;
   }
   [[nodiscard]] int pose_node(int pose) const { return landmark_count() + pose; }
+  /// Of a pose's node, s.
+  [[nodiscard]] double time_of(int node) const { return poses[idx(node - landmark_count())].t; }
 };
 
 struct ProblemOptions {
@@ -180,12 +96,6 @@ struct ProblemOptions {
   /// instants that is partly within, is left out. An instant that would stand alone goes with it.
   std::vector<std::vector<TimeSpan>> left_out = {};
 };
-
-/// What whitens a measurement with further noise: of the leading rows x rows of (W'W)^-1 + more.
-[[nodiscard]] Matrix4 whitener_with(const Matrix4& whitener, const Matrix4& more, int rows);
-
-/// Inverse Cholesky factor of a covariance's leading rows x rows.
-[[nodiscard]] Matrix4 whitener_of(const Matrix4& covariance, int rows);
 
 /// Throws InputError where a recording has nothing in use that ties it to a place.
 [[nodiscard]] RecordingProblem make_problem(const std::vector<Recording>& recordings,

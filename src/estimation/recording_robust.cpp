@@ -23,7 +23,7 @@ void keep_one_per_landmark(const RecordingProblem& problem,
   std::vector<std::size_t> best(problem.landmarks.size(), problem.measurements.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (!is_sighting(one.kind)) continue;
+    if (!is_sighting(one)) continue;
     std::size_t& chosen = best[idx(one.to)];
     if (chosen == problem.measurements.size() || squared_errors[k] < squared_errors[chosen]) {
       chosen = k;
@@ -45,13 +45,12 @@ void keep_tied(const RecordingProblem& problem, const std::vector<double>& squar
     std::size_t best = weights.size();
     for (std::size_t k = 0; k < weights.size(); ++k) {
       const Measurement& one = problem.measurements[k];
-      if (weights[k] > 0.0 || !may_be_wrong(one.kind)) continue;
-      if (is_of_orientation(one.kind)) continue;  // it ties no pose
+      if (weights[k] > 0.0 || !may_be_wrong(one)) continue;
+      if (is_of_orientation(one)) continue;  // it ties no pose
       const auto is_loose = [&](int node) {
         return loose.contains(node - problem.landmark_count());
       };
-      const bool loop = one.kind == MeasurementKind::loop;
-      if (!is_loose(one.from) && !(loop && is_loose(one.to))) continue;
+      if (!is_loose(one.from) && !(is_tie(one) && is_loose(one.to))) continue;
       if (best == weights.size() || squared_errors[k] < squared_errors[best]) best = k;
     }
     if (best == weights.size()) return;  // nothing ever tied it
@@ -63,7 +62,7 @@ std::vector<double> soft_weights(const RecordingProblem& problem,
                                  const std::vector<double>& squared_errors, double gate) {
   std::vector<double> weights(squared_errors.size(), 1.0);
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    if (!may_be_wrong(problem.measurements[k].kind)) continue;
+    if (!may_be_wrong(problem.measurements[k])) continue;
     weights[k] = soft_weight(squared_errors[k], gate);
   }
   return weights;
@@ -75,8 +74,8 @@ double share_of_kind_beyond(const RecordingProblem& problem,
   double beyond = 0.0;
   double all = 0.0;
   for (std::size_t k = 0; k < squared_errors.size(); ++k) {
-    const MeasurementKind kind = problem.measurements[k].kind;
-    if (!may_be_wrong(kind) || (kind == MeasurementKind::loop) != loops) continue;
+    const Measurement& one = problem.measurements[k];
+    if (!may_be_wrong(one) || is_tie(one) != loops) continue;
     all += 1.0;
     if (squared_errors[k] > limit) beyond += 1.0;
   }
@@ -209,7 +208,7 @@ class RobustDescent {
     std::vector<std::size_t> out;
     std::vector<double> weights = fit_.weights;
     for (std::size_t k = 0; k < weights.size(); ++k) {
-      if (weights[k] > 0.0 || !may_be_wrong(problem_.measurements[k].kind)) continue;
+      if (weights[k] > 0.0 || !may_be_wrong(problem_.measurements[k])) continue;
       out.push_back(k);
       weights[k] = kFaint;
     }
@@ -258,7 +257,7 @@ class RobustDescent {
 
   void weigh(double mu) {
     for (std::size_t k = 0; k < fit_.weights.size(); ++k) {
-      if (!may_be_wrong(problem_.measurements[k].kind)) continue;
+      if (!may_be_wrong(problem_.measurements[k])) continue;
       fit_.weights[k] = bent_weight(system_.squared_errors()[k], fit_.gate, mu);
     }
     keep_one_per_landmark(problem_, system_.squared_errors(), fit_.weights);
@@ -286,9 +285,9 @@ RecordingDescent descend_softly(RecordingSystem& system, const RecordingProblem&
 void heed_majority(const RecordingProblem& problem, RecordingState& state) {
   std::vector<std::vector<Vector2>> places(state.landmarks.size());
   for (const Measurement& one : problem.measurements) {
-    if (!is_sighting(one.kind) || one.rows < 2) continue;
+    if (!locates(one)) continue;
     const Pose& pose = state.poses[idx(one.from - problem.landmark_count())];
-    places[idx(one.to)].push_back(pose.position() + rotation(pose.heading) * offset_of(one));
+    places[idx(one.to)].push_back(*one.kind->seen_from(one, pose, {}));
   }
   const std::vector<Vector2> before = state.landmarks;
   const auto others = [&](std::size_t landmark, const Vector2& place) {

@@ -15,15 +15,14 @@ namespace trussmap {
 namespace {
 
 bool gives_frame(const RecordingProblem& problem) {
-  return std::any_of(problem.measurements.begin(), problem.measurements.end(),
-                     [](const Measurement& one) { return is_in_map_frame(one.kind); });
+  return std::any_of(problem.measurements.begin(), problem.measurements.end(), is_in_map_frame);
 }
 
 /// The first pose with a truth row.
 std::optional<std::pair<int, const Measurement*>> first_truth(const SessionToLay& session) {
   for (int k = 0; k < session.pose_count(); ++k) {
     for (const Measurement* one : session.seen_at[idx(k)]) {
-      if (one->kind == MeasurementKind::truth) return std::pair(k, one);
+      if (gives_pose(*one)) return std::pair(k, one);
     }
   }
   return std::nullopt;
@@ -102,7 +101,7 @@ std::vector<double> orientations_seen_from(const RecordingProblem& problem,
                                            const std::vector<Pose>& poses) {
   std::vector<Vector2> sums(problem.oriented.size(), Vector2::Zero());
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::sighting_yaw) continue;
+    if (!is_yaw(one)) continue;
     const Pose& pose = poses[idx(one.from - problem.landmark_count())];
     sums[idx(one.to - problem.pose_end())] += rotation(pose.heading + one.value[0]).col(0);
   }
@@ -110,7 +109,7 @@ std::vector<double> orientations_seen_from(const RecordingProblem& problem,
   result.reserve(sums.size());
   for (const Vector2& sum : sums) result.push_back(direction(sum));
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::survey_heading) continue;
+    if (!is_surveyed_heading(one)) continue;
     result[idx(one.from - problem.pose_end())] = one.value[0];
   }
   return result;
@@ -158,7 +157,7 @@ RecordingState dead_reckoned(const RecordingProblem& problem) {
       for (const Measurement* one : session.seen_at[idx(k)]) {
         if (!locates(*one)) continue;
         const std::size_t landmark = idx(part.landmarks[idx(one->to)]);
-        sums[landmark] += pose.position() + rotation(pose.heading) * offset_of(*one);
+        sums[landmark] += *one->kind->seen_from(*one, pose, {});
         counts[landmark] += 1.0;
       }
     }

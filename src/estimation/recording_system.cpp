@@ -136,7 +136,7 @@ std::vector<std::uint8_t> RecordingSystem::held_nodes(bool hold_headings) const 
 
 void RecordingSystem::linearise_measurement(std::size_t k, const Point& at) {
   const Measurement& one = problem_.measurements[k];
-  const bool driven = is_driven(one.kind);
+  const bool driven = is_driven(one);
   Vector4 value = one.value;
   if (driven && !motions_.empty()) value = moved_by_effects(k, at.offsets);
   value += one.value_offset;
@@ -301,7 +301,7 @@ Vector4 RecordingSystem::moved_by_effects(std::size_t k, const Eigen::VectorXd& 
     }
   }
   const Measurement& one = problem_.measurements[k];
-  if (one.kind == MeasurementKind::gyro) {
+  if (!is_segment(one)) {
     motion.at = offsets;
     motion.slopes = excess_slopes(problem_.segments[one.source], problem_.gyro_weights[one.source],
                                   drive_patterns(border_, idx(one.session)));
@@ -321,7 +321,7 @@ void RecordingSystem::evaluate_effect_parameters(std::size_t k, const Measuremen
   const Measurement& one = problem_.measurements[k];
   const Matrix4 W = root_weights_[k] * one.whitener;
   auto M = M_.middleRows(first_row_[k], one.rows);
-  if (is_driven(one.kind) && !motions_.empty()) {
+  if (is_driven(one) && !motions_.empty()) {
     for (std::size_t c = 0; c < unknown_.size(); ++c) {
       const Vector4 column = -(W * motions_[k].slopes.col(unknown_[c]));
       M.col(static_cast<Eigen::Index>(c)) = column.head(one.rows);

@@ -13,24 +13,12 @@ ViewPattern pattern_of(const ViewVector& v) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]};
 }
 
-bool is_linear(MeasurementKind kind) {
-  return kind == MeasurementKind::gyro || is_of_orientation(kind) ||
-         kind == MeasurementKind::survey;
-}
-
 /// One of a node's numbers.
 double& number_of(const RecordingProblem& problem, RecordingState& state, int node, int place) {
   if (problem.is_landmark(node)) return state.landmarks[idx(node)][place];
   if (problem.is_orientation(node)) return state.orientations[idx(node - problem.pose_end())];
   Pose& pose = state.poses[idx(node - problem.landmark_count())];
   return place == 0 ? pose.x : place == 1 ? pose.y : pose.heading;
-}
-
-/// Rows (R(theta + turn)'(q_to - q_from) - something by which nothing here moves): those of a way
-/// in the axes of its start.
-bool is_way(MeasurementKind kind) {
-  return kind == MeasurementKind::segment || kind == MeasurementKind::loop ||
-         kind == MeasurementKind::standing || kind == MeasurementKind::cartesian_view;
 }
 
 Vector2 place_of(const RecordingProblem& problem, const RecordingState& state, int node) {
@@ -41,7 +29,8 @@ Vector2 place_of(const RecordingProblem& problem, const RecordingState& state, i
 SecondOrder second_order_of_way(const RecordingProblem& problem, const Measurement& one,
                                 const RecordingState& state, const ViewPattern& view,
                                 const Vector4& weighted) {
-  const double turn = one.kind == MeasurementKind::cartesian_view ? view.heading : 0.0;
+  const bool by_view = one.kind->facts().curvature == Curvature::of_a_way_by_view;
+  const double turn = by_view ? view.heading : 0.0;
   const Pose& from = state.poses[idx(one.from - problem.landmark_count())];
   const Vector2 pull = rotation(from.heading + turn) * weighted.head<2>();
   const Vector2 turned = quarter_turn(pull);
@@ -60,8 +49,9 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
                          RecordingState& state, const ViewPattern& view, const Vector4& weighted,
                          bool with_view) {
   SecondOrder result = SecondOrder::Zero();
-  if (is_linear(one.kind)) return result;
-  if (is_way(one.kind) && !with_view) {
+  const Curvature curvature = one.kind->facts().curvature;
+  if (curvature == Curvature::none) return result;
+  if (curvature != Curvature::general && !with_view) {
     return second_order_of_way(problem, one, state, view, weighted);
   }
   const auto slopes = [&](const ViewPattern& at) -> Slopes {
@@ -86,7 +76,7 @@ SecondOrder second_order(const RecordingProblem& problem, const Measurement& one
   };
   differentiate(one.from, 0);
   differentiate(one.to, kSecondOrderTo);
-  if (with_view && !is_driven(one.kind)) {
+  if (with_view && !is_driven(one)) {
     for (Eigen::Index k = 0; k < ViewVector::RowsAtCompileTime; ++k) {
       const ViewVector step = kStep * ViewVector::Unit(k);
       result.col(kSecondOrderView + k) =

@@ -180,7 +180,7 @@ double relinearise(RecordingProblem& problem, const std::vector<Recording>& reco
   std::vector<double> changes(problem.measurements.size(), 0.0);
   parallel_for(problem.measurements.size(), [&](std::size_t k) {
     Measurement& one = problem.measurements[k];
-    if (one.kind != MeasurementKind::segment) return;
+    if (!is_segment(one)) return;
     const SegmentNoise at = believed_noise(problem, k, recordings, model, border, offsets, state);
     const Matrix4 within = problem.within.empty() ? Matrix4(Matrix4::Zero()) : problem.within[k];
     Vector4 value_offset = at.value - at.recorded;

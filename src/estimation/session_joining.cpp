@@ -85,9 +85,9 @@ MapSoFar surveyed_map(const RecordingProblem& problem) {
   MapSoFar known{PlacedLandmarks(problem.landmarks.size()),
                  KnownOrientations(problem.oriented.size())};
   for (const Measurement& one : problem.measurements) {
-    if (one.kind == MeasurementKind::survey) {
+    if (is_surveyed_place(one)) {
       known.landmarks[idx(one.from)] = one.value.head<2>();
-    } else if (one.kind == MeasurementKind::survey_heading) {
+    } else if (is_surveyed_heading(one)) {
       known.orientations[idx(one.from - problem.pose_end())] = one.value[0];
     }
   }
@@ -116,7 +116,7 @@ MapSoFar with_session(MapSoFar known, const RecordingProblem& problem, const Pos
   }
   if (known.orientations.empty()) return known;
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::sighting_yaw) continue;
+    if (!is_yaw(one)) continue;
     const int pose = one.from - problem.pose_node(span.first);
     if (pose < 0 || pose >= span.count) continue;
     std::optional<double>& orientation = known.orientations[idx(one.to - problem.pose_end())];

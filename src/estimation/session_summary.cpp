@@ -21,7 +21,7 @@ constexpr double kSlack = 1e-9;  // rad: slopes by the coefficients are not olde
 constexpr int kMostSteps = 50;
 
 bool is_survey(const Measurement& one) {
-  return one.kind == MeasurementKind::survey || one.kind == MeasurementKind::survey_heading;
+  return one.session < 0;
 }
 
 void require_one_session(const SessionRows& rows) {
@@ -145,7 +145,7 @@ Eigen::MatrixXd SessionSummary::numbers_by(std::size_t k, const Touched& touched
   if (one.to >= 0 && touched.width == 0) add_pose(kSecondOrderTo);
   if (!problem().noise_terms.empty()) {
     for (const NoiseTerm& term : problem().noise_terms[k]) {
-      if (!is_driven(one.kind)) F.block<9, 1>(kSecondOrderView, column) = term.by;
+      if (!is_driven(one)) F.block<9, 1>(kSecondOrderView, column) = term.by;
       ++column;
     }
   }
@@ -171,14 +171,14 @@ Eigen::MatrixXd SessionSummary::curvature_of(std::size_t k, const Touched& touch
   const Eigen::MatrixXd F = plain ? Eigen::MatrixXd() : numbers_by(k, touched);
   const bool with_view = !plain && !F.bottomRows<9>().isZero(0.0);
   ViewPattern view = view_of(rows_->border, offsets, one);
-  if (!problem().noise_states.empty() && !is_driven(one.kind)) {
+  if (!problem().noise_states.empty() && !is_driven(one)) {
     view = lasting_in_view(problem(), k, view, state.noise);
   }
   const SecondOrder whole = second_order(problem(), one, state, view, weighted, with_view);
   const Eigen::Index all = touched.own_width + touched.width;
   if (plain) return whole.topLeftCorner(all, all);  // of `to` what there is of it comes first
   Eigen::MatrixXd result = F.transpose() * whole * F;
-  if (one.kind == MeasurementKind::segment && taken_.bends != nullptr) {
+  if (is_segment(one) && taken_.bends != nullptr) {
     for (std::size_t row = 0; row < SegmentBends().size(); ++row) {
       result.bottomRightCorner(coefficients_, coefficients_) -=
           weighted[static_cast<Eigen::Index>(row)] * (*taken_.bends)[k][row];
@@ -196,7 +196,7 @@ void SessionSummary::bend(const Eigen::VectorXd& offsets) {
   std::vector<SegmentBends> bends(problem().measurements.size());
   for (std::size_t k = 0; k < bends.size(); ++k) {
     const Measurement& one = problem().measurements[k];
-    if (one.kind != MeasurementKind::segment) continue;
+    if (!is_segment(one)) continue;
     bends[k] = segment_bends(problem(), one, rows_->border, offsets);
   }
   taken_.bends = std::make_shared<const std::vector<SegmentBends>>(std::move(bends));

@@ -22,7 +22,7 @@ RecordingDescent descend_roughly(RecordingSystem& system, const RecordingProblem
     robust.weights.reserve(problem.measurements.size());
     for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
       const bool out =
-          may_be_wrong(problem.measurements[k].kind) && system.squared_errors()[k] > options.gate;
+          may_be_wrong(problem.measurements[k]) && system.squared_errors()[k] > options.gate;
       robust.weights.push_back(out ? 0.0 : 1.0);
     }
     robust = look_again(system, problem, std::move(robust));

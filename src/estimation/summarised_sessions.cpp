@@ -44,14 +44,14 @@ void SummarisedSessions::require_tied(const SessionRows& rows,
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     if (!rows.weights.empty() && rows.weights[k] == 0.0) continue;
-    if (one.kind == MeasurementKind::truth) return;
-    if (one.kind == MeasurementKind::segment && one.rows == 4) direction = true;
-    if (one.kind == MeasurementKind::sighting_yaw) {
+    if (gives_pose(one)) return;
+    if (reads_compass(one)) direction = true;
+    if (is_yaw(one)) {
       const std::string& landmark = problem.landmark_of(one.to);
       direction = direction || has_orientation(landmark) || is_known(landmark, true);
     }
-    if (one.kind == MeasurementKind::fix) places.insert(describe(problem, one));
-    if (!is_sighting(one.kind)) continue;
+    if (is_robots_place(one)) places.insert(describe(problem, one));
+    if (!is_sighting(one)) continue;
     const std::string& landmark = problem.landmarks[idx(one.to)];
     if (has(landmark) || is_known(landmark, false)) places.insert("landmark " + landmark);
   }

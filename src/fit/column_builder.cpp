@@ -37,10 +37,10 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
   return parts;
 }
 
-Instant instant_of(MeasurementKind kind) {
-  return kind == MeasurementKind::truth ? Instant::truth
-         : kind == MeasurementKind::fix ? Instant::fix
-                                        : Instant::sighting;
+Instant instant_of(Stream stream) {
+  return stream == Stream::truth   ? Instant::truth
+         : stream == Stream::fixes ? Instant::fix
+                                   : Instant::sighting;
 }
 
 /// Where a channel's shapes are asked for.
@@ -66,7 +66,7 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
     : context_(context), segment_rows_(std::make_shared<std::vector<Row>>()) {
   std::size_t count = 0;
   for (const Measurement& one : problem.measurements) {
-    if (is_driven(one.kind)) count += problem.segments[one.source].size();
+    if (is_driven(one)) count += problem.segments[one.source].size();
   }
   segment_rows_->reserve(count);
   struct Driven {
@@ -78,9 +78,7 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
     const Matrix4 W = std::sqrt(weights[k] * tail_information(one.tails, one.rows)) * one.whitener;
-    if (one.kind == MeasurementKind::gyro) {
-      add_gyro(problem, one, W);
-    } else if (one.kind == MeasurementKind::segment) {
+    if (is_segment(one)) {
       std::vector<const std::vector<DrivePattern>*> patterns;
       for (const EffectPattern& effect : border) {
         patterns.push_back(effect.drives.empty() ? nullptr : &effect.drives[idx(one.session)]);
@@ -91,11 +89,13 @@ ColumnBuilder::ColumnBuilder(const ShapeContext& context, const RecordingProblem
           {rows_, one.rows, idx(one.session), first, first + rows.size(), 0, 0, false, -W});
       segment_rows_->resize(first + rows.size());
       driven.push_back({&rows, std::move(patterns), first});
-    } else if (one.session >= 0 && one.kind != MeasurementKind::loop) {
+    } else if (is_driven(one)) {
+      add_gyro(problem, one, W);
+    } else if (one.session >= 0 && !is_tie(one)) {
       const ViewPattern view = view_of(border, offsets, one);
       const MeasurementRows rows = measurement_rows(problem, one, state, one.value, view);
-      views_.push_back(
-          {rows_, one.rows, idx(one.session), one.source, instant_of(one.kind), W * rows.by_view});
+      views_.push_back({rows_, one.rows, idx(one.session), one.source,
+                        instant_of(one.kind->facts().stream), W * rows.by_view});
     }
     rows_ += one.rows;
   }

@@ -36,8 +36,8 @@ std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
 /// With how far off it is, and what the receiver thought of it.
 std::string left_out_text(const FitState& fit, const Measurement& one) {
   std::string text = describe(fit.problem, one);
-  const bool fix = one.kind == MeasurementKind::fix;
-  if (!fix && one.kind != MeasurementKind::loop) return text;
+  const bool fix = is_robots_place(one);
+  if (!fix && !is_tie(one)) return text;
   const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
   const Vector4 error =
       measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error;

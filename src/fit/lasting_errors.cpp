@@ -34,9 +34,7 @@ std::map<std::pair<int, int>, std::vector<SeenError>> errors_of(const FitState& 
   const Eigen::VectorXd offsets = offsets_of(fit);
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     const Measurement& one = fit.problem.measurements[k];
-    const bool seen =
-        one.kind == MeasurementKind::view || one.kind == MeasurementKind::cartesian_view;
-    if (!seen || out[k]) continue;
+    if (!is_sighting(one) || !begins_with(one, "range") || out[k]) continue;
     const MeasurementRows rows = measurement_rows(fit.problem, one, fit.adjustment.state, one.value,
                                                   view_of(fit.columns.border, offsets, one));
     const Vector4 white = one.whitener * rows.error;

@@ -11,27 +11,6 @@
 namespace trussmap {
 namespace {
 
-bool any_of_kind(const FitState& fit, MeasurementKind kind) {
-  return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(),
-                     [kind](const Measurement& one) { return one.kind == kind; });
-}
-
-bool has_compass(const FitState& fit) {
-  return std::any_of(
-      fit.problem.measurements.begin(), fit.problem.measurements.end(),
-      [](const Measurement& one) { return one.kind == MeasurementKind::segment && one.rows == 4; });
-}
-
-bool has_views(const FitState& fit) {
-  return any_of_kind(fit, MeasurementKind::view) ||
-         any_of_kind(fit, MeasurementKind::cartesian_view);
-}
-
-bool has_unstated_fixes(const FitState& fit) {
-  return std::any_of(fit.problem.measurements.begin(), fit.problem.measurements.end(),
-                     [&fit](const Measurement& one) { return is_unstated_fix(fit, one); });
-}
-
 NoiseComponent white(const char* name, const char* unit, std::vector<double Noise::*> members,
                      double stated) {
   NoiseComponent one;
@@ -55,9 +34,22 @@ NoiseComponent lasting(const NoiseProcess& process) {
 
 }  // namespace
 
-bool is_unstated_fix(const FitState& fit, const Measurement& one) {
-  return one.kind == MeasurementKind::fix &&
-         std::isnan(fit.recordings[idx(one.session)].fixes[one.source].sd);
+const std::vector<ReadingKey>& reading_keys() {
+  static const std::vector<ReadingKey> all{
+      {"compass", "rad", &Noise::compass}, {"sighting", "m", &Noise::sighting},
+      {"range", "m", &Noise::range},       {"fix", "m", &Noise::fix},
+      {"bearing", "rad", &Noise::bearing}, {"yaw", "rad", &Noise::yaw}};
+  return all;
+}
+
+std::set<std::string_view> noises_in(const RecordingProblem& problem) {
+  std::set<std::string_view> found;
+  for (const Measurement& one : problem.measurements) {
+    for (Eigen::Index row = 0; row < one.rows && !one.own_sd; ++row) {
+      found.insert(one.kind->noise(row));
+    }
+  }
+  return found;
 }
 
 double mean_wheel_noise(const Noise& noise) {
@@ -68,7 +60,7 @@ Noise silent_noise() {
   Noise none;
   none.left = none.right = none.compass = none.sighting = none.range = none.bearing = 0.0;
   none.gyro = none.survey = none.truth = none.truth_heading = 0.0;
-  none.fix = none.loop = none.loop_heading = 0.0;
+  none.fix = none.loop = none.loop_heading = none.steer = none.yaw = 0.0;
   return none;
 }
 
@@ -82,20 +74,17 @@ std::vector<NoiseComponent> white_components(const FitState& fit, const Noise& n
   if (wheels > 0.0) {
     result.push_back(white("wheels", "m^1/2", {&Noise::left, &Noise::right}, wheels));
   }
+  const std::set<std::string_view> measured = noises_in(fit.problem);
   const auto add = [&](const char* name, const char* unit, double Noise::*member, bool there) {
     if (there && noise.*member > 0.0) result.push_back(white(name, unit, {member}, noise.*member));
   };
-  add("compass", "rad", &Noise::compass, has_compass(fit));
-  add("sighting", "m", &Noise::sighting, any_of_kind(fit, MeasurementKind::standing));
-  add("range", "m", &Noise::range, has_views(fit));
-  add("fix", "m", &Noise::fix, has_unstated_fixes(fit));
-  add("bearing", "rad", &Noise::bearing,
-      any_of_kind(fit, MeasurementKind::view) || any_of_kind(fit, MeasurementKind::direction));
-  add("yaw", "rad", &Noise::yaw, any_of_kind(fit, MeasurementKind::sighting_yaw));
+  for (const auto& [name, unit, member] : reading_keys()) {
+    add(name, unit, member, measured.contains(name));
+  }
   add("heading_per_s", "rad/s^1/2", &Noise::heading_per_s, true);
   add("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad, true);
   add("travel_per_s", "m/s^1/2", &Noise::travel_per_s, true);
-  add("gyro", "rad/s^1/2", &Noise::gyro, any_of_kind(fit, MeasurementKind::gyro));
+  add("gyro", "rad/s^1/2", &Noise::gyro, measured.contains("gyro"));
   return result;
 }
 
@@ -136,6 +125,7 @@ std::vector<NoiseComponent> candidate_components(const FitState& fit, const Nois
   const auto add_white = [&](const char* name, const char* unit, double Noise::*member) {
     if (noise.*member == 0.0) result.push_back(white(name, unit, {member}, 0.0));
   };
+  const std::set<std::string_view> measured = noises_in(fit.problem);
   const std::vector<double> times{0.5, 2.0, 10.0};
   const std::vector<double> ways{0.5, 3.0};
   add(Channel::travel, ProcessKind::per_leg);
@@ -147,17 +137,17 @@ std::vector<NoiseComponent> candidate_components(const FitState& fit, const Nois
   add_white("heading_per_s", "rad/s^1/2", &Noise::heading_per_s);
   add_white("heading_per_rad", "rad/rad^1/2", &Noise::heading_per_rad);
   add_white("travel_per_s", "m/s^1/2", &Noise::travel_per_s);
-  if (has_compass(fit)) {
+  if (measured.contains("compass")) {
     add(Channel::compass, ProcessKind::correlated_in_t, times);
     add(Channel::compass, ProcessKind::correlated_in_distance, ways);
     add(Channel::compass, ProcessKind::walk_in_t);
   }
-  if (any_of_kind(fit, MeasurementKind::gyro)) {
+  if (measured.contains("gyro")) {
     add(Channel::gyro, ProcessKind::walk_in_t);
     add(Channel::gyro, ProcessKind::per_session);
     add(Channel::gyro, ProcessKind::correlated_in_t, {10.0});
   }
-  if (has_views(fit)) {
+  if (measured.contains("range")) {
     add(Channel::range, ProcessKind::correlated_in_t, times);
     add(Channel::bearing, ProcessKind::correlated_in_t, times);
     add(Channel::range, ProcessKind::per_pass);

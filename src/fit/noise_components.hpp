@@ -6,7 +6,9 @@
 
 #include "fit/fit_state.hpp"
 
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace trussmap {
@@ -22,8 +24,16 @@ struct NoiseComponent {
   [[nodiscard]] bool lasts() const { return white.empty(); }
 };
 
-/// Of a fix that leaves its sd to the model.
-[[nodiscard]] bool is_unstated_fix(const FitState& fit, const Measurement& one);
+/// Noise of single readings, by the model's keys.
+struct ReadingKey {
+  const char* name;
+  const char* unit;
+  double Noise::*member;
+};
+[[nodiscard]] const std::vector<ReadingKey>& reading_keys();
+
+/// Keys of the noise that measurements have; of those whose rows state none themselves.
+[[nodiscard]] std::set<std::string_view> noises_in(const RecordingProblem& problem);
 
 /// All zero.
 [[nodiscard]] Noise silent_noise();

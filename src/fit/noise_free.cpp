@@ -14,7 +14,7 @@ RecordingState standing_exactly(const RecordingProblem& problem, const EffectPar
   std::vector<Vector2> sums(state.poses.size(), Vector2::Zero());
   std::vector<int> counts(state.poses.size(), 0);
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::standing) continue;
+    if (!is_standing(one)) continue;
     const ViewPattern view = view_of(border, offsets, one);
     const std::size_t pose = idx(one.from - problem.landmark_count());
     sums[pose] +=
@@ -35,7 +35,7 @@ RecordingProblem without_noise(const RecordingProblem& problem,
                                const std::vector<SessionPath>& paths) {
   RecordingProblem result = problem;
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::segment) continue;
+    if (!is_segment(one)) continue;
     const SessionPath& path = paths[idx(one.session)];
     if (path.missing.empty()) continue;
     std::vector<SegmentRow> rows = result.segments[one.source];

@@ -16,8 +16,15 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastSd = 1e-5;  // m and rad: of a segment
-constexpr double kExactSd = 1e-6;  // the same, of anything
+constexpr double kExactSd = 1e-6;  // m and rad
+
+/// By its key; 0 of what no search looks for.
+double variance_of(std::string_view noise, const Noise& unit) {
+  for (const ReadingKey& one : reading_keys()) {
+    if (one.name == noise) return unit.*one.member * (unit.*one.member);
+  }
+  return 0.0;
+}
 
 }  // namespace
 
@@ -30,23 +37,14 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
   result.reserve(fit_.problem.measurements.size());
   for (const Measurement& one : fit_.problem.measurements) {
     Matrix4 added = Matrix4::Zero();
-    if (one.kind == MeasurementKind::segment) {
+    if (is_segment(one)) {
       added = segment_covariance(one, unit);
-    } else if (one.kind == MeasurementKind::gyro) {
+    } else if (is_driven(one)) {
       added = gyro_covariance(one, unit);
-    } else if (one.kind == MeasurementKind::standing) {
-      added.diagonal().head<2>().setConstant(unit.sighting * unit.sighting);
-    } else if (one.kind == MeasurementKind::view) {
-      added(0, 0) = unit.range * unit.range;
-      if (one.rows == 2) added(1, 1) = unit.bearing * unit.bearing;
-    } else if (one.kind == MeasurementKind::direction) {
-      added(0, 0) = unit.bearing * unit.bearing;
-    } else if (one.kind == MeasurementKind::sighting_yaw) {
-      added(0, 0) = unit.yaw * unit.yaw;
-    } else if (one.kind == MeasurementKind::cartesian_view) {
-      added.diagonal().head<2>().setConstant(unit.range * unit.range);
-    } else if (is_unstated_fix(fit_, one)) {
-      added.diagonal().head<2>().setConstant(unit.fix * unit.fix);
+    } else if (!one.own_sd) {
+      for (Eigen::Index row = 0; row < one.rows; ++row) {
+        added(row, row) = variance_of(one.kind->noise(row), unit);
+      }
     }
     result.push_back(added);
   }
@@ -85,39 +83,6 @@ Matrix4 NoiseReml::gyro_covariance(const Measurement& one, const Noise& noise) c
   return result;
 }
 
-Matrix4 NoiseReml::fixed_covariance(const Measurement& one) const {
-  Matrix4 fixed = Matrix4::Zero();
-  const double relative = stated_.range_relative;
-  switch (one.kind) {
-    case MeasurementKind::segment:
-      fixed.diagonal().head<3>().setConstant(kLeastSd * kLeastSd);
-      if (one.rows == 4) fixed(3, 3) = kLeastSd * kLeastSd;
-      break;
-    case MeasurementKind::survey:
-    case MeasurementKind::survey_heading:
-    case MeasurementKind::truth:
-    case MeasurementKind::fix:
-    case MeasurementKind::loop: {
-      if (is_unstated_fix(fit_, one)) break;
-      const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
-      fixed.topLeftCorner(one.rows, one.rows) = colour * colour.transpose();
-      break;
-    }
-    case MeasurementKind::gyro:
-    case MeasurementKind::standing:
-    case MeasurementKind::direction:
-    case MeasurementKind::sighting_yaw:
-      break;
-    case MeasurementKind::view:
-      fixed(0, 0) = std::pow(relative * one.value[0], 2);
-      break;
-    case MeasurementKind::cartesian_view:
-      fixed(0, 0) = fixed(1, 1) = relative * relative * one.value.squaredNorm();
-      break;
-  }
-  return fixed;
-}
-
 NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
     : fit_(fit),
       stated_(stated),
@@ -130,14 +95,14 @@ NoiseReml::NoiseReml(const FitState& fit, const Noise& stated)
   rows_.resize(problem_.segments.size());
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
-    if (one.kind != MeasurementKind::segment) continue;
+    if (!is_segment(one)) continue;
     rows_[one.source] = {believed_noise(problem_, k, fit.recordings, fit.model, fit.columns.border,
                                         offsets, fit.adjustment.state)
                              .H,
                          readings_of(problem_.segments[one.source])};
   }
   for (Measurement& one : problem_.measurements) {
-    fixed_.push_back(fixed_covariance(one));
+    fixed_.push_back(one.kind->fixed_covariance(one, stated_));
     // Variances are those of the errors themselves, whatever their tails.
     if (one.tails > 0.0) one.value_offset.setZero();
     one.tails = 0.0;

@@ -66,8 +66,6 @@ class NoiseReml {
   };
   [[nodiscard]] Matrix4 segment_covariance(const Measurement& one, const Noise& noise) const;
   [[nodiscard]] Matrix4 gyro_covariance(const Measurement& one, const Noise& noise) const;
-  /// What no component changes.
-  [[nodiscard]] Matrix4 fixed_covariance(const Measurement& one) const;
   [[nodiscard]] RestrictedLikelihood likelihood(const Sizes& sizes);
   void whiten(const Sizes& sizes);
 

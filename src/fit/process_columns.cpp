@@ -56,7 +56,7 @@ Eigen::MatrixXd together(const Eigen::MatrixXd& steps, const LaidProcess& laid, 
 
 ByView by_view_of(const FitState& fit, const RecordingProblem& problem, std::size_t measurement) {
   const Measurement& one = problem.measurements[measurement];
-  if (is_driven(one.kind)) return ByView::Zero();
+  if (is_driven(one)) return ByView::Zero();
   return measurement_rows(problem, one, fit.adjustment.state, one.value,
                           view_of(fit.columns.border, offsets_of(fit), one))
       .by_view;

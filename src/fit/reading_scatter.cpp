@@ -34,7 +34,7 @@ ReadingScatter::ReadingScatter(const FitState& fit) {
   wheels_alone.right = fit.model.noise.right;
   std::vector<std::vector<Habits>> habits;
   for (const Measurement& one : fit.problem.measurements) {
-    if (one.kind != MeasurementKind::segment || one.rows < 4) continue;
+    if (!reads_compass(one)) continue;
     const std::vector<SegmentRow>& rows = fit.problem.segments[one.source];
     if (readings_of(rows) < 3) continue;
     const std::size_t session = idx(one.session);

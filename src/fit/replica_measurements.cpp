@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "fit/replica_stages.hpp"
-#include "recording/floor_code.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,27 +19,11 @@ const double* orientation_of(const Replica& replica, int landmark) {
              : &replica.state.orientations[idx(static_cast<int>(at - oriented.begin()))];
 }
 
-ViewPattern view_of_row(const Replica& replica, MeasurementKind kind, std::size_t session,
-                        std::size_t row) {
-  Measurement one;
-  one.kind = kind;
-  one.session = static_cast<int>(session);
-  one.source = row;
-  return view_of(replica.border, replica.offsets, one);
-}
-
 /// Without noise.
 Vector4 seen_exactly(const Replica& replica, const Measurement& one) {
   return one.value + measurement_rows(replica.fit.problem, one, replica.state, one.value,
                                       view_of(replica.border, replica.offsets, one))
                          .error;
-}
-
-/// Where the robot stands beside a floor code stays as it was in its own axes.
-void draw_yaw(double seen, double sd, Sighting& sighting, NormalDraws& draw) {
-  const Vector2 code = code_from_robot(sighting);
-  sighting.yaw = wrap_angle(seen + draw(sd));
-  if (!std::isnan(sighting.dx)) place_by_code(code, sighting);
 }
 
 }  // namespace
@@ -52,15 +36,14 @@ void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, Norm
     if (at == landmarks.end()) continue;
     const auto landmark = static_cast<int>(at - landmarks.begin());
     const Vector2& place = replica.state.landmarks[idx(landmark)];
-    const double sd = std::isnan(one.sd) ? noise.survey : one.sd;
     const auto [known, fresh] =
         drawn.places.try_emplace({one.landmark, one.x, one.y}, Vector2::Zero());
-    if (fresh) known->second = place + Vector2(draw(sd), draw(sd));
+    if (fresh) known->second = kinds::drawn_place(one, place, noise, draw);
     const double* orientation = orientation_of(replica, landmark);
     if (orientation != nullptr && !std::isnan(one.heading)) {
       const auto [heading, new_heading] =
           drawn.headings.try_emplace({one.landmark, one.x, one.y, one.heading}, 0.0);
-      if (new_heading) heading->second = *orientation + draw(noise.yaw);
+      if (new_heading) heading->second = kinds::drawn_heading(*orientation, noise, draw);
       one.heading = heading->second;
     }
     one.x = known->second.x();
@@ -69,66 +52,34 @@ void draw_survey(std::size_t session, DrawnSurvey& drawn, Replica& replica, Norm
 }
 
 void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw) {
-  const Noise& noise = replica.fit.model.noise;
   Recording& recording = replica.timed[session];
   for (std::size_t row = 0; row < recording.truth.size(); ++row) {
     TruthRow& one = recording.truth[row];
-    const Pose pose = pose_at(recording.drive, replica.paths[session], one.t);
-    const ViewPattern view = view_of_row(replica, MeasurementKind::truth, session, row);
-    const Vector2 place = pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
-    one.x = place.x() + draw(noise.truth);
-    one.y = place.y() + draw(noise.truth);
-    one.heading = wrap_angle(pose.heading + view.heading + draw(noise.truth_heading));
+    kinds::draw(one, pose_at(recording.drive, replica.paths[session], one.t),
+                view_of(replica.border, replica.offsets, Stream::truth, session, row),
+                replica.fit.model.noise, draw);
   }
 }
 
 void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& draw) {
   const Noise& noise = replica.fit.model.noise;
   Recording& recording = replica.timed[session];
-  const SessionPath& path = replica.paths[session];
+  const auto pose = [&](double t) { return pose_at(recording.drive, replica.paths[session], t); };
   for (std::size_t row = 0; row < recording.fixes.size(); ++row) {
     Fix& one = recording.fixes[row];
-    const Pose pose = pose_at(recording.drive, path, one.t);
-    const ViewPattern view = view_of_row(replica, MeasurementKind::fix, session, row);
-    const Vector2 antenna = rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left);
-    const double sd = std::isnan(one.sd) ? noise.fix : one.sd;
-    one.x = pose.x + antenna.x() + view.x + draw(sd);
-    one.y = pose.y + antenna.y() + view.y + draw(sd);
+    kinds::draw(one, pose(one.t),
+                view_of(replica.border, replica.offsets, Stream::fixes, session, row), noise, draw);
   }
   for (Loop& one : recording.loops) {
-    const Pose step =
-        relative(pose_at(recording.drive, path, one.t), pose_at(recording.drive, path, one.t2));
-    const double sd = std::isnan(one.sd) ? noise.loop : one.sd;
-    const double sd_heading = std::isnan(one.sd_heading) ? noise.loop_heading : one.sd_heading;
-    one.dx = step.x + draw(sd);
-    one.dy = step.y + draw(sd);
-    one.dtheta = wrap_angle(step.heading + draw(sd_heading));
+    kinds::draw(one, relative(pose(one.t), pose(one.t2)), noise, draw);
   }
 }
 
 void draw_sightings(Replica& replica, NormalDraws& draw) {
-  const Noise& noise = replica.fit.model.noise;
   for (const Measurement& one : replica.fit.problem.measurements) {
-    const bool yaw = one.kind == MeasurementKind::sighting_yaw;
-    if (!yaw && (!is_sighting(one.kind) || one.kind == MeasurementKind::standing)) continue;
-    Sighting& sighting = replica.timed[idx(one.session)].sightings[one.source];
-    const Vector4 seen = seen_exactly(replica, one);
-    if (yaw) {
-      draw_yaw(seen[0], noise.yaw, sighting, draw);
-      continue;
-    }
-    if (one.kind == MeasurementKind::direction) {
-      sighting.bearing = wrap_angle(seen[0] + draw(noise.bearing));
-      continue;
-    }
-    const bool offset = one.kind == MeasurementKind::cartesian_view;
-    const double range = offset ? seen.head<2>().norm() : seen[0];
-    const double bearing = offset ? direction(seen.head<2>()) : seen[1];
-    const double sd = std::hypot(noise.range, noise.range_relative * range);
-    sighting.range = std::max(range + draw(sd), kLeastDrawnRange);
-    if (!std::isnan(sighting.bearing)) {
-      sighting.bearing = wrap_angle(bearing + draw(noise.bearing));
-    }
+    if (one.kind->facts().stream != Stream::sightings) continue;
+    one.kind->draw(seen_exactly(replica, one), replica.fit.model.noise, draw,
+                   replica.timed[idx(one.session)].sightings[one.source]);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "drive/row_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/corrected_recording.hpp"
+#include "estimation/kinds/sighted.hpp"
 #include "estimation/noise_states.hpp"
 #include "fit/replica_stages.hpp"
 #include "odometry/wheels_and_gyro.hpp"

@@ -6,22 +6,12 @@
 #pragma once
 
 #include "fit/fit_state.hpp"
+#include "statistics/normal_draws.hpp"
 
-#include <random>
 #include <string>
 #include <tuple>
 
 namespace trussmap {
-
-inline constexpr double kLeastDrawnRange = 1e-6;  // m
-
-/// Normal errors, one after the other.
-struct NormalDraws {
-  std::mt19937_64 random;
-  std::normal_distribution<double> normal = {};
-
-  double operator()(double sd) { return sd * normal(random); }
-};
 
 /// The fit's recordings on their way to new ones.
 struct Replica {

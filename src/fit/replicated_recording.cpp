@@ -32,7 +32,7 @@ std::size_t pose_of(const RecordingProblem& problem, int node) {
 std::vector<double> driven_to_poses(const RecordingProblem& problem) {
   std::vector<double> driven(problem.poses.size(), 0.0);
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::segment) continue;
+    if (!is_segment(one)) continue;
     for (const SegmentRow& row : problem.segments[one.source]) {
       driven[pose_of(problem, one.to)] += std::abs(row.path);
     }
@@ -51,7 +51,7 @@ std::map<int, std::vector<MissedStop>> drawn_stops(const Replica& replica,
                         replica.state);
   std::map<int, std::vector<MissedStop>> stops;
   for (const Measurement& one : fit.problem.measurements) {
-    if (one.kind != MeasurementKind::standing) continue;
+    if (!is_standing(one)) continue;
     stops[one.session].push_back({pose_of(fit.problem, one.from)});
   }
   for (auto& [session, list] : stops) {

@@ -32,13 +32,12 @@ std::vector<double> weights_without_block(const FitState& fit, const TimeBlocks&
       weights_without(fit.adjustment.left_out, problem.measurements.size());
   for (std::size_t k = 0; k < weights.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (!may_be_wrong(one.kind) && one.kind != MeasurementKind::truth) continue;
+    if (!may_be_wrong(one) && !gives_pose(one)) continue;
     const auto in_block = [&](int node) {
       const PoseNode& pose = problem.poses[idx(node - problem.landmark_count())];
       return blocks.at(pose.session, pose.t) == block;
     };
-    const bool loop = one.kind == MeasurementKind::loop;
-    if (in_block(one.from) || (loop && in_block(one.to))) weights[k] *= kFaint;
+    if (in_block(one.from) || (is_tie(one) && in_block(one.to))) weights[k] *= kFaint;
   }
   return weights;
 }

@@ -15,31 +15,6 @@ namespace {
 
 constexpr double kLeastChord = 0.1;  // m
 
-/// Where a measurement says that what it measures lies, from a pose: the landmark, or the point
-/// that truth tracks. Nothing where only a range or a bearing was measured.
-std::optional<Vector2> seen_from(const Pose& pose, const Measurement& one,
-                                 const ViewPattern& view) {
-  if (one.kind == MeasurementKind::fix) {
-    return pose.position() +
-           rotation(pose.heading + view.heading) * Vector2(view.ahead, view.left) +
-           Vector2(view.x, view.y);
-  }
-  if (is_sighting(one.kind) && !locates(one)) return std::nullopt;
-  const Vector2 sensor = pose.position() + rotation(pose.heading) * Vector2(view.ahead, view.left);
-  if (one.kind == MeasurementKind::view) {
-    const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
-    const double way = pose.heading + view.heading - view.bearing + one.value[1];
-    return sensor + range * rotation(way).col(0);
-  }
-  if (one.kind == MeasurementKind::cartesian_view) {
-    return sensor + rotation(pose.heading + view.heading) * one.value.head<2>();
-  }
-  if (one.kind == MeasurementKind::standing) {
-    return sensor + rotation(pose.heading) * one.value.head<2>();
-  }
-  return sensor;
-}
-
 /// Landmarks of a problem where the training has them, else where a survey does, else NaN.
 struct KnownMap {
   std::vector<Vector2> places;
@@ -136,13 +111,11 @@ LegPredictor::LegPredictor(const TrainedModel& trained, const std::vector<LegSpa
   for (std::size_t k = 0; k < problem_.measurements.size(); ++k) {
     const Measurement& one = problem_.measurements[k];
     // What lies ahead is not known yet, and a loop ties it to what lies behind.
-    if (one.kind == MeasurementKind::survey || one.kind == MeasurementKind::loop) continue;
-    if (one.kind == MeasurementKind::survey_heading) continue;
-    if (one.kind == MeasurementKind::gyro) continue;
+    if (one.session < 0 || is_tie(one)) continue;
     PoseEvents& here = events_[idx(one.from - problem_.landmark_count())];
-    if (one.kind == MeasurementKind::segment) {
+    if (is_segment(one)) {
       here.segment = static_cast<int>(k);
-    } else {
+    } else if (!is_driven(one)) {
       here.views.push_back(k);
     }
   }
@@ -180,7 +153,8 @@ Vector2 LegPredictor::true_place(const Measurement& measurement) const {
 std::optional<Vector2> LegPredictor::seen_by(std::size_t measurement,
                                              const HeldOutFilter& filter) const {
   const Measurement& one = problem_.measurements[measurement];
-  return seen_from(filter.pose(one.from), one, view_of(trained_.effects, trained_.offsets, one));
+  return one.kind->seen_from(one, filter.pose(one.from),
+                             view_of(trained_.effects, trained_.offsets, one));
 }
 
 std::optional<PredictedLeg> LegPredictor::predicted(std::size_t k) const {
@@ -230,19 +204,7 @@ LegEnd LegPredictor::end_of(std::size_t measurement, const HeldOutFilter& filter
   const Pose& pose = filter.pose(one.from);
   const ViewPattern view = view_of(trained_.effects, trained_.offsets, one);
   const MeasurementRows rows = filter.rows(measurement);
-  // From errors, "expected - measured", to "seen - true" in the map.
-  Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
-  const Matrix2 R = rotation(pose.heading + view.heading);
-  if (one.kind == MeasurementKind::truth || one.kind == MeasurementKind::fix) {
-    T.leftCols<2>().setIdentity();
-  } else if (one.kind == MeasurementKind::view) {
-    const double range = (one.value[0] - view.range) / (1.0 + view.range_scale);
-    const Matrix2 along = R * rotation(one.value[1] - view.bearing);
-    T.col(0) = -along.col(0) / (1.0 + view.range_scale);
-    T.col(1) = -range * along.col(1);
-  } else {
-    T.leftCols<2>() = -(one.kind == MeasurementKind::standing ? rotation(pose.heading) : R);
-  }
+  const Eigen::Matrix<double, 2, 4> T = one.kind->seen_by_rows(one, pose, view);
   Matrix4 W = one.whitener;
   for (int row = one.rows; row < 4; ++row) W(row, row) = 1.0;
   LegEnd end;

@@ -21,7 +21,7 @@ void add_sighted_legs(const Recording& recording, int session, const RecordingPr
   std::map<std::size_t, std::size_t> measurement_of;  // sighting -> measurement
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (is_sighting(one.kind) && one.session == session) measurement_of[one.source] = k;
+    if (is_sighting(one) && one.session == session) measurement_of[one.source] = k;
   }
   const std::vector<Stop> stops = stops_of(recording.sightings);
   for (const Leg& leg : legs_of(recording, stops, options.min_drive)) {
@@ -39,19 +39,16 @@ void add_sighted_legs(const Recording& recording, int session, const RecordingPr
 /// Between truth rows, or between fixes where there is no truth.
 void add_place_legs(const Recording& recording, int session, const RecordingProblem& problem,
                     const LegOptions& options, std::vector<LegSpan>& legs) {
-  const auto is_truth = [session](const Measurement& one) {
-    return one.kind == MeasurementKind::truth && one.session == session;
-  };
-  const bool truth =
-      std::any_of(problem.measurements.begin(), problem.measurements.end(), is_truth);
-  const MeasurementKind ends = truth ? MeasurementKind::truth : MeasurementKind::fix;
+  const bool truth = std::any_of(
+      problem.measurements.begin(), problem.measurements.end(),
+      [session](const Measurement& one) { return gives_pose(one) && one.session == session; });
   const std::vector<double> path = driven_path(recording.drive);
   bool any = false;
   LegSpan leg;
   double begun = 0.0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind != ends || one.session != session) continue;
+    if (!is_robots_place(one) || gives_pose(one) != truth || one.session != session) continue;
     const double t = pose_time(problem, one.from);
     const double driven = path_at(recording.drive, path, t);
     if (any && driven - begun < options.leg) continue;
@@ -86,7 +83,7 @@ std::vector<LegSpan> leg_spans(const std::vector<Recording>& recordings,
 std::vector<LegSpan> leg_spans(const FitState& fit, const LegOptions& options) {
   if (fit.used.left_out.empty()) return leg_spans(fit.recordings, fit.problem, options);
   const RecordingProblem whole = whole_problem(fit);
-  using Key = std::tuple<MeasurementKind, int, std::size_t>;
+  using Key = std::tuple<const MeasurementKind*, int, std::size_t>;
   const auto key = [](const Measurement& one) { return Key(one.kind, one.session, one.source); };
   std::map<Key, std::size_t> place;
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {

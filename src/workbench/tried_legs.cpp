@@ -86,7 +86,7 @@ Eigen::VectorXd rows_of_legs(const std::vector<std::size_t>& numbers,
     const Measurement& one = fit.problem.measurements[k];
     if (one.session < 0) continue;
     const double from = time_of(one.from);
-    const double to = one.kind == MeasurementKind::segment ? time_of(one.to) : from;
+    const double to = is_segment(one) ? time_of(one.to) : from;
     const std::vector<TimeSpan>& here = spans[idx(one.session)];
     const bool within = std::any_of(here.begin(), here.end(), [&](const TimeSpan& span) {
       return span.from <= from && to <= span.to;

@@ -7,6 +7,7 @@
 
 #include "criticism/noise_laws.hpp"
 #include "criticism/noisy_recordings.hpp"
+#include "estimation/kinds/kinds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -43,10 +44,10 @@ Eigen::MatrixXd dense_law(const FitState& fit, const RecordingSystem& system,
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     const Measurement& one = fit.problem.measurements[k];
     Matrix4 added = Matrix4::Zero();
-    if (law == "sighting" && one.kind == MeasurementKind::standing) {
+    if (law == "sighting" && one.kind == &kinds::standing) {
       added.topLeftCorner<2, 2>().setIdentity();
     }
-    if (law == "compass" && one.kind == MeasurementKind::segment && one.rows == 4) {
+    if (law == "compass" && one.kind == &kinds::segment && one.rows == 4) {
       added(3, 3) = 1.0 / readings_of(fit.problem.segments[one.source]);
     }
     const int at = system.first_row(k);

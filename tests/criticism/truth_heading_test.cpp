@@ -3,6 +3,7 @@
 // A tracker that is turned against the robot, told from a robot that slips and from its compass.
 #include "criticism/candidates.hpp"
 #include "criticism/score_test.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "trussmap/diagnose.hpp"
 #include "trussmap/simulation.hpp"
 
@@ -59,7 +60,7 @@ TEST(TruthHeading, MovesTruthRowsAlone) {
   for (const Measurement& one : problem.measurements) {
     Vector4 wanted = Vector4::Zero();
     // predicted - measured; measured = heading + g.
-    if (one.kind == MeasurementKind::truth) {
+    if (one.kind == &kinds::truth) {
       ++truths;
       wanted = one.whitener.col(2);
     }

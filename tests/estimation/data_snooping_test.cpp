@@ -3,6 +3,7 @@
 #include "estimation/data_snooping.hpp"
 
 #include "criticism/noise_sources.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/simulated_recordings.hpp"
 
 #include <algorithm>
@@ -105,7 +106,7 @@ TEST(DataSnooping, TheStatisticIsWhatLeavingTheMeasurementOutTakesOffChi2) {
   const RecordingAdjustment fit = adjust(problem);
   const std::vector<CheckedMeasurement> checked = snoop(problem, {}, fit);
   std::size_t some = 0;
-  while (problem.measurements[some].kind != MeasurementKind::view) ++some;
+  while (problem.measurements[some].kind != &kinds::view) ++some;
   RecordingProblem without = problem;
   without.measurements.erase(without.measurements.begin() + static_cast<std::ptrdiff_t>(some));
   // Exact for a linear problem; this one is nearly.
@@ -121,7 +122,7 @@ TEST(DataSnooping, TheSmallestDetectableOutlierIsSeenInFourOfFiveCases) {
   const std::vector<CheckedMeasurement> before = snoop(problem, {}, adjust(problem));
   int asked = 0;
   for (std::size_t k = 0; k < problem.measurements.size() && asked < 5; k += 7) {
-    if (problem.measurements[k].kind != MeasurementKind::view) continue;
+    if (problem.measurements[k].kind != &kinds::view) continue;
     ++asked;
     const Eigen::Index value = asked % 2;  // bearing, range, ...
     RecordingProblem spoilt = problem;
@@ -143,7 +144,7 @@ TEST(DataSnooping, AWrongSightingIsTheFirstOfTheOutliers) {
     ASSERT_FALSE(found.empty());
     const Measurement& first = problem.measurements[idx(found.front().measurement)];
     EXPECT_EQ(first.source, one.wrong);
-    EXPECT_EQ(first.kind, MeasurementKind::view);
+    EXPECT_EQ(first.kind, &kinds::view);
   }
 }
 

@@ -5,6 +5,7 @@
 // numerically over every pair of rows. Shares no formula with the library's states.
 #pragma once
 
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_problem.hpp"
 
 #include <algorithm>
@@ -178,7 +179,7 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
     source.row = rows;
     source.session = one.session;
     rows += one.rows;
-    if (one.session < 0 || of_views == (one.kind == MeasurementKind::segment)) continue;
+    if (one.session < 0 || of_views == (one.kind == &kinds::segment)) continue;
     const Recording& recording = recordings[idx(one.session)];
     const double start = 2.0 * recording.drive.t[0] - recording.drive.t[1];
     const double t = problem.poses[idx(one.from - problem.landmark_count())].t;
@@ -188,7 +189,7 @@ inline Eigen::MatrixXd process_covariance(const RecordingProblem& problem,
                         [at](const Sighting& seen) { return seen.standing() && seen.t < at; }));
     };
     if (of_views) {
-      if (one.kind != MeasurementKind::view) continue;
+      if (one.kind != &kinds::view) continue;
       if (process.channel == Channel::bearing && one.rows < 2) continue;
       auto& [seen, pass] = passes.try_emplace({one.session, one.to}, t, 0).first->second;
       if (t - seen > 5.0) ++pass;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/measurement_rows.hpp"
 
+#include "estimation/kinds/kinds.hpp"
+
 #include <cmath>
 #include <functional>
 #include <random>
@@ -21,7 +23,7 @@ RecordingProblem small_problem() {
   return problem;
 }
 
-Measurement measurement(MeasurementKind kind, int from, int to, int rows) {
+Measurement measurement(const MeasurementKind* kind, int from, int to, int rows) {
   Measurement one;
   one.kind = kind;
   one.from = from;
@@ -76,18 +78,20 @@ Vector4 difference(const Measurement& one, Everything all,
   return (error(kStep) - error(-kStep)) / (2.0 * kStep);
 }
 
+std::vector<Measurement> of_all_kinds() {
+  return {
+      measurement(&kinds::segment, 2, 3, 4),      measurement(&kinds::segment, 3, 2, 3),
+      measurement(&kinds::standing, 2, 1, 2),     measurement(&kinds::view, 3, 0, 2),
+      measurement(&kinds::view, 3, 1, 1),         measurement(&kinds::cartesian_view, 2, 0, 2),
+      measurement(&kinds::survey, 1, -1, 2),      measurement(&kinds::truth, 3, -1, 3),
+      measurement(&kinds::fix, 2, -1, 2),         measurement(&kinds::loop, 3, 2, 3),
+      measurement(&kinds::sighting_yaw, 3, 4, 1), measurement(&kinds::survey_heading, 4, -1, 1)};
+}
+
 TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
-  using Kind = MeasurementKind;
-  const std::vector<Measurement> kinds = {
-      measurement(Kind::segment, 2, 3, 4),      measurement(Kind::segment, 3, 2, 3),
-      measurement(Kind::standing, 2, 1, 2),     measurement(Kind::view, 3, 0, 2),
-      measurement(Kind::view, 3, 1, 1),         measurement(Kind::cartesian_view, 2, 0, 2),
-      measurement(Kind::survey, 1, -1, 2),      measurement(Kind::truth, 3, -1, 3),
-      measurement(Kind::fix, 2, -1, 2),         measurement(Kind::loop, 3, 2, 3),
-      measurement(Kind::sighting_yaw, 3, 4, 1), measurement(Kind::survey_heading, 4, -1, 1)};
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const Everything all = random_values(seed);
-    for (const Measurement& one : kinds) {
+    for (const Measurement& one : of_all_kinds()) {
       const MeasurementRows rows =
           measurement_rows(small_problem(), one, all.state, one.value, all.view);
       for (int k = 0; k < 3; ++k) {
@@ -96,7 +100,7 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
           const Vector4 expected =
               difference(one, all, [&](Everything& at) { return coordinate(at, node, k); });
           EXPECT_LT((found.col(k) - expected).norm(), 1e-7)
-              << "kind " << static_cast<int>(one.kind) << " node " << node << " entry " << k;
+              << one.kind->facts().words << " node " << node << " entry " << k;
         };
         check(one.from, rows.by_from);
         check(one.to, rows.by_to);
@@ -105,10 +109,28 @@ TEST(MeasurementRows, DerivativesAreThoseOfDifferences) {
         const Vector4 expected =
             difference(one, all, [&](Everything& at) { return view_entry(at, k); });
         EXPECT_LT((rows.by_view.col(k) - expected).norm(), 1e-7)
-            << "kind " << static_cast<int>(one.kind) << " view entry " << k;
+            << one.kind->facts().words << " view entry " << k;
       }
     }
   }
+}
+
+/// What is laid over a measurement as lasting noise of a channel must change it.
+TEST(MeasurementKinds, WhatAChannelShowsInIsChangedByIt) {
+  const Everything all = random_values(7);
+  int shown = 0;
+  for (const Measurement& one : of_all_kinds()) {
+    const MeasurementRows rows =
+        measurement_rows(small_problem(), one, all.state, one.value, all.view);
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(Channel::sighting_yaw); ++k) {
+      const auto channel = static_cast<Channel>(k);
+      if (is_driven(one) || !one.kind->shows(channel, one)) continue;
+      ++shown;
+      EXPECT_GT((rows.by_view * one.kind->unit_view(channel, one, 0.5, 0.3)).norm(), 0.01)
+          << one.kind->facts().words << ", " << name_of(channel);
+    }
+  }
+  EXPECT_GE(shown, 20);
 }
 
 TEST(MeasurementRows, WhatFitsHasNoError) {
@@ -116,10 +138,10 @@ TEST(MeasurementRows, WhatFitsHasNoError) {
   RecordingState state;
   state.landmarks = {{1.0, 3.0}, {0.0, 0.0}};
   state.poses = {{1.0, 1.0, std::acos(0.0)}, {1.0, 1.0, 0.0}};
-  Measurement one = measurement(MeasurementKind::view, 2, 0, 2);
+  Measurement one = measurement(&kinds::view, 2, 0, 2);
   one.value << 2.0, 0.0, 0.0, 0.0;  // straight ahead
   EXPECT_LT(measurement_rows(problem, one, state, one.value, {}).error.norm(), 1e-15);
-  one.kind = MeasurementKind::cartesian_view;
+  one.kind = &kinds::cartesian_view;
   EXPECT_LT(measurement_rows(problem, one, state, one.value, {}).error.norm(), 1e-15);
 }
 

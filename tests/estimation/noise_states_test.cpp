@@ -7,6 +7,7 @@
 
 #include "effects/channel_physics.hpp"
 #include "estimation/kernel_covariance.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/measurement_rows.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "estimation/recording_start.hpp"
@@ -139,7 +140,7 @@ TEST_P(NoiseStates, HaveTheCovarianceOfTheKernel) {
   const RecordingProblem problem = make_problem(recordings, model, options);
   const auto segments =
       std::count_if(problem.measurements.begin(), problem.measurements.end(),
-                    [](const Measurement& one) { return one.kind == MeasurementKind::segment; });
+                    [](const Measurement& one) { return one.kind == &kinds::segment; });
   ASSERT_EQ(segments, 9);
   const Lasting& lasting = GetParam();
   const ProcessLayer layer(problem, recordings, kRobot);
@@ -277,7 +278,7 @@ RecordingProblem views_only(const std::vector<std::pair<double, const char*>>& s
 
 /// States of the measurements of a kind, in order.
 std::vector<int> states_of(const RecordingProblem& problem, const LaidProcess& laid,
-                           MeasurementKind kind) {
+                           const MeasurementKind* kind) {
   std::vector<int> states;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     if (problem.measurements[k].kind != kind) continue;
@@ -293,7 +294,7 @@ TEST(NoiseStatesOfViews, LastAsLongAsALandmarkIsNeverUnseenForLong) {
       {{1.0, "a"}, {1.0, "b"}, {5.0, "a"}, {6.5, "b"}, {7.0, "b"}, {9.0, "a"}}, recordings);
   const ProcessLayer layer(problem, recordings, {});
   const auto states = [&](Channel channel, ProcessKind process) {
-    return states_of(problem, layer.lay(channel, process, 2.0), MeasurementKind::view);
+    return states_of(problem, layer.lay(channel, process, 2.0), &kinds::view);
   };
   EXPECT_EQ(states(Channel::range, ProcessKind::per_pass), (std::vector<int>{0, 1, 0, 2, 2, 0}));
   EXPECT_EQ(states(Channel::lever, ProcessKind::white), (std::vector<int>{0, 1, 2, 3, 4, 5}));
@@ -317,15 +318,14 @@ TEST(NoiseStatesOfLegs, EndWithRests) {
   const RecordingProblem problem =
       views_only({{2.0, "a"}, {8.0, "a"}, {16.0, "a"}, {20.0, "a"}}, recordings, 10.0, 11.0);
   const ProcessLayer layer(problem, recordings, {});
-  EXPECT_EQ(states_of(problem, layer.lay(Channel::range, ProcessKind::per_leg, 0.0),
-                      MeasurementKind::view),
+  EXPECT_EQ(states_of(problem, layer.lay(Channel::range, ProcessKind::per_leg, 0.0), &kinds::view),
             (std::vector<int>{0, 0, 1, 1}));
   const LaidProcess travel = layer.lay(Channel::travel, ProcessKind::per_leg, 0.0);
   // Segments: 2 to 8 s, 1.2 m; 8 to 10 s, 0.4 m, with 11 to 16 s, 1.0 m; 16 to 20 s, 0.8 m.
   std::map<int, std::vector<double>> way;
   std::size_t segment = 0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
-    if (problem.measurements[k].kind != MeasurementKind::segment) continue;
+    if (problem.measurements[k].kind != &kinds::segment) continue;
     for (const NoiseTerm& term : travel.terms[k]) {
       way[term.state].resize(3, 0.0);
       way[term.state][segment] += term.by[0];
@@ -348,12 +348,12 @@ TEST(NoiseStatesOfLegs, EndWhereTheRobotStandsOnALandmark) {
   recordings[0].sightings[2].range = recordings[0].sightings[2].bearing = kAbsent;
   const RecordingProblem problem = make_problem(recordings, {});
   const ProcessLayer layer(problem, recordings, {});
-  EXPECT_EQ(states_of(problem, layer.lay(Channel::bearing, ProcessKind::per_leg, 0.0),
-                      MeasurementKind::view),
-            (std::vector<int>{0, 0, 1}));
-  EXPECT_EQ(states_of(problem, layer.lay(Channel::travel, ProcessKind::per_leg, 0.0),
-                      MeasurementKind::segment),
-            (std::vector<int>{0, 1}));
+  EXPECT_EQ(
+      states_of(problem, layer.lay(Channel::bearing, ProcessKind::per_leg, 0.0), &kinds::view),
+      (std::vector<int>{0, 0, 1}));
+  EXPECT_EQ(
+      states_of(problem, layer.lay(Channel::travel, ProcessKind::per_leg, 0.0), &kinds::segment),
+      (std::vector<int>{0, 1}));
 }
 
 // ----------------------------------------
@@ -631,7 +631,7 @@ TEST(LastingNoise, WhereThereIsNoneLeavesAProblemAsItIs) {
   int rows = 0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::segment) {
+    if (one.kind == &kinds::segment) {
       const Drive& drive = recordings[idx(one.session)].drive;
       const Matrix4 C =
           segment_covariance(drive, problem.segments[one.source], model.robot, model.noise);
@@ -679,7 +679,7 @@ TEST(SystemWithStates, ProductsAreThoseOfOneMatrix) {
     EXPECT_EQ(system.gauge().hold_heading, held);
     std::vector<double> weights(one.problem.measurements.size(), 1.0);
     for (std::size_t k = 0; k < weights.size(); k += 3) {
-      weights[k] = one.problem.measurements[k].kind == MeasurementKind::view ? 0.0 : 0.5;
+      weights[k] = one.problem.measurements[k].kind == &kinds::view ? 0.0 : 0.5;
     }
     system.set_weights(weights);
     const double chi2 = system.linearise(one.state, one.coefficients);
@@ -776,7 +776,7 @@ TEST(ProjectionWithStates, BlocksAreThoseOfTheDenseOne) {
   RecordingSystem system(one.problem, one.border);
   FitState fit;
   for (std::size_t k = 0; k < one.problem.measurements.size(); ++k) {
-    if (one.problem.measurements[k].kind == MeasurementKind::view && k % 5 == 0) {
+    if (one.problem.measurements[k].kind == &kinds::view && k % 5 == 0) {
       fit.adjustment.left_out.push_back(static_cast<int>(k));
     }
   }
@@ -841,7 +841,7 @@ TEST(LastingNoise, OfASegmentIsWhatItsStatesAdd) {
   Eigen::Index at = 0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (one.kind == MeasurementKind::segment) {
+    if (one.kind == &kinds::segment) {
       const Matrix4 found = segment_prior_covariance(problem, variances, k) + problem.within[k];
       const Eigen::MatrixXd expected = lasting.block(at, at, one.rows, one.rows);
       EXPECT_LT(largest_difference(found.topLeftCorner(one.rows, one.rows), expected), 1e-7) << k;

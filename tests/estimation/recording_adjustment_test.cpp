@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "estimation/recording_adjustment.hpp"
 
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/recording_system.hpp"
 #include "estimation/simulated_recordings.hpp"
@@ -154,7 +155,7 @@ TEST(RecordingAdjustment, CopiesOfASurveyCountOnce) {
   const SimulatedRecording one = simulate_exactly({true, true, false, 1}, 21);
   const RecordingProblem problem = make_problem({one.recording, one.recording}, one.model);
   EXPECT_EQ(std::count_if(problem.measurements.begin(), problem.measurements.end(),
-                          [](const Measurement& m) { return m.kind == MeasurementKind::survey; }),
+                          [](const Measurement& m) { return m.kind == &kinds::survey; }),
             9);
 }
 

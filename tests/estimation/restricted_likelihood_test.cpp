@@ -4,6 +4,7 @@
 // The restricted likelihood, against one dense QR of all rows by all unknowns.
 #include "estimation/restricted_likelihood.hpp"
 
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "estimation/recording_start.hpp"
 #include "estimation/simulated_recordings.hpp"
@@ -89,7 +90,7 @@ TEST(RestrictedLikelihood, WhatIsLeftOutCountsForNothing) {
       restricted_likelihood(one.system, one.problem, one.state, Eigen::VectorXd());
   std::vector<int> out;
   for (std::size_t k = 0; k < one.problem.measurements.size(); ++k) {
-    if (one.problem.measurements[k].kind != MeasurementKind::survey) continue;
+    if (one.problem.measurements[k].kind != &kinds::survey) continue;
     if (out.size() < 2) out.push_back(static_cast<int>(k));
   }
   ASSERT_EQ(out.size(), 2U);

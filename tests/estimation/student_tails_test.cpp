@@ -3,6 +3,7 @@
 #include "estimation/student_tails.hpp"
 
 #include "criticism/disturbances.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_system.hpp"
 #include "fit/fit_state.hpp"
 #include "fit/noise_fit.hpp"
@@ -126,7 +127,7 @@ TEST(StudentTails, TheFitIsTheLikeliest) {
   double as_normal = 0.0;
   int far = 0;
   for (const Measurement& one : problem.measurements) {
-    if (one.kind != MeasurementKind::view) continue;
+    if (one.kind != &kinds::view) continue;
     EXPECT_EQ(one.tails, kTails);
     const Pose& pose = state.poses[idx(one.from - problem.landmark_count())];
     const Vector2 offset = state.landmarks[idx(one.to)] - pose.position();

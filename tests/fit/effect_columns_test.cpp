@@ -7,6 +7,7 @@
 
 #include "criticism/inverted_recordings.hpp"
 #include "effects/channel_physics.hpp"
+#include "estimation/kinds/kinds.hpp"
 #include "estimation/recording_system.hpp"
 
 #include <cmath>
@@ -85,20 +86,17 @@ class World {
 
   /// At a view or truth row.
   [[nodiscard]] double shape_at(const Measurement& one, const KnownShape& shape) const {
-    return one.kind == MeasurementKind::survey ? 0.0 : shape.value(here_at(time_of(one.from)));
+    return one.kind == &kinds::survey ? 0.0 : shape.value(here_at(time_of(one.from)));
   }
 
   /// Predicted - measured where the coefficient is `a`.
   [[nodiscard]] Vector4 errors(const Measurement& one, Channel channel, const KnownShape& shape,
                                double a) const {
-    switch (one.kind) {
-      case MeasurementKind::segment:
-        return segment(time_of(one.from), time_of(one.to), channel, shape, a);
-      case MeasurementKind::survey:
-        return Vector4::Zero();
-      default:
-        return view(one, channel, a * shape.value(here_at(time_of(one.from))));
+    if (one.kind == &kinds::segment) {
+      return segment(time_of(one.from), time_of(one.to), channel, shape, a);
     }
+    if (one.kind == &kinds::survey) return Vector4::Zero();
+    return view(one, channel, a * shape.value(here_at(time_of(one.from))));
   }
 
  private:
@@ -210,13 +208,13 @@ class World {
   }
 
   [[nodiscard]] Vector4 view(const Measurement& one, Channel channel, double g) const {
-    if (one.kind == MeasurementKind::fix) return fix(one, channel, g);
+    if (one.kind == &kinds::fix) return fix(one, channel, g);
     if (acts_on_fixes(channel)) g = 0.0;
     const TruePose pose = at(time_of(one.from) - (channel == Channel::delay ? g : 0.0));
     const Point lever(channel == Channel::lever ? g : 0.0,
                       channel == Channel::lever_left ? g : 0.0);
     const Point sensor = pose.place + lever * std::polar(1.0, pose.heading);
-    if (one.kind == MeasurementKind::truth) {
+    if (one.kind == &kinds::truth) {
       return {sensor.real() - one.value[0], sensor.imag() - one.value[1],
               std::remainder(
                   pose.heading + (channel == Channel::truth_heading ? g : 0.0) - one.value[2],
@@ -226,7 +224,7 @@ class World {
     const Vector2& landmark = state_.landmarks[idx(one.to)];
     const Point seen =
         (Point(landmark.x(), landmark.y()) - sensor) * std::polar(1.0, -pose.heading);
-    if (one.kind == MeasurementKind::standing) return {seen.real(), seen.imag(), 0.0, 0.0};
+    if (one.kind == &kinds::standing) return {seen.real(), seen.imag(), 0.0, 0.0};
     double range = std::abs(seen);
     double bearing = std::arg(seen);
     if (channel == Channel::range) range += g;
@@ -293,7 +291,7 @@ TEST_P(EachChannel, ColumnsAreThoseOfDifferences) {
       worst = std::max(worst, (found - expected).norm());
       largest = std::max(largest, expected.norm());
       if (expected.norm() > 1e-9) {
-        (one.kind == MeasurementKind::segment ? acts_on_segment : acts_on_view) = true;
+        (one.kind == &kinds::segment ? acts_on_segment : acts_on_view) = true;
       }
     }
     EXPECT_GT(largest, 1e-3) << shape.text;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Positions without heading: drives that nothing else ties to a place, and drives with landmarks.
+#include "estimation/kinds/kinds.hpp"
 #include "fit/placed_drives.hpp"
 #include "fit/replicated_recording.hpp"
 #include "trussmap/build_map.hpp"
@@ -104,7 +105,7 @@ TEST(Fixes, WrongOnesAreLeftOutAndNamed) {
     std::set<double> left_out;
     for (const int k : state.adjustment.left_out) {
       const Measurement& one = state.problem.measurements[idx(k)];
-      ASSERT_EQ(one.kind, MeasurementKind::fix);
+      ASSERT_EQ(one.kind, &kinds::fix);
       left_out.insert(drive.recording.fixes[one.source].t);
     }
     for (const double t : wrong) EXPECT_TRUE(left_out.contains(t)) << t;
@@ -204,9 +205,8 @@ TEST(Fixes, ThatFollowTooFastArePassedOver) {
   const double end = drive.recording.drive.t.back();
   drive.recording.fixes.push_back({end + 1.0, 0.0, 0.0});
   const RecordingProblem problem = make_problem({drive.recording}, drive.model);
-  const auto fixes =
-      std::count_if(problem.measurements.begin(), problem.measurements.end(),
-                    [](const Measurement& one) { return one.kind == MeasurementKind::fix; });
+  const auto fixes = std::count_if(problem.measurements.begin(), problem.measurements.end(),
+                                   [](const Measurement& one) { return one.kind == &kinds::fix; });
   EXPECT_NEAR(static_cast<double>(fixes), 10.0 * end, 3.0);
 }
 

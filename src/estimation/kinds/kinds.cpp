@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/kinds/kinds.hpp"
+
+#include <array>
+
+namespace trussmap::kinds {
+
+std::span<const MeasurementKind* const> all() {
+  static constexpr std::size_t kCount = 12;
+  static const std::array<const MeasurementKind*, kCount> list{
+      &segment,        &gyro,      &standing,     &view,
+      &cartesian_view, &direction, &sighting_yaw, &survey,
+      &survey_heading, &truth,     &fix,          &loop};
+  return list;
+}
+
+}  // namespace trussmap::kinds

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// The robot stands on the landmark, or on a code on the floor: R(theta)' delta - offset. In robot
+// axes too: the map turned as a whole then changes no error, not even to first order where the
+// errors are large, and a free direction stays recognisable.
+#include "estimation/kinds/kinds.hpp"
+#include "estimation/kinds/sighted.hpp"
+
+namespace trussmap {
+namespace {
+
+class Standing final : public Sighted {
+ public:
+  constexpr Standing()
+      : Sighted({.words = "standing on", .noise = "sighting", .curvature = Curvature::of_a_way}) {}
+
+  [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
+                                     const ViewPattern& view) const override {
+    ViewPattern place = view;
+    place.heading = 0.0;
+    MeasurementRows rows = offset_rows(at, value, place);
+    rows.by_view.col(2).setZero();
+    return rows;
+  }
+
+  [[nodiscard]] std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
+                                                 const ViewPattern& view) const override {
+    return sensor_at(pose, view) + rotation(pose.heading) * one.value.head<2>();
+  }
+
+  [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement&, const Pose& pose,
+                                                         const ViewPattern&) const override {
+    Eigen::Matrix<double, 2, 4> T = Eigen::Matrix<double, 2, 4>::Zero();
+    T.leftCols<2>() = -rotation(pose.heading);
+    return T;
+  }
+};
+
+constinit const Standing kStanding;
+
+}  // namespace
+
+const MeasurementKind& kinds::standing = kStanding;
+
+}  // namespace trussmap

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "estimation/measurement_kind.hpp"
+
+#include "effects/channel_physics.hpp"
+#include "effects/channel_record.hpp"
+
+#include <Eigen/LU>
+
+namespace trussmap {
+
+namespace {
+
+/// Of a landmark, by a sensor: it shows in rows that have its noise.
+bool is_of_sensor(Channel channel) {
+  return channel == Channel::range || channel == Channel::range_scale ||
+         channel == Channel::bearing || channel == Channel::sighting_yaw;
+}
+
+}  // namespace
+
+Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) const {
+  Matrix4 fixed = Matrix4::Zero();
+  if (facts_.noise_is_sought && !one.own_sd) return fixed;
+  const Eigen::MatrixXd colour = one.whitener.topLeftCorner(one.rows, one.rows).inverse();
+  fixed.topLeftCorner(one.rows, one.rows) = colour * colour.transpose();
+  return fixed;
+}
+
+bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
+  if (facts_.stream == Stream::drive) return acts_on(channel) != ActsOn::views;
+  if (acts_on(channel) != ActsOn::views) return false;
+  if (is_of_sensor(channel)) return !reading_variance(channel, one).isZero(0.0);
+  switch (facts_.stream) {
+    case Stream::sightings:
+      return acts_on_sightings(channel);
+    case Stream::truth:
+      return acts_on_truth(channel);
+    case Stream::fixes:
+      return acts_on_fixes(channel);
+    default:
+      return false;
+  }
+}
+
+Matrix4 MeasurementKind::reading_variance(Channel channel, const Measurement& one) const {
+  Matrix4 variance = Matrix4::Zero();
+  for (Eigen::Index row = 0; row < one.rows; ++row) {
+    if (noise(row) == record_of(channel).noise_source) variance(row, row) = 1.0;
+  }
+  return variance;
+}
+
+ViewVector MeasurementKind::unit_view(Channel channel, const Measurement&, double speed,
+                                      double turn_rate) const {
+  return view_pattern(channel, 1.0, speed, turn_rate).vector();
+}
+
+std::optional<Vector2> MeasurementKind::seen_from(const Measurement&, const Pose&,
+                                                  const ViewPattern&) const {
+  return std::nullopt;
+}
+
+Eigen::Matrix<double, 2, 4> MeasurementKind::seen_by_rows(const Measurement&, const Pose&,
+                                                          const ViewPattern&) const {
+  return Eigen::Matrix<double, 2, 4>::Identity();
+}
+
+double MeasurementKind::missed(const Measurement&, const Pose&, const Vector2&,
+                               const ViewPattern&) const {
+  return 0.0;
+}
+
+Eigen::MatrixXd MeasurementKind::slack(const Measurement& one, const MeasurementRows&,
+                                       double) const {
+  return Eigen::MatrixXd::Zero(one.rows, one.rows);
+}
+
+std::vector<NamedResidual> MeasurementKind::residuals(int) const {
+  return {};
+}
+
+void MeasurementKind::draw(const Vector4&, const Noise&, NormalDraws&, Sighting&) const {}
+
+}  // namespace trussmap
