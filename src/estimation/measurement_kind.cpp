@@ -28,15 +28,15 @@ Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) 
 }
 
 bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
-  if (facts_.stream == Stream::drive) return acts_on(channel) != ActsOn::views;
+  if (facts_.stream == RecordingStream::drive) return acts_on(channel) != ActsOn::views;
   if (acts_on(channel) != ActsOn::views) return false;
   if (is_of_sensor(channel)) return !reading_variance(channel, one).isZero(0.0);
   switch (facts_.stream) {
-    case Stream::sightings:
+    case RecordingStream::sightings:
       return acts_on_sightings(channel);
-    case Stream::truth:
+    case RecordingStream::truth:
       return acts_on_truth(channel);
-    case Stream::fixes:
+    case RecordingStream::fixes:
       return acts_on_fixes(channel);
     default:
       return false;

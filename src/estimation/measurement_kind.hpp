@@ -19,7 +19,7 @@
 namespace trussmap {
 
 /// Where the row stands that measured it.
-enum class Stream { drive, sightings, survey, truth, fixes, loops };
+enum class RecordingStream { drive, sightings, survey, truth, fixes, loops };
 
 enum class NodeType { none, pose, landmark, orientation };
 
@@ -34,7 +34,7 @@ enum class Curvature {
 struct KindFacts {
   std::string_view words;         ///< "sight of", before what it is of and when
   std::string_view several = {};  ///< "sightings"
-  Stream stream = Stream::drive;
+  RecordingStream stream = RecordingStream::drive;
   NodeType from = NodeType::pose;
   NodeType to = NodeType::none;
   /// The model's key of the noise of its rows, and of those from a row on.
@@ -126,7 +126,7 @@ class MeasurementKind {
 
 /// Of the drive: what its rows add up to.
 [[nodiscard]] inline bool is_driven(const Measurement& one) {
-  return one.kind->facts().stream == Stream::drive;
+  return one.kind->facts().stream == RecordingStream::drive;
 }
 
 [[nodiscard]] inline bool is_between_poses(const Measurement& one) {
@@ -171,7 +171,7 @@ class MeasurementKind {
 /// Of a place in the map's frame, whatever was driven.
 [[nodiscard]] inline bool is_in_map_frame(const Measurement& one) {
   const KindFacts& facts = one.kind->facts();
-  return facts.to == NodeType::none && facts.stream != Stream::drive &&
+  return facts.to == NodeType::none && facts.stream != RecordingStream::drive &&
          facts.from != NodeType::orientation;
 }
 

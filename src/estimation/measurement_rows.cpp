@@ -6,24 +6,25 @@ namespace trussmap {
 namespace {
 
 /// Per session a pattern per row; nullptr of a stream that is no view.
-const std::vector<std::vector<ViewPattern>>* views_of(const EffectPattern& effect, Stream stream) {
+const std::vector<std::vector<ViewPattern>>* views_of(const EffectPattern& effect,
+                                                      RecordingStream stream) {
   switch (stream) {
-    case Stream::sightings:
+    case RecordingStream::sightings:
       return &effect.sightings;
-    case Stream::truth:
+    case RecordingStream::truth:
       return &effect.truths;
-    case Stream::fixes:
+    case RecordingStream::fixes:
       return &effect.fixes;
-    case Stream::drive:
-    case Stream::survey:
-    case Stream::loops:
+    case RecordingStream::drive:
+    case RecordingStream::survey:
+    case RecordingStream::loops:
       break;
   }
   return nullptr;
 }
 
-const ViewPattern* unit_view_of(const EffectPattern& effect, Stream stream, std::size_t session,
-                                std::size_t row) {
+const ViewPattern* unit_view_of(const EffectPattern& effect, RecordingStream stream,
+                                std::size_t session, std::size_t row) {
   const auto* views = views_of(effect, stream);
   if (views == nullptr || views->empty() || (*views)[session].empty()) return nullptr;
   return &(*views)[session][row];
@@ -36,8 +37,8 @@ const ViewPattern* unit_view_of(const EffectPattern& effect, const Measurement& 
   return unit_view_of(effect, one.kind->facts().stream, idx(one.session), one.source);
 }
 
-ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets, Stream stream,
-                    std::size_t session, std::size_t row) {
+ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
+                    RecordingStream stream, std::size_t session, std::size_t row) {
   ViewPattern sum;
   for (std::size_t k = 0; k < border.size(); ++k) {
     const ViewPattern* pattern = unit_view_of(border[k], stream, session, row);

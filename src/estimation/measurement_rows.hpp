@@ -21,7 +21,7 @@ namespace trussmap {
 
 /// The same for a row of a session's stream.
 [[nodiscard]] ViewPattern view_of(const EffectParameters& border, const Eigen::VectorXd& offsets,
-                                  Stream stream, std::size_t session, std::size_t row);
+                                  RecordingStream stream, std::size_t session, std::size_t row);
 
 /// Values of what a measurement lies between.
 [[nodiscard]] Ends ends_of(const RecordingProblem& problem, const Measurement& measurement,

@@ -58,7 +58,7 @@ void clear_drive(const Recording& recorded, const EffectParameters& border,
 void clear_sightings(const Recording& recorded, const EffectParameters& border,
                      const Eigen::VectorXd& offsets, int session, ClearedRecording& result) {
   for (std::size_t k = 0; k < recorded.sightings.size(); ++k) {
-    const ViewPattern view = view_of(border, offsets, Stream::sightings, idx(session), k);
+    const ViewPattern view = view_of(border, offsets, RecordingStream::sightings, idx(session), k);
     const Sighting& seen = recorded.sightings[k];
     Sighting& clear = result.recording.sightings[k];
     result.sensor[k] = {view.ahead, view.left};

@@ -37,10 +37,10 @@ std::vector<Part> parts_of(const Effect& effect, std::size_t sessions) {
   return parts;
 }
 
-Instant instant_of(Stream stream) {
-  return stream == Stream::truth   ? Instant::truth
-         : stream == Stream::fixes ? Instant::fix
-                                   : Instant::sighting;
+Instant instant_of(RecordingStream stream) {
+  return stream == RecordingStream::truth   ? Instant::truth
+         : stream == RecordingStream::fixes ? Instant::fix
+                                            : Instant::sighting;
 }
 
 /// Where a channel's shapes are asked for.

@@ -56,7 +56,7 @@ void draw_truth(std::size_t session, Replica& replica, NormalDraws& draw) {
   for (std::size_t row = 0; row < recording.truth.size(); ++row) {
     TruthRow& one = recording.truth[row];
     kinds::draw(one, pose_at(recording.drive, replica.paths[session], one.t),
-                view_of(replica.border, replica.offsets, Stream::truth, session, row),
+                view_of(replica.border, replica.offsets, RecordingStream::truth, session, row),
                 replica.fit.model.noise, draw);
   }
 }
@@ -68,7 +68,8 @@ void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& dr
   for (std::size_t row = 0; row < recording.fixes.size(); ++row) {
     Fix& one = recording.fixes[row];
     kinds::draw(one, pose(one.t),
-                view_of(replica.border, replica.offsets, Stream::fixes, session, row), noise, draw);
+                view_of(replica.border, replica.offsets, RecordingStream::fixes, session, row),
+                noise, draw);
   }
   for (Loop& one : recording.loops) {
     kinds::draw(one, relative(pose(one.t), pose(one.t2)), noise, draw);
@@ -77,7 +78,7 @@ void draw_fixes_and_loops(std::size_t session, Replica& replica, NormalDraws& dr
 
 void draw_sightings(Replica& replica, NormalDraws& draw) {
   for (const Measurement& one : replica.fit.problem.measurements) {
-    if (one.kind->facts().stream != Stream::sightings) continue;
+    if (one.kind->facts().stream != RecordingStream::sightings) continue;
     one.kind->draw(seen_exactly(replica, one), replica.fit.model.noise, draw,
                    replica.timed[idx(one.session)].sightings[one.source]);
   }

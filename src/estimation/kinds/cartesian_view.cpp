@@ -10,9 +10,9 @@
 namespace trussmap {
 namespace {
 
-class CartesianView final : public Sighted {
+class CartesianViewKind final : public Sighted {
  public:
-  constexpr CartesianView()
+  constexpr CartesianViewKind()
       : Sighted({.words = "sight of", .noise = "range", .curvature = Curvature::of_a_way_by_view}) {
   }
 
@@ -67,7 +67,7 @@ class CartesianView final : public Sighted {
   }
 };
 
-constinit const CartesianView kCartesianView;
+constinit const CartesianViewKind kCartesianView;
 
 }  // namespace
 

@@ -10,9 +10,9 @@
 namespace trussmap {
 namespace {
 
-class Direction final : public Sighted {
+class DirectionKind final : public Sighted {
  public:
-  constexpr Direction() : Sighted({.words = "sight of", .noise = "bearing"}) {}
+  constexpr DirectionKind() : Sighted({.words = "sight of", .noise = "bearing"}) {}
 
   /// Of a view the second row.
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
@@ -45,7 +45,7 @@ class Direction final : public Sighted {
   }
 };
 
-constinit const Direction kDirection;
+constinit const DirectionKind kDirection;
 
 }  // namespace
 

@@ -24,7 +24,7 @@ class FixKind final : public MeasurementKind {
   constexpr FixKind()
       : MeasurementKind({.words = "fix",
                          .several = "fixes",
-                         .stream = Stream::fixes,
+                         .stream = RecordingStream::fixes,
                          .from = NodeType::pose,
                          .noise = "fix",
                          .noise_is_sought = true,

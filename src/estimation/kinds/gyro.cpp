@@ -8,12 +8,12 @@
 namespace trussmap {
 namespace {
 
-class Gyro final : public MeasurementKind {
+class GyroKind final : public MeasurementKind {
  public:
-  constexpr Gyro()
+  constexpr GyroKind()
       : MeasurementKind({.words = "gyro",
                          .several = "gyro readings",
-                         .stream = Stream::drive,
+                         .stream = RecordingStream::drive,
                          .from = NodeType::pose,
                          .noise = "gyro",
                          .noise_is_sought = true,
@@ -31,7 +31,7 @@ class Gyro final : public MeasurementKind {
   }
 };
 
-constinit const Gyro kGyro;
+constinit const GyroKind kGyro;
 
 }  // namespace
 

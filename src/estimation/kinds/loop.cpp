@@ -17,7 +17,7 @@ class LoopKind final : public MeasurementKind {
   constexpr LoopKind()
       : MeasurementKind({.words = "loop",
                          .several = "loops",
-                         .stream = Stream::loops,
+                         .stream = RecordingStream::loops,
                          .from = NodeType::pose,
                          .to = NodeType::pose,
                          .noise = "loop",

@@ -14,12 +14,12 @@
 namespace trussmap {
 namespace {
 
-class Segment final : public MeasurementKind {
+class SegmentKind final : public MeasurementKind {
  public:
-  constexpr Segment()
+  constexpr SegmentKind()
       : MeasurementKind({.words = "drive",
                          .several = "drives",
-                         .stream = Stream::drive,
+                         .stream = RecordingStream::drive,
                          .from = NodeType::pose,
                          .to = NodeType::pose,
                          .noise = "wheels",
@@ -50,7 +50,7 @@ class Segment final : public MeasurementKind {
   }
 };
 
-constinit const Segment kSegment;
+constinit const SegmentKind kSegment;
 
 }  // namespace
 

@@ -58,7 +58,7 @@ class Sighted : public MeasurementKind {
  private:
   static constexpr KindFacts of_landmark(KindFacts facts) {
     facts.several = "sightings";
-    facts.stream = Stream::sightings;
+    facts.stream = RecordingStream::sightings;
     facts.to = NodeType::landmark;
     facts.noise_is_sought = true;
     facts.may_be_wrong = true;

@@ -11,12 +11,12 @@
 namespace trussmap {
 namespace {
 
-class SightingYaw final : public MeasurementKind {
+class SightingYawKind final : public MeasurementKind {
  public:
-  constexpr SightingYaw()
+  constexpr SightingYawKind()
       : MeasurementKind({.words = "yaw of",
                          .several = "yaws",
-                         .stream = Stream::sightings,
+                         .stream = RecordingStream::sightings,
                          .from = NodeType::pose,
                          .to = NodeType::orientation,
                          .noise = "yaw",
@@ -60,7 +60,7 @@ class SightingYaw final : public MeasurementKind {
   }
 };
 
-constinit const SightingYaw kSightingYaw;
+constinit const SightingYawKind kSightingYaw;
 
 }  // namespace
 

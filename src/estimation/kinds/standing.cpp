@@ -10,9 +10,9 @@
 namespace trussmap {
 namespace {
 
-class Standing final : public Sighted {
+class StandingKind final : public Sighted {
  public:
-  constexpr Standing()
+  constexpr StandingKind()
       : Sighted({.words = "standing on", .noise = "sighting", .curvature = Curvature::of_a_way}) {}
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
@@ -37,7 +37,7 @@ class Standing final : public Sighted {
   }
 };
 
-constinit const Standing kStanding;
+constinit const StandingKind kStanding;
 
 }  // namespace
 

@@ -10,12 +10,12 @@
 namespace trussmap {
 namespace {
 
-class Survey final : public MeasurementKind {
+class SurveyKind final : public MeasurementKind {
  public:
-  constexpr Survey()
+  constexpr SurveyKind()
       : MeasurementKind({.words = "survey of",
                          .several = "survey points",
-                         .stream = Stream::survey,
+                         .stream = RecordingStream::survey,
                          .from = NodeType::landmark,
                          .noise = "survey",
                          .curvature = Curvature::none}) {}
@@ -29,14 +29,14 @@ class Survey final : public MeasurementKind {
   }
 };
 
-constinit const Survey kSurvey;
+constinit const SurveyKind kSurvey;
 
-class SurveyHeading final : public MeasurementKind {
+class SurveyHeadingKind final : public MeasurementKind {
  public:
-  constexpr SurveyHeading()
+  constexpr SurveyHeadingKind()
       : MeasurementKind({.words = "surveyed heading of",
                          .several = "surveyed headings",
-                         .stream = Stream::survey,
+                         .stream = RecordingStream::survey,
                          .from = NodeType::orientation,
                          .noise = "survey",
                          .curvature = Curvature::none}) {}
@@ -50,7 +50,7 @@ class SurveyHeading final : public MeasurementKind {
   }
 };
 
-constinit const SurveyHeading kSurveyHeading;
+constinit const SurveyHeadingKind kSurveyHeading;
 
 }  // namespace
 

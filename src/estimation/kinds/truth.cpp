@@ -9,12 +9,12 @@
 namespace trussmap {
 namespace {
 
-class Truth final : public MeasurementKind {
+class TruthKind final : public MeasurementKind {
  public:
-  constexpr Truth()
+  constexpr TruthKind()
       : MeasurementKind({.words = "truth",
                          .several = "truth rows",
-                         .stream = Stream::truth,
+                         .stream = RecordingStream::truth,
                          .from = NodeType::pose,
                          .noise = "truth",
                          .other_from = 2,
@@ -41,7 +41,7 @@ class Truth final : public MeasurementKind {
   }
 };
 
-constinit const Truth kTruth;
+constinit const TruthKind kTruth;
 
 }  // namespace
 

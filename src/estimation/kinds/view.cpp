@@ -18,9 +18,9 @@ double range_of(const Measurement& one, const ViewPattern& view) {
   return (one.value[0] - view.range) / (1.0 + view.range_scale);
 }
 
-class View final : public Sighted {
+class ViewKind final : public Sighted {
  public:
-  constexpr View()
+  constexpr ViewKind()
       : Sighted(
             {.words = "sight of", .noise = "range", .other_from = 1, .other_noise = "bearing"}) {}
 
@@ -83,7 +83,7 @@ class View final : public Sighted {
   }
 };
 
-constinit const View kView;
+constinit const ViewKind kView;
 
 }  // namespace
 
