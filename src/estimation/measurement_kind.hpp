@@ -23,6 +23,9 @@ enum class RecordingStream { drive, sightings, survey, truth, fixes, loops };
 
 enum class NodeType { none, pose, landmark, orientation };
 
+/// What it says in the map's frame, whatever was driven.
+enum class InMap { nothing, place, heading, pose };
+
 /// What Gauss and Newton leave out of its second derivatives (second_order.hpp).
 enum class Curvature {
   none,              ///< linear in all but the view
@@ -37,6 +40,7 @@ struct KindFacts {
   RecordingStream stream = RecordingStream::drive;
   NodeType from = NodeType::pose;
   NodeType to = NodeType::none;
+  InMap in_map = InMap::nothing;
   /// The model's key of the noise of its rows, and of those from a row on.
   std::string_view noise;
   int other_from = 4;
@@ -168,11 +172,20 @@ class MeasurementKind {
   return is_yaw(one) || is_surveyed_heading(one);
 }
 
-/// Of a place in the map's frame, whatever was driven.
+[[nodiscard]] inline bool tells_of_map(const Measurement& one) {
+  return one.kind->facts().in_map != InMap::nothing;
+}
+
+/// Of a direction in the map's frame: a heading, or a landmark's axis.
+[[nodiscard]] inline bool tells_heading(const Measurement& one) {
+  const InMap in_map = one.kind->facts().in_map;
+  return in_map == InMap::heading || in_map == InMap::pose;
+}
+
+/// Of a place in the map's frame.
 [[nodiscard]] inline bool is_in_map_frame(const Measurement& one) {
-  const KindFacts& facts = one.kind->facts();
-  return facts.to == NodeType::none && facts.stream != RecordingStream::drive &&
-         facts.from != NodeType::orientation;
+  const InMap in_map = one.kind->facts().in_map;
+  return in_map == InMap::place || in_map == InMap::pose;
 }
 
 /// A landmark's place in the map's frame.
@@ -187,7 +200,7 @@ class MeasurementKind {
 
 /// The robot's place and heading in the map's frame.
 [[nodiscard]] inline bool gives_pose(const Measurement& one) {
-  return is_robots_place(one) && one.rows == 3;
+  return one.kind->facts().in_map == InMap::pose;
 }
 
 [[nodiscard]] inline bool may_be_wrong(const Measurement& one) {

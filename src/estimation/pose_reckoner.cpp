@@ -102,7 +102,7 @@ void PoseReckoner::look(const std::vector<const Measurement*>& seen, bool correc
 bool PoseReckoner::is_known(const Measurement& one) const {
   if (is_sighting(one)) return landmarks_[idx(one.to)].has_value();
   if (is_yaw(one)) return orientations_[idx(one.to - problem_.pose_end())].has_value();
-  return is_robots_place(one) && !gives_pose(one);
+  return tells_of_map(one) && !gives_pose(one);
 }
 
 void PoseReckoner::meet(const Measurement& one) {

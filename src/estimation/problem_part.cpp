@@ -14,7 +14,7 @@ struct PartNumbers {
 };
 
 bool lies_within(const RecordingProblem& problem, const Measurement& one, const PoseSpan& span) {
-  if (one.session < 0 || is_in_map_frame(one)) return false;
+  if (tells_of_map(one)) return false;
   const auto inside = [first = problem.pose_node(span.first), &span](int node) {
     return node >= first && node < first + span.count;
   };
@@ -99,7 +99,7 @@ ProblemPart session_of(const RecordingProblem& problem, const PoseSpan& span) {
   std::vector<Measurement>& measurements = part.problem.measurements;
   for (const Measurement& one : problem.measurements) {
     const int pose = one.from - problem.pose_node(span.first);
-    if (!is_robots_place(one) || pose < 0 || pose >= span.count) continue;
+    if (one.session < 0 || !tells_of_map(one) || pose < 0 || pose >= span.count) continue;
     measurements.push_back(one);
     measurements.back().from = part.problem.pose_node(pose);
   }

@@ -53,7 +53,7 @@ RecordingGauge choose_gauge(const RecordingProblem& problem) {
   for (const Measurement& one : problem.measurements) {
     position = position || is_in_map_frame(one);
     if (is_in_map_frame(one)) places.insert(one.from);
-    direction = direction || gives_pose(one) || reads_compass(one) || is_surveyed_heading(one);
+    direction = direction || tells_heading(one) || reads_compass(one);
   }
   direction = direction || places.size() >= 2;
   const bool any_pose = !problem.poses.empty();

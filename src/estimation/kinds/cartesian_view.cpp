@@ -12,9 +12,7 @@ namespace {
 
 class CartesianViewKind final : public Sighted {
  public:
-  constexpr CartesianViewKind()
-      : Sighted({.words = "sight of", .noise = "range", .curvature = Curvature::of_a_way_by_view}) {
-  }
+  using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -67,7 +65,8 @@ class CartesianViewKind final : public Sighted {
   }
 };
 
-constinit const CartesianViewKind kCartesianView;
+constinit const CartesianViewKind kCartesianView{
+    {.words = "sight of", .noise = "range", .curvature = Curvature::of_a_way_by_view}};
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace {
 
 class DirectionKind final : public Sighted {
  public:
-  constexpr DirectionKind() : Sighted({.words = "sight of", .noise = "bearing"}) {}
+  using Sighted::Sighted;
 
   /// Of a view the second row.
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
@@ -45,7 +45,7 @@ class DirectionKind final : public Sighted {
   }
 };
 
-constinit const DirectionKind kDirection;
+constinit const DirectionKind kDirection{{.words = "sight of", .noise = "bearing"}};
 
 }  // namespace
 

@@ -21,14 +21,7 @@ Vector2 antenna_of(const Pose& pose, const ViewPattern& view) {
 
 class FixKind final : public MeasurementKind {
  public:
-  constexpr FixKind()
-      : MeasurementKind({.words = "fix",
-                         .several = "fixes",
-                         .stream = RecordingStream::fixes,
-                         .from = NodeType::pose,
-                         .noise = "fix",
-                         .noise_is_sought = true,
-                         .may_be_wrong = true}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -63,7 +56,14 @@ class FixKind final : public MeasurementKind {
   }
 };
 
-constinit const FixKind kFix;
+constinit const FixKind kFix{{.words = "fix",
+                              .several = "fixes",
+                              .stream = RecordingStream::fixes,
+                              .from = NodeType::pose,
+                              .in_map = InMap::place,
+                              .noise = "fix",
+                              .noise_is_sought = true,
+                              .may_be_wrong = true}};
 
 }  // namespace
 

@@ -10,14 +10,7 @@ namespace {
 
 class GyroKind final : public MeasurementKind {
  public:
-  constexpr GyroKind()
-      : MeasurementKind({.words = "gyro",
-                         .several = "gyro readings",
-                         .stream = RecordingStream::drive,
-                         .from = NodeType::pose,
-                         .noise = "gyro",
-                         .noise_is_sought = true,
-                         .curvature = Curvature::none}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends&, const Vector4& value,
                                      const ViewPattern&) const override {
@@ -31,7 +24,13 @@ class GyroKind final : public MeasurementKind {
   }
 };
 
-constinit const GyroKind kGyro;
+constinit const GyroKind kGyro{{.words = "gyro",
+                                .several = "gyro readings",
+                                .stream = RecordingStream::drive,
+                                .from = NodeType::pose,
+                                .noise = "gyro",
+                                .noise_is_sought = true,
+                                .curvature = Curvature::none}};
 
 }  // namespace
 

@@ -14,17 +14,7 @@ namespace {
 
 class LoopKind final : public MeasurementKind {
  public:
-  constexpr LoopKind()
-      : MeasurementKind({.words = "loop",
-                         .several = "loops",
-                         .stream = RecordingStream::loops,
-                         .from = NodeType::pose,
-                         .to = NodeType::pose,
-                         .noise = "loop",
-                         .other_from = 2,
-                         .other_noise = "loop_heading",
-                         .may_be_wrong = true,
-                         .curvature = Curvature::of_a_way}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern&) const override {
@@ -34,7 +24,16 @@ class LoopKind final : public MeasurementKind {
   }
 };
 
-constinit const LoopKind kLoop;
+constinit const LoopKind kLoop{{.words = "loop",
+                                .several = "loops",
+                                .stream = RecordingStream::loops,
+                                .from = NodeType::pose,
+                                .to = NodeType::pose,
+                                .noise = "loop",
+                                .other_from = 2,
+                                .other_noise = "loop_heading",
+                                .may_be_wrong = true,
+                                .curvature = Curvature::of_a_way}};
 
 }  // namespace
 

@@ -16,16 +16,7 @@ namespace {
 
 class SegmentKind final : public MeasurementKind {
  public:
-  constexpr SegmentKind()
-      : MeasurementKind({.words = "drive",
-                         .several = "drives",
-                         .stream = RecordingStream::drive,
-                         .from = NodeType::pose,
-                         .to = NodeType::pose,
-                         .noise = "wheels",
-                         .other_from = 3,
-                         .other_noise = "compass",
-                         .curvature = Curvature::of_a_way}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement& one, const Ends& at, const Vector4& value,
                                      const ViewPattern&) const override {
@@ -50,7 +41,15 @@ class SegmentKind final : public MeasurementKind {
   }
 };
 
-constinit const SegmentKind kSegment;
+constinit const SegmentKind kSegment{{.words = "drive",
+                                      .several = "drives",
+                                      .stream = RecordingStream::drive,
+                                      .from = NodeType::pose,
+                                      .to = NodeType::pose,
+                                      .noise = "wheels",
+                                      .other_from = 3,
+                                      .other_noise = "compass",
+                                      .curvature = Curvature::of_a_way}};
 
 }  // namespace
 

@@ -13,16 +13,7 @@ namespace {
 
 class SightingYawKind final : public MeasurementKind {
  public:
-  constexpr SightingYawKind()
-      : MeasurementKind({.words = "yaw of",
-                         .several = "yaws",
-                         .stream = RecordingStream::sightings,
-                         .from = NodeType::pose,
-                         .to = NodeType::orientation,
-                         .noise = "yaw",
-                         .noise_is_sought = true,
-                         .may_be_wrong = true,
-                         .curvature = Curvature::none}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -60,7 +51,15 @@ class SightingYawKind final : public MeasurementKind {
   }
 };
 
-constinit const SightingYawKind kSightingYaw;
+constinit const SightingYawKind kSightingYaw{{.words = "yaw of",
+                                              .several = "yaws",
+                                              .stream = RecordingStream::sightings,
+                                              .from = NodeType::pose,
+                                              .to = NodeType::orientation,
+                                              .noise = "yaw",
+                                              .noise_is_sought = true,
+                                              .may_be_wrong = true,
+                                              .curvature = Curvature::none}};
 
 }  // namespace
 

@@ -12,8 +12,7 @@ namespace {
 
 class StandingKind final : public Sighted {
  public:
-  constexpr StandingKind()
-      : Sighted({.words = "standing on", .noise = "sighting", .curvature = Curvature::of_a_way}) {}
+  using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -37,7 +36,8 @@ class StandingKind final : public Sighted {
   }
 };
 
-constinit const StandingKind kStanding;
+constinit const StandingKind kStanding{
+    {.words = "standing on", .noise = "sighting", .curvature = Curvature::of_a_way}};
 
 }  // namespace
 

@@ -12,13 +12,7 @@ namespace {
 
 class SurveyKind final : public MeasurementKind {
  public:
-  constexpr SurveyKind()
-      : MeasurementKind({.words = "survey of",
-                         .several = "survey points",
-                         .stream = RecordingStream::survey,
-                         .from = NodeType::landmark,
-                         .noise = "survey",
-                         .curvature = Curvature::none}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern&) const override {
@@ -29,17 +23,17 @@ class SurveyKind final : public MeasurementKind {
   }
 };
 
-constinit const SurveyKind kSurvey;
+constinit const SurveyKind kSurvey{{.words = "survey of",
+                                    .several = "survey points",
+                                    .stream = RecordingStream::survey,
+                                    .from = NodeType::landmark,
+                                    .in_map = InMap::place,
+                                    .noise = "survey",
+                                    .curvature = Curvature::none}};
 
 class SurveyHeadingKind final : public MeasurementKind {
  public:
-  constexpr SurveyHeadingKind()
-      : MeasurementKind({.words = "surveyed heading of",
-                         .several = "surveyed headings",
-                         .stream = RecordingStream::survey,
-                         .from = NodeType::orientation,
-                         .noise = "survey",
-                         .curvature = Curvature::none}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern&) const override {
@@ -50,7 +44,13 @@ class SurveyHeadingKind final : public MeasurementKind {
   }
 };
 
-constinit const SurveyHeadingKind kSurveyHeading;
+constinit const SurveyHeadingKind kSurveyHeading{{.words = "surveyed heading of",
+                                                  .several = "surveyed headings",
+                                                  .stream = RecordingStream::survey,
+                                                  .from = NodeType::orientation,
+                                                  .in_map = InMap::heading,
+                                                  .noise = "survey",
+                                                  .curvature = Curvature::none}};
 
 }  // namespace
 

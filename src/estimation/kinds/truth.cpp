@@ -11,14 +11,7 @@ namespace {
 
 class TruthKind final : public MeasurementKind {
  public:
-  constexpr TruthKind()
-      : MeasurementKind({.words = "truth",
-                         .several = "truth rows",
-                         .stream = RecordingStream::truth,
-                         .from = NodeType::pose,
-                         .noise = "truth",
-                         .other_from = 2,
-                         .other_noise = "truth_heading"}) {}
+  using MeasurementKind::MeasurementKind;
 
   [[nodiscard]] MeasurementRows rows(const Measurement&, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -41,7 +34,14 @@ class TruthKind final : public MeasurementKind {
   }
 };
 
-constinit const TruthKind kTruth;
+constinit const TruthKind kTruth{{.words = "truth",
+                                  .several = "truth rows",
+                                  .stream = RecordingStream::truth,
+                                  .from = NodeType::pose,
+                                  .in_map = InMap::pose,
+                                  .noise = "truth",
+                                  .other_from = 2,
+                                  .other_noise = "truth_heading"}};
 
 }  // namespace
 

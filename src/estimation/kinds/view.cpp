@@ -20,9 +20,7 @@ double range_of(const Measurement& one, const ViewPattern& view) {
 
 class ViewKind final : public Sighted {
  public:
-  constexpr ViewKind()
-      : Sighted(
-            {.words = "sight of", .noise = "range", .other_from = 1, .other_noise = "bearing"}) {}
+  using Sighted::Sighted;
 
   [[nodiscard]] MeasurementRows rows(const Measurement& one, const Ends& at, const Vector4& value,
                                      const ViewPattern& view) const override {
@@ -83,7 +81,8 @@ class ViewKind final : public Sighted {
   }
 };
 
-constinit const ViewKind kView;
+constinit const ViewKind kView{
+    {.words = "sight of", .noise = "range", .other_from = 1, .other_noise = "bearing"}};
 
 }  // namespace
 
