@@ -39,8 +39,8 @@ class FixKind final : public MeasurementKind {
 
   [[nodiscard]] Matrix4 reading_variance(Channel channel, const Measurement&) const override {
     Matrix4 variance = Matrix4::Zero();
-    const Eigen::Index axis = channel == Channel::fix_x ? 0 : 1;
-    variance(axis, axis) = 1.0;
+    if (channel == Channel::fix_x) variance(0, 0) = 1.0;
+    if (channel == Channel::fix_y) variance(1, 1) = 1.0;
     return variance;
   }
 
