@@ -49,8 +49,8 @@ class ViewKind final : public Sighted {
   [[nodiscard]] std::optional<Vector2> seen_from(const Measurement& one, const Pose& pose,
                                                  const ViewPattern& view) const override {
     if (one.rows == 1) return std::nullopt;
-    const double way = pose.heading + view.heading - view.bearing + one.value[1];
-    return sensor_at(pose, view) + range_of(one, view) * rotation(way).col(0);
+    const Vector2 offset = range_of(one, view) * rotation(one.value[1] - view.bearing).col(0);
+    return sensor_at(pose, view) + rotation(pose.heading + view.heading) * offset;
   }
 
   [[nodiscard]] Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement& one, const Pose& pose,
