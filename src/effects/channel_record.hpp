@@ -47,6 +47,9 @@ struct ChannelRecord {
 
   /// The model's white noise that a process of this channel takes its part of.
   std::string_view noise_source = "wheels";
+  /// It is a sensor's reading itself: it shows in rows of that noise, and a white one is part of
+  /// it.
+  bool reading = false;
   /// What an error is drawn against where its shape goes with nothing.
   std::string_view drawn_against = "speed";
 

@@ -9,16 +9,6 @@
 
 namespace trussmap {
 
-namespace {
-
-/// Of a landmark, by a sensor: it shows in rows that have its noise.
-bool is_of_sensor(Channel channel) {
-  return channel == Channel::range || channel == Channel::range_scale ||
-         channel == Channel::bearing || channel == Channel::sighting_yaw;
-}
-
-}  // namespace
-
 Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) const {
   Matrix4 fixed = Matrix4::Zero();
   if (facts_.noise_is_sought && !one.own_sd) return fixed;
@@ -30,7 +20,7 @@ Matrix4 MeasurementKind::fixed_covariance(const Measurement& one, const Noise&) 
 bool MeasurementKind::shows(Channel channel, const Measurement& one) const {
   if (facts_.stream == RecordingStream::drive) return acts_on(channel) != ActsOn::views;
   if (acts_on(channel) != ActsOn::views) return false;
-  if (is_of_sensor(channel)) return !reading_variance(channel, one).isZero(0.0);
+  if (record_of(channel).reading) return !reading_variance(channel, one).isZero(0.0);
   switch (facts_.stream) {
     case RecordingStream::sightings:
       return acts_on_sightings(channel);

@@ -5,7 +5,7 @@
 #include "drive/body_motion.hpp"
 #include "drive/row_motion.hpp"
 #include "drive/row_variables.hpp"
-#include "effects/channel_physics.hpp"
+#include "effects/channel_record.hpp"
 #include "recording/legs.hpp"
 
 #include <algorithm>
@@ -38,13 +38,6 @@ struct ProcessToLay {
     return problem.poses[pose_of(one.from)].t;
   }
 };
-
-/// A white reading needs no state: its variance is the reading's own.
-bool is_reading(Channel channel) {
-  return channel == Channel::range || channel == Channel::range_scale ||
-         channel == Channel::bearing || channel == Channel::fix_x || channel == Channel::fix_y ||
-         channel == Channel::sighting_yaw;
-}
 
 /// What a unit of g adds to the pattern of a view.
 ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
@@ -92,7 +85,7 @@ LaidProcess lay_white(const ProcessToLay& lasting) {
     if (!one.kind->shows(lasting.channel, one)) continue;
     if (is_driven(one)) {
       for (const Vector4& row : unit_rows(lasting, one)) laid.within[k] += row * row.transpose();
-    } else if (is_reading(lasting.channel)) {
+    } else if (record_of(lasting.channel).reading) {  // its variance is the reading's own
       laid.within[k] = one.kind->reading_variance(lasting.channel, one);
     } else {
       laid.terms[k].push_back({static_cast<int>(laid.states.size()), unit_view(lasting, one)});
