@@ -7,7 +7,6 @@
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace trussmap {
