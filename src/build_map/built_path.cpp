@@ -29,10 +29,10 @@ PathTie tie_of(const FitState& fit, const Measurement& one) {
       measurement_rows(fit.problem, one, fit.adjustment.state, one.value, view).error.head<2>();
   PathTie tie;
   tie.loop = is_tie(one);
-  tie.t = fit.problem.poses[pose(one.from)].t;
+  tie.t = fit.problem.time_of(one.from);
   tie.misfit = error.norm();
   if (tie.loop) {
-    tie.t2 = fit.problem.poses[pose(one.to)].t;
+    tie.t2 = fit.problem.time_of(one.to);
     tie.from = fit.adjustment.state.poses[pose(one.from)].position();
     tie.to = fit.adjustment.state.poses[pose(one.to)].position();
   } else {
@@ -50,7 +50,7 @@ void add_ties(const FitState& fit, std::vector<BuiltPath>& paths) {
     const Measurement& one = fit.problem.measurements[k];
     const bool out = next < left_out.size() && idx(left_out[next]) == k;
     if (out) ++next;
-    if (!is_tie(one) && !(is_robots_place(one) && may_be_wrong(one))) continue;
+    if (!is_tie(one) && !is_position(one)) continue;
     PathTie tie = tie_of(fit, one);
     tie.left_out = out;
     paths[idx(one.session)].ties.push_back(tie);

@@ -84,8 +84,8 @@ double extent_of(const LandmarkGraph& map) {
 }
 
 int sightings_of(const RecordingProblem& problem) {
-  return static_cast<int>(std::count_if(problem.measurements.begin(), problem.measurements.end(),
-                                        [](const Measurement& one) { return is_sighting(one); }));
+  return static_cast<int>(
+      std::count_if(problem.measurements.begin(), problem.measurements.end(), is_sighting));
 }
 
 std::string signed_text(double value, int digits) {

@@ -95,8 +95,7 @@ std::vector<RejectedSighting> left_out_of(const FitState& fit) {
   for (const int k : fit.adjustment.left_out) {
     const Measurement& one = problem.measurements[idx(k)];
     if (!is_sighting(one)) continue;
-    result.push_back({problem.sessions[idx(one.session)],
-                      problem.poses[idx(one.from - problem.landmark_count())].t,
+    result.push_back({problem.sessions[idx(one.session)], problem.time_of(one.from),
                       problem.landmarks[idx(one.to)], misfit_of(fit, one)});
   }
   return result;

@@ -5,6 +5,7 @@
 #include "criticism/driven_variables.hpp"
 #include "effects/channel_physics.hpp"
 #include "effects/place_patterns.hpp"
+#include "fit/noise_components.hpp"
 #include "recording/variable_names.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/catalogue.hpp"
@@ -40,21 +41,19 @@ double suits(const CatalogueEntry& entry, const std::string& covariate) {
 
 /// What was measured, and so can show an effect.
 struct Measured {
-  std::set<std::string_view> noises;  ///< keys of its noise
-  bool points = false;                ///< sightings or truth
+  std::set<std::string_view> noises;  ///< noises_in
+  bool fixes = false;
+  bool points = false;  ///< sightings or truth
 
   [[nodiscard]] bool has(std::string_view noise) const { return noises.contains(noise); }
 };
 
 Measured measured_in(const RecordingProblem& problem) {
-  Measured result;
-  for (const Measurement& one : problem.measurements) {
-    for (Eigen::Index row = 0; row < one.rows; ++row) {
-      result.noises.insert(one.kind->noise(row));
-    }
-    result.points = result.points || is_sighting(one) || gives_pose(one);
-  }
-  return result;
+  const auto any = [&problem](const auto& is) {
+    return std::any_of(problem.measurements.begin(), problem.measurements.end(), is);
+  };
+  return {noises_in(problem), any(is_position),
+          any([](const Measurement& one) { return is_sighting(one) || gives_pose(one); })};
 }
 
 bool is_possible(Channel channel, const Measured& measured, const Robot& robot) {
@@ -62,7 +61,7 @@ bool is_possible(Channel channel, const Measured& measured, const Robot& robot) 
   if (channel == Channel::compass) return measured.has("compass");
   if (channel == Channel::gyro || channel == Channel::gyro_scale) return measured.has("gyro");
   if (channel == Channel::truth_heading) return measured.has("truth");
-  if (acts_on_fixes(channel)) return measured.has("fix");
+  if (acts_on_fixes(channel)) return measured.fixes;
   if (channel == Channel::sighting_yaw) return measured.has("yaw");
   if (acts_on(channel) == ActsOn::views && !measured.points) return false;
   if (channel == Channel::bearing) return measured.has("range") || measured.has("bearing");

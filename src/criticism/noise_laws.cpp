@@ -114,10 +114,7 @@ double stated_of(const std::string& law, const Noise& noise) {
   if (law == "per metre") return mean_wheel_noise(noise);
   if (law == "per metre, left wheel") return noise.left;
   if (law == "per metre, right wheel") return noise.right;
-  for (const ReadingKey& one : reading_keys()) {
-    if (law == one.name) return noise.*one.member;
-  }
-  return 0.0;
+  return reading_sd(noise, law);
 }
 
 /// The reading's own noise, of those that do not answer for it themselves.

@@ -203,7 +203,7 @@ class Collector {
         const std::size_t v = steps[(2 * k + 1) * steps.size() / (2 * count)];
         places.push_back(step(visits, v));
         MovedWhen& when = places.back().when;
-        when.before_t = problem_.poses[idx(visits[v].pose - problem_.landmark_count())].t;
+        when.before_t = problem_.time_of(visits[v].pose);
         if (problem_.sessions.size() > 1) {
           when.session = problem_.sessions[idx(visits[begin].session)];
         }

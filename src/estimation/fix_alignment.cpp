@@ -103,7 +103,7 @@ SessionFixes fixes_of(const RecordingProblem& session) {
   std::map<int, const Measurement*> fixes;
   std::vector<double> sds;
   for (const Measurement& one : session.measurements) {
-    if (!is_robots_place(one) || gives_pose(one)) continue;
+    if (!is_position(one)) continue;
     fixes[one.from - session.landmark_count()] = &one;
     sds.push_back(1.0 / one.whitener(0, 0));
   }

@@ -56,9 +56,10 @@ Eigen::Matrix<double, 2, 4> MeasurementKind::seen_by_rows(const Measurement&, co
   return Eigen::Matrix<double, 2, 4>::Identity();
 }
 
-double MeasurementKind::missed(const Measurement&, const Pose&, const Vector2&,
-                               const ViewPattern&) const {
-  return 0.0;
+double MeasurementKind::missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
+                               const ViewPattern& view) const {
+  const std::optional<Vector2> seen = seen_from(one, pose, view);
+  return seen ? (landmark - *seen).norm() : kAbsent;
 }
 
 Eigen::MatrixXd MeasurementKind::slack(const Measurement& one, const MeasurementRows&,

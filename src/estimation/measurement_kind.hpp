@@ -106,7 +106,7 @@ class MeasurementKind {
   [[nodiscard]] virtual Eigen::Matrix<double, 2, 4> seen_by_rows(const Measurement& one,
                                                                  const Pose& pose,
                                                                  const ViewPattern& view) const;
-  /// m by which a sighting from there misses a landmark.
+  /// m by which a sighting from there misses a landmark; NaN where it does not say.
   [[nodiscard]] virtual double missed(const Measurement& one, const Pose& pose,
                                       const Vector2& landmark, const ViewPattern& view) const;
   /// Covariance that its rows get while poses are reckoned for a start: landmarks lie within
@@ -193,9 +193,10 @@ class MeasurementKind {
   return is_in_map_frame(one) && one.kind->facts().from == NodeType::landmark;
 }
 
-/// The robot's place in the map's frame.
-[[nodiscard]] inline bool is_robots_place(const Measurement& one) {
-  return is_in_map_frame(one) && one.kind->facts().from == NodeType::pose;
+/// The robot's place in the map's frame, without its heading.
+[[nodiscard]] inline bool is_position(const Measurement& one) {
+  const KindFacts& facts = one.kind->facts();
+  return facts.in_map == InMap::place && facts.from == NodeType::pose;
 }
 
 /// The robot's place and heading in the map's frame.

@@ -34,15 +34,12 @@ struct ProcessToLay {
     return recordings[idx(one.session)].drive;
   }
   [[nodiscard]] std::size_t pose_of(int node) const { return idx(node - problem.landmark_count()); }
-  [[nodiscard]] double time_of(const Measurement& one) const {
-    return problem.poses[pose_of(one.from)].t;
-  }
 };
 
 /// What a unit of g adds to the pattern of a view.
 ViewVector unit_view(const ProcessToLay& lasting, const Measurement& one) {
   const Drive& drive = lasting.drive_of(one);
-  const std::size_t row = row_at(drive, lasting.time_of(one));
+  const std::size_t row = row_at(drive, lasting.problem.time_of(one.from));
   const double duration = std::max(drive.duration(row), 1e-9);
   const BodyMotion motion = body_motion(drive, row, lasting.robot);
   return one.kind->unit_view(lasting.channel, one, motion.forward / duration,
@@ -197,7 +194,7 @@ LaidProcess lay_constants(const ProcessToLay& lasting) {
   for (std::size_t k = 0; k < laid.terms.size(); ++k) {
     const Measurement& one = lasting.problem.measurements[k];
     if (!one.kind->shows(lasting.channel, one)) continue;
-    const double t = lasting.time_of(one);
+    const double t = lasting.problem.time_of(one.from);
     const std::vector<double>& legs = ends[idx(one.session)];
     if (is_driven(one)) {
       // A rest within a segment parts two legs.

@@ -225,17 +225,15 @@ RecordingProblem make_problem(const std::vector<Recording>& recordings, const Mo
 std::string describe(const RecordingProblem& problem, const Measurement& measurement) {
   const KindFacts& facts = measurement.kind->facts();
   std::string words(facts.words);
+  const auto of = [&](NodeType type, int node) {
+    if (type == NodeType::landmark) words += " landmark " + problem.landmarks[idx(node)];
+    if (type == NodeType::orientation) words += " landmark " + problem.landmark_of(node);
+  };
   const auto at = [&](const char* when, int node) {
     words += when + fixed_text(problem.time_of(node), 3) + " s";
   };
-  if (is_sighting(measurement)) words += " landmark " + problem.landmarks[idx(measurement.to)];
-  if (is_surveyed_place(measurement)) {
-    words += " landmark " + problem.landmarks[idx(measurement.from)];
-  }
-  if (is_yaw(measurement)) words += " landmark " + problem.landmark_of(measurement.to);
-  if (is_surveyed_heading(measurement)) {
-    words += " landmark " + problem.landmark_of(measurement.from);
-  }
+  of(facts.from, measurement.from);
+  of(facts.to, measurement.to);
   if (facts.from == NodeType::pose) {
     const bool lasts = is_driven(measurement) || is_between_poses(measurement);
     at(lasts ? " from t = " : " at t = ", measurement.from);

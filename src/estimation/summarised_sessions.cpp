@@ -50,7 +50,7 @@ void SummarisedSessions::require_tied(const SessionRows& rows,
       const std::string& landmark = problem.landmark_of(one.to);
       direction = direction || has_orientation(landmark) || is_known(landmark, true);
     }
-    if (is_robots_place(one)) places.insert(describe(problem, one));
+    if (is_position(one)) places.insert(describe(problem, one));
     if (!is_sighting(one)) continue;
     const std::string& landmark = problem.landmarks[idx(one.to)];
     if (has(landmark) || is_known(landmark, false)) places.insert("landmark " + landmark);

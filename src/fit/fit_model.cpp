@@ -36,7 +36,7 @@ std::vector<FittedLandmark> landmarks_of(const FitState& fit) {
 /// With how far off it is, and what the receiver thought of it.
 std::string left_out_text(const FitState& fit, const Measurement& one) {
   std::string text = describe(fit.problem, one);
-  const bool fix = is_robots_place(one);
+  const bool fix = is_position(one);
   if (!fix && !is_tie(one)) return text;
   const ViewPattern view = view_of(fit.columns.border, offsets_of(fit), one);
   const Vector4 error =

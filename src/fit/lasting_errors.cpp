@@ -38,8 +38,7 @@ std::map<std::pair<int, int>, std::vector<SeenError>> errors_of(const FitState& 
     const MeasurementRows rows = measurement_rows(fit.problem, one, fit.adjustment.state, one.value,
                                                   view_of(fit.columns.border, offsets, one));
     const Vector4 white = one.whitener * rows.error;
-    const PoseNode& pose = fit.problem.poses[idx(one.from - fit.problem.landmark_count())];
-    result[{one.session, one.to}].push_back({pose.t, white.head<2>()});
+    result[{one.session, one.to}].push_back({fit.problem.time_of(one.from), white.head<2>()});
   }
   return result;
 }

@@ -42,6 +42,13 @@ const std::vector<ReadingKey>& reading_keys() {
   return all;
 }
 
+double reading_sd(const Noise& noise, std::string_view key) {
+  for (const ReadingKey& one : reading_keys()) {
+    if (one.name == key) return noise.*one.member;
+  }
+  return 0.0;
+}
+
 std::set<std::string_view> noises_in(const RecordingProblem& problem) {
   std::set<std::string_view> found;
   for (const Measurement& one : problem.measurements) {

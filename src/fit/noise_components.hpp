@@ -31,6 +31,8 @@ struct ReadingKey {
   double Noise::*member;
 };
 [[nodiscard]] const std::vector<ReadingKey>& reading_keys();
+/// 0 of a key that is none of them.
+[[nodiscard]] double reading_sd(const Noise& noise, std::string_view key);
 
 /// Keys of the noise that measurements have; of those whose rows state none themselves.
 [[nodiscard]] std::set<std::string_view> noises_in(const RecordingProblem& problem);

@@ -18,14 +18,6 @@ namespace {
 
 constexpr double kExactSd = 1e-6;  // m and rad
 
-/// By its key; 0 of what no search looks for.
-double variance_of(std::string_view noise, const Noise& unit) {
-  for (const ReadingKey& one : reading_keys()) {
-    if (one.name == noise) return unit.*one.member * (unit.*one.member);
-  }
-  return 0.0;
-}
-
 }  // namespace
 
 std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component) const {
@@ -43,7 +35,7 @@ std::vector<Matrix4> NoiseReml::unit_covariances(const NoiseComponent& component
       added = gyro_covariance(one, unit);
     } else if (!one.own_sd) {
       for (Eigen::Index row = 0; row < one.rows; ++row) {
-        added(row, row) = variance_of(one.kind->noise(row), unit);
+        added(row, row) = std::pow(reading_sd(unit, one.kind->noise(row)), 2);
       }
     }
     result.push_back(added);

@@ -12,10 +12,6 @@
 namespace trussmap {
 namespace {
 
-double pose_time(const RecordingProblem& problem, int node) {
-  return problem.poses[idx(node - problem.landmark_count())].t;
-}
-
 void add_sighted_legs(const Recording& recording, int session, const RecordingProblem& problem,
                       const LegOptions& options, std::vector<LegSpan>& legs) {
   std::map<std::size_t, std::size_t> measurement_of;  // sighting -> measurement
@@ -48,8 +44,8 @@ void add_place_legs(const Recording& recording, int session, const RecordingProb
   double begun = 0.0;
   for (std::size_t k = 0; k < problem.measurements.size(); ++k) {
     const Measurement& one = problem.measurements[k];
-    if (!is_robots_place(one) || gives_pose(one) != truth || one.session != session) continue;
-    const double t = pose_time(problem, one.from);
+    if (!(truth ? gives_pose(one) : is_position(one)) || one.session != session) continue;
+    const double t = problem.time_of(one.from);
     const double driven = path_at(recording.drive, path, t);
     if (any && driven - begun < options.leg) continue;
     if (any) {

@@ -78,15 +78,12 @@ Eigen::VectorXd rows_of_legs(const std::vector<std::size_t>& numbers,
     if (wanted.contains(leg.number)) spans[idx(leg.session)].push_back(leg.time);
   }
   for (std::vector<TimeSpan>& one : spans) one = merged(std::move(one));
-  const auto time_of = [&fit](int node) {
-    return fit.problem.poses[idx(node - fit.problem.landmark_count())].t;
-  };
   Eigen::VectorXd rows = Eigen::VectorXd::Zero(system.rows());
   for (std::size_t k = 0; k < fit.problem.measurements.size(); ++k) {
     const Measurement& one = fit.problem.measurements[k];
     if (one.session < 0) continue;
-    const double from = time_of(one.from);
-    const double to = is_segment(one) ? time_of(one.to) : from;
+    const double from = fit.problem.time_of(one.from);
+    const double to = is_segment(one) ? fit.problem.time_of(one.to) : from;
     const std::vector<TimeSpan>& here = spans[idx(one.session)];
     const bool within = std::any_of(here.begin(), here.end(), [&](const TimeSpan& span) {
       return span.from <= from && to <= span.to;

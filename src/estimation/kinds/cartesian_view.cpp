@@ -3,7 +3,6 @@
 //
 // A landmark seen so near that its range says nothing of a direction, in robot axes:
 // R(theta + heading)' delta - offset.
-#include "effects/channel_physics.hpp"
 #include "estimation/kinds/kinds.hpp"
 #include "estimation/kinds/sighted.hpp"
 

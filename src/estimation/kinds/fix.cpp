@@ -27,7 +27,7 @@ class FixKind final : public MeasurementKind {
                                      const ViewPattern& view) const override {
     MeasurementRows rows;
     const Matrix2 R = rotation(at.from.heading + view.heading);
-    const Vector2 antenna = antenna_of(at.from, view);
+    const Vector2 antenna = R * Vector2(view.ahead, view.left);
     rows.error.head<2>() = at.from.position() + antenna + Vector2(view.x, view.y) - value.head<2>();
     rows.by_from.topLeftCorner<2, 2>().setIdentity();
     rows.by_from.block<2, 1>(0, 2) = quarter_turn(antenna);

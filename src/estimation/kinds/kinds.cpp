@@ -7,11 +7,9 @@
 namespace trussmap::kinds {
 
 std::span<const MeasurementKind* const> all() {
-  static constexpr std::size_t kCount = 12;
-  static const std::array<const MeasurementKind*, kCount> list{
-      &segment,        &gyro,      &standing,     &view,
-      &cartesian_view, &direction, &sighting_yaw, &survey,
-      &survey_heading, &truth,     &fix,          &loop};
+  static const std::array list{&segment,        &gyro,      &standing,     &view,
+                               &cartesian_view, &direction, &sighting_yaw, &survey,
+                               &survey_heading, &truth,     &fix,          &loop};
   return list;
 }
 

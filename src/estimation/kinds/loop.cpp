@@ -41,8 +41,10 @@ const MeasurementKind& kinds::loop = kLoop;
 
 Measurement kinds::measured_by(const Loop& loop, const Noise& noise) {
   const double sd = stated_or(loop.sd, noise.loop);
-  return independent_rows(kLoop, {loop.dx, loop.dy, loop.dtheta},
-                          {sd, sd, stated_or(loop.sd_heading, noise.loop_heading)});
+  Measurement one = independent_rows(kLoop, {loop.dx, loop.dy, loop.dtheta},
+                                     {sd, sd, stated_or(loop.sd_heading, noise.loop_heading)});
+  one.own_sd = !std::isnan(loop.sd) && !std::isnan(loop.sd_heading);
+  return one;
 }
 
 void kinds::draw(Loop& loop, const Pose& step, const Noise& noise, NormalDraws& draws) {

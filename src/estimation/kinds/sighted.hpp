@@ -43,11 +43,6 @@ class Sighted : public MeasurementKind {
   /// Of the facts those in which they differ.
   constexpr explicit Sighted(KindFacts facts) : MeasurementKind(of_landmark(facts)) {}
 
-  [[nodiscard]] double missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
-                              const ViewPattern& view) const override {
-    return (landmark - *seen_from(one, pose, view)).norm();
-  }
-
   /// The landmark is where it is known to be, within so much.
   [[nodiscard]] Eigen::MatrixXd slack(const Measurement& one, const MeasurementRows& rows,
                                       double map_sd) const override;

@@ -64,7 +64,7 @@ class ViewKind final : public Sighted {
 
   [[nodiscard]] double missed(const Measurement& one, const Pose& pose, const Vector2& landmark,
                               const ViewPattern& view) const override {
-    if (one.rows > 1) return Sighted::missed(one, pose, landmark, view);
+    if (one.rows > 1) return MeasurementKind::missed(one, pose, landmark, view);
     return std::abs((landmark - sensor_at(pose, view)).norm() - range_of(one, view));
   }
 
