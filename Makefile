@@ -25,8 +25,8 @@
 #   make clean         remove the build trees
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 
-# A tree keeps the generator that it was first configured with, and whether it compiles a dozen
-# sources as one (UNITY=OFF: who works on them).
+# A tree keeps the generator that it was first configured with, and whether it compiles the
+# sources of a folder as one (UNITY=OFF: who works on them).
 UNITY ?= ON
 ifeq ($(wildcard build/CMakeCache.txt),)
 GENERATOR = $(shell command -v ninja >/dev/null 2>&1 && echo -G Ninja) -D TRUSSMAP_UNITY=$(UNITY)

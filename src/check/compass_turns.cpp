@@ -13,11 +13,11 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStretch = 0.1;   // m of difference
-constexpr double kTurn = 0.3;      // rad, where the wheelbase is known
-constexpr double kLongest = 10.0;  // s
-constexpr int kFewest = 12;        // stretches
-constexpr double kClear = 0.8;     // correlation
+constexpr double kTurningTravel = 0.1;  // m of difference
+constexpr double kTellingTurn = 0.3;    // rad, where the wheelbase is known
+constexpr double kLongestTurn = 10.0;   // s
+constexpr int kFewestTurns = 12;        // stretches
+constexpr double kClearTurns = 0.8;     // correlation
 constexpr double kUnclear = 0.6;
 
 double wrapped(double angle, double turn) {
@@ -28,7 +28,7 @@ double wrapped(double angle, double turn) {
 TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn,
                        bool wrap = true) {
   const Drive& drive = checked.recording.drive;
-  const double stretch = drive.wheels.empty() ? kStretch : kTurn * checked.wheelbase;
+  const double stretch = drive.wheels.empty() ? kTurningTravel : kTellingTurn * checked.wheelbase;
   double dd = 0.0;
   double dc = 0.0;
   double cc = 0.0;
@@ -50,7 +50,7 @@ TurnAgreement turns_of(const Checked& checked, WheelMistake mistake, double turn
     last = reading;
     waiting = 0.0;
     const bool full = std::abs(difference) >= stretch;
-    if (!full && drive.t[row] - begun < kLongest) continue;
+    if (!full && drive.t[row] - begun < kLongestTurn) continue;
     if (full) {
       dd += difference * difference;
       dc += difference * change;
@@ -96,7 +96,7 @@ int turns_on_the_spot(const Drive& drive, double wheelbase) {
 /// Goes with the wheels, by a wheelbase that robots have.
 bool is_clear(const TurnAgreement& turns, const Checked& checked) {
   constexpr double kNear = 3.0;  // times the wheelbase
-  if (std::abs(turns.correlation) < kClear) return false;
+  if (std::abs(turns.correlation) < kClearTurns) return false;
   const double wheelbase = 1.0 / std::abs(turns.slope);
   return checked.wheelbase_known
              ? std::abs(std::log(wheelbase / checked.wheelbase)) < std::log(kNear)
@@ -115,7 +115,7 @@ TurnAgreement check_compass(Checked& checked) {
   const Drive& drive = checked.recording.drive;
   if (!drive.has_compass() || checked.wrong.contains("left")) return {};
   TurnAgreement best = turns_of(checked, WheelMistake::none, 2.0 * std::numbers::pi);
-  if (best.turns >= kFewest && std::abs(best.correlation) < kClear) {
+  if (best.turns >= kFewestTurns && std::abs(best.correlation) < kClearTurns) {
     const TurnAgreement going_on =
         turns_of(checked, WheelMistake::none, 2.0 * std::numbers::pi, false);
     const TurnAgreement degrees = turns_of(checked, WheelMistake::none, 360.0);
@@ -134,7 +134,7 @@ TurnAgreement check_compass(Checked& checked) {
   for (const WheelMistake mistake : {WheelMistake::left_negated, WheelMistake::right_negated}) {
     if (!drive.wheels.empty() || std::abs(best.correlation) > kUnclear) break;
     const TurnAgreement other = turns_of(checked, mistake, 2.0 * std::numbers::pi);
-    if (other.turns < kFewest || other.correlation < kClear) continue;
+    if (other.turns < kFewestTurns || other.correlation < kClearTurns) continue;
     add_lone_wheel(checked, mistake,
                    joined("with the ", lone_wheel(mistake),
                           " wheel's sign changed the wheels turn with the compass (correlation ",
@@ -142,7 +142,7 @@ TurnAgreement check_compass(Checked& checked) {
                           fixed_text(best.correlation, 2), ")"));
     return {};
   }
-  if (best.turns < kFewest || std::abs(best.correlation) < kClear) {
+  if (best.turns < kFewestTurns || std::abs(best.correlation) < kClearTurns) {
     constexpr int kFewestContradicting = 6;
     best.unsigned_wheels = turns_on_the_spot(drive, checked.wheelbase) >= kFewestContradicting;
     best.sign = 0;

@@ -12,10 +12,10 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStretch = 0.3;  // rad, by the wheels
-constexpr int kFewest = 12;       // stretches
-constexpr double kClear = 0.8;    // correlation
-constexpr double kFar = 3.0;      // factor beside degrees per radian
+constexpr double kGyroStretch = 0.3;  // rad, by the wheels
+constexpr int kFewestStretches = 12;  // stretches
+constexpr double kClearGyro = 0.8;    // correlation
+constexpr double kFar = 3.0;          // factor beside degrees per radian
 
 }  // namespace
 
@@ -32,17 +32,17 @@ TurnAgreement check_gyro(Checked& checked) {
     if (std::isnan(drive.yaw_rate[row])) continue;
     wheels += (drive.right[row] - drive.left[row]) / checked.wheelbase;
     gyro += drive.yaw_rate[row] * drive.duration(row);
-    if (std::abs(wheels) < kStretch) continue;
+    if (std::abs(wheels) < kGyroStretch) continue;
     ww += wheels * wheels;
     wg += wheels * gyro;
     gg += gyro * gyro;
     ++result.turns;
     wheels = gyro = 0.0;
   }
-  if (result.turns < kFewest || !(gg > 0.0)) return result;
+  if (result.turns < kFewestStretches || !(gg > 0.0)) return result;
   result.correlation = wg / std::sqrt(ww * gg);
   result.slope = wg / (ww * checked.wheelbase);
-  if (std::abs(result.correlation) < kClear) return result;
+  if (std::abs(result.correlation) < kClearGyro) return result;
   result.sign = result.correlation > 0.0 ? 1 : -1;
   const double times = std::sqrt(gg / ww);
   if (checked.wheelbase_known && std::abs(std::log(times / kDegrees)) < std::log(kFar)) {

@@ -17,11 +17,11 @@
 namespace trussmap {
 namespace {
 
-constexpr double kTurn = 0.5;        // rad, of a sample
-constexpr double kUntold = 2.5;      // rad between two readings: whole turns are not told
-constexpr double kWay = 0.5;         // m, of a sample
-constexpr double kLongest = 10.0;    // s
-constexpr std::size_t kFewest = 10;  // samples
+constexpr double kSampleTurn = 0.5;         // rad, of a sample
+constexpr double kWholeTurns = 2.5;         // rad between two readings: whole turns are not told
+constexpr double kWay = 0.5;                // m, of a sample
+constexpr double kLongestSample = 10.0;     // s
+constexpr std::size_t kFewestSamples = 10;  // samples
 
 /// Mean of what is at most 1; nothing of too few.
 class MeanMisfit {
@@ -31,7 +31,7 @@ class MeanMisfit {
     ++count_;
   }
   [[nodiscard]] std::optional<double> value() const {
-    if (count_ < kFewest) return std::nullopt;
+    if (count_ < kFewestSamples) return std::nullopt;
     return sum_ / static_cast<double>(count_);
   }
 
@@ -44,11 +44,11 @@ class MeanMisfit {
 class TurnMisfit {
  public:
   void add(double by_columns, double by_other) {
-    told_ = told_ && std::abs(by_columns) < kUntold;
+    told_ = told_ && std::abs(by_columns) < kWholeTurns;
     columns_ += by_columns;
     other_ += by_other;
     const double size = std::max(std::abs(columns_), std::abs(other_));
-    if (size < kTurn && told_) return;
+    if (size < kSampleTurn && told_) return;
     mean_.add(told_ ? std::abs(columns_ - other_) : size, size);
     columns_ = other_ = 0.0;
     told_ = true;
@@ -119,12 +119,12 @@ std::optional<double> truth_misfit(const Window& in, const TruthVariant& as) {
   const TruthRow* start = nullptr;
   for (const TruthRow& row : in.recording.truth) {
     if (!in.holds(row.t) || row.t < in.drive.start() || row.t > in.drive.t.back()) continue;
-    if (before != nullptr && row.t - before->t <= kLongest) {
+    if (before != nullptr && row.t - before->t <= kLongestSample) {
       turns.add(in.track.at(row.t).heading - in.track.at(before->t).heading,
                 wrap_angle(as.heading * (row.heading - before->heading)));
     }
     before = &row;
-    if (start == nullptr || row.t - start->t > kLongest) {
+    if (start == nullptr || row.t - start->t > kLongestSample) {
       start = &row;
       continue;
     }

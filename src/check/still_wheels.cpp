@@ -17,20 +17,20 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStillTurns = 30.0;   // wheelbases: five turns about the wheel
-constexpr double kStillTravel = 10.0;  // m that the other wheel has gone
-constexpr double kStillShare = 1e-6;   // of the other wheel's way
-constexpr double kStep = 0.5;          // rad by the wheels, to be compared
-constexpr double kUntold = 2.5;        // rad between two readings: whole turns are not told
-constexpr int kFewest = 6;             // steps
-constexpr double kClear = 0.8;         // correlation
-constexpr double kWheelbaseOff = 2.5;  // factor
+constexpr double kTurnsAbout = 30.0;      // wheelbases: five turns about the wheel
+constexpr double kOtherTravel = 10.0;     // m that the other wheel has gone
+constexpr double kStillShare = 1e-6;      // of the other wheel's way
+constexpr double kStep = 0.5;             // rad by the wheels, to be compared
+constexpr double kUntoldTurn = 2.5;       // rad between two readings: whole turns are not told
+constexpr int kFewestSteps = 6;           // steps
+constexpr double kClearSteps = 0.8;       // correlation
+constexpr double kWheelbaseFactor = 2.5;  // factor
 
 /// Turns of something against the wheels'.
 class Turned {
  public:
   void add(double by_wheels, double by_other) {
-    if (std::abs(by_wheels) > kUntold) return;
+    if (std::abs(by_wheels) > kUntoldTurn) return;
     wheels_ += by_wheels;
     other_ += by_other;
     if (std::abs(wheels_) < kStep) return;
@@ -40,10 +40,10 @@ class Turned {
     ++steps_;
     wheels_ = other_ = 0.0;
   }
-  [[nodiscard]] bool tells() const { return steps_ >= kFewest; }
+  [[nodiscard]] bool tells() const { return steps_ >= kFewestSteps; }
   [[nodiscard]] bool agrees() const {
-    return wo_ > kClear * std::sqrt(ww_ * oo_) && wo_ < kWheelbaseOff * ww_ &&
-           ww_ < kWheelbaseOff * wo_;
+    return wo_ > kClearSteps * std::sqrt(ww_ * oo_) && wo_ < kWheelbaseFactor * ww_ &&
+           ww_ < kWheelbaseFactor * wo_;
   }
 
  private:
@@ -56,7 +56,7 @@ class Turned {
 };
 
 /// Rows from `first` to the one before `end` in which a wheel stands still.
-struct Stretch {
+struct StillStretch {
   std::size_t first = 0;
   std::size_t end = 0;
   double travel = 0.0;  ///< m, of the other wheel
@@ -74,7 +74,8 @@ std::vector<double> wheel_headings(const Drive& drive, double wheelbase) {
   return headings;
 }
 
-Turned by_compass(const Drive& drive, const Stretch& stretch, const std::vector<double>& wheels) {
+Turned by_compass(const Drive& drive, const StillStretch& stretch,
+                  const std::vector<double>& wheels) {
   Turned turned;
   std::size_t last = drive.rows();
   for (std::size_t row = stretch.first; drive.has_compass() && row < stretch.end; ++row) {
@@ -87,7 +88,7 @@ Turned by_compass(const Drive& drive, const Stretch& stretch, const std::vector<
   return turned;
 }
 
-Turned by_gyro(const Drive& drive, const Stretch& stretch, double wheelbase) {
+Turned by_gyro(const Drive& drive, const StillStretch& stretch, double wheelbase) {
   Turned turned;
   for (std::size_t row = stretch.first; drive.has_gyro() && row < stretch.end; ++row) {
     if (std::isnan(drive.yaw_rate[row])) continue;
@@ -97,7 +98,7 @@ Turned by_gyro(const Drive& drive, const Stretch& stretch, double wheelbase) {
   return turned;
 }
 
-Turned by_truth(const Recording& recording, const Stretch& stretch,
+Turned by_truth(const Recording& recording, const StillStretch& stretch,
                 const std::vector<double>& wheels) {
   Turned turned;
   const Drive& drive = recording.drive;
@@ -114,7 +115,7 @@ Turned by_truth(const Recording& recording, const Stretch& stretch,
 }
 
 /// A landmark goes round a robot that turns.
-Turned by_bearings(const Recording& recording, const Stretch& stretch,
+Turned by_bearings(const Recording& recording, const StillStretch& stretch,
                    const std::vector<double>& wheels) {
   Turned turned;
   const Drive& drive = recording.drive;
@@ -133,7 +134,7 @@ Turned by_bearings(const Recording& recording, const Stretch& stretch,
 }
 
 /// A turn about the wheel: at least one shows it, and none contradicts.
-bool turns_about_it(const Checked& checked, const Stretch& stretch,
+bool turns_about_it(const Checked& checked, const StillStretch& stretch,
                     const std::vector<double>& wheels) {
   const Recording& recording = checked.recording;
   bool shown = false;
@@ -149,10 +150,10 @@ bool turns_about_it(const Checked& checked, const Stretch& stretch,
 }
 
 /// Where a wheel stands still and the other one goes so far.
-std::vector<Stretch> still_stretches(const std::vector<double>& wheel,
-                                     const std::vector<double>& other, double least) {
-  std::vector<Stretch> stretches;
-  Stretch now;
+std::vector<StillStretch> still_stretches(const std::vector<double>& wheel,
+                                          const std::vector<double>& other, double least) {
+  std::vector<StillStretch> stretches;
+  StillStretch now;
   for (std::size_t row = 0; row <= wheel.size(); ++row) {
     if (row < wheel.size() && wheel[row] == 0.0) {
       now.travel += std::abs(other[row]);
@@ -182,14 +183,14 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
         "look at the encoder's cable and at the column's source");
     return;
   }
-  const double least = std::max(kStillTravel, kStillTurns * checked.wheelbase);
-  std::vector<Stretch> stretches = still_stretches(wheel, other, least);
+  const double least = std::max(kOtherTravel, kTurnsAbout * checked.wheelbase);
+  std::vector<StillStretch> stretches = still_stretches(wheel, other, least);
   std::erase_if(stretches,
-                [&](const Stretch& one) { return turns_about_it(checked, one, wheels); });
+                [&](const StillStretch& one) { return turns_about_it(checked, one, wheels); });
   if (stretches.empty()) return;
-  const Stretch& longest =
-      *std::max_element(stretches.begin(), stretches.end(),
-                        [](const Stretch& a, const Stretch& b) { return a.travel < b.travel; });
+  const StillStretch& longest = *std::max_element(
+      stretches.begin(), stretches.end(),
+      [](const StillStretch& a, const StillStretch& b) { return a.travel < b.travel; });
   checked.add("drive.csv", name, "still wheel",
               joined("the ", name, " wheel stands still until t = ",
                      figure(checked.recording.drive.t[longest.end - 1], "s"),

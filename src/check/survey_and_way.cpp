@@ -23,7 +23,7 @@ namespace {
 constexpr double kLeastLength = 0.3;     // m
 constexpr double kLeastMeasured = 0.01;  // m, for a ratio
 constexpr double kFarOff = 2.5;          // factor that is no wheel's, nor a range's
-constexpr std::size_t kFewest = 6;
+constexpr std::size_t kFewestPlaces = 6;
 constexpr double kAlike = 0.4;  // rad, median
 
 double ratio_of(const std::vector<SurveyLeg>& legs) {
@@ -32,7 +32,7 @@ double ratio_of(const std::vector<SurveyLeg>& legs) {
     const double measured = leg.measured.norm();
     if (measured > kLeastMeasured) ratios.push_back(leg.surveyed.norm() / measured);
   }
-  return ratios.size() < kFewest ? 0.0 : median(std::move(ratios));
+  return ratios.size() < kFewestPlaces ? 0.0 : median(std::move(ratios));
 }
 
 struct Sign {
@@ -59,7 +59,7 @@ Sign sign_of(const std::vector<SurveyLeg>& legs, double ratio) {
     alike.push_back(std::abs(wrap_angle(measured - surveyed)));
     mirrored.push_back(std::abs(wrap_angle(measured + surveyed)));
   }
-  if (alike.size() < kFewest) return {};
+  if (alike.size() < kFewestPlaces) return {};
   const double as_is = median(std::move(alike));
   const double as_mirrored = median(std::move(mirrored));
   if (as_is < kAlike && as_is < 0.5 * as_mirrored) return {1};

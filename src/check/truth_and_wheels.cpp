@@ -16,15 +16,15 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStretch = 0.5;      // m, or
-constexpr double kStretchTurn = 0.5;  // rad, or
-constexpr double kLongest = 10.0;     // s
-constexpr std::size_t kFewest = 12;
-constexpr double kClear = 0.7;      // correlation
-constexpr double kStraight = 0.15;  // rad
-constexpr double kTurned = 0.14;    // rad
+constexpr double kTruthStretch = 0.5;     // m, or
+constexpr double kStretchTurn = 0.5;      // rad, or
+constexpr double kLongestStretch = 10.0;  // s
+constexpr std::size_t kFewestTruths = 12;
+constexpr double kClearTruth = 0.7;  // correlation
+constexpr double kStraight = 0.15;   // rad
+constexpr double kTurned = 0.14;     // rad
 
-struct Stretch {
+struct TruthStretch {
   Pose wheels;           ///< way, in the track's axes
   Vector2 truth;         ///< way
   double turn = 0;       ///< of the truth, in its unit, not wrapped
@@ -34,21 +34,21 @@ struct Stretch {
   double way = 0.0;      ///< m driven
 };
 
-std::vector<Stretch> stretches_of(const Recording& recording, const Track& track) {
-  std::vector<Stretch> result;
+std::vector<TruthStretch> stretches_of(const Recording& recording, const Track& track) {
+  std::vector<TruthStretch> result;
   const Drive& drive = recording.drive;
   const TruthRow* before = nullptr;
   for (const TruthRow& row : recording.truth) {
     if (row.t < drive.start() || row.t > drive.t.back()) continue;
-    if (before == nullptr || row.t - before->t > kLongest) {
+    if (before == nullptr || row.t - before->t > kLongestStretch) {
       before = &row;
       continue;
     }
     const double way = track.way_at(row.t) - track.way_at(before->t);
     const Pose a = track.at(before->t);
     const Pose b = track.at(row.t);
-    if (way < kStretch && std::abs(b.heading - a.heading) < kStretchTurn) continue;
-    Stretch one;
+    if (way < kTruthStretch && std::abs(b.heading - a.heading) < kStretchTurn) continue;
+    TruthStretch one;
     one.wheels = {b.x - a.x, b.y - a.y, b.heading - a.heading};
     one.truth = {row.x - before->x, row.y - before->y};
     one.turn = row.heading - before->heading;
@@ -64,10 +64,10 @@ std::vector<Stretch> stretches_of(const Recording& recording, const Track& track
 }
 
 /// By far: as degrees do.
-bool turns_more_than_wheels(const std::vector<Stretch>& stretches) {
+bool turns_more_than_wheels(const std::vector<TruthStretch>& stretches) {
   double wheels = 0.0;
   double truth = 0.0;
-  for (const Stretch& one : stretches) {
+  for (const TruthStretch& one : stretches) {
     wheels += std::abs(one.wheels.heading);
     truth += std::abs(std::remainder(one.turn, 360.0));
   }
@@ -76,11 +76,11 @@ bool turns_more_than_wheels(const std::vector<Stretch>& stretches) {
 }
 
 /// Turns brought within half a turn, of so many units; 0: as they are, in radians.
-double correlation(const std::vector<Stretch>& stretches, double turn) {
+double correlation(const std::vector<TruthStretch>& stretches, double turn) {
   double ww = 0.0;
   double wt = 0.0;
   double tt = 0.0;
-  for (const Stretch& one : stretches) {
+  for (const TruthStretch& one : stretches) {
     const double truth =
         turn > 0.0 ? std::remainder(one.turn, turn) * 2.0 * std::numbers::pi / turn : one.turn;
     ww += one.wheels.heading * one.wheels.heading;
@@ -90,13 +90,13 @@ double correlation(const std::vector<Stretch>& stretches, double turn) {
   return ww > 0.0 && tt > 0.0 ? wt / std::sqrt(ww * tt) : 0.0;
 }
 
-int sign_of_course(const std::vector<Stretch>& stretches) {
+int sign_of_course(const std::vector<TruthStretch>& stretches) {
   double alike = 0.0;
   double mirrored = 0.0;
   std::size_t count = 0;
   for (std::size_t k = 1; k < stretches.size(); ++k) {
-    const Stretch& a = stretches[k - 1];
-    const Stretch& b = stretches[k];
+    const TruthStretch& a = stretches[k - 1];
+    const TruthStretch& b = stretches[k];
     if (a.truth.norm() < 0.2 || b.truth.norm() < 0.2) continue;
     const double wheels = direction(b.wheels.position()) - direction(a.wheels.position());
     const double truth = direction(b.truth) - direction(a.truth);
@@ -105,20 +105,20 @@ int sign_of_course(const std::vector<Stretch>& stretches) {
     alike += std::cos(wheels - truth);
     mirrored += std::cos(wheels + truth);
   }
-  if (count < kFewest) return 0;
+  if (count < kFewestTruths) return 0;
   const auto n = static_cast<double>(count);
-  if (alike > kClear * n && alike > mirrored) return 1;
-  if (mirrored > kClear * n && mirrored > alike) return -1;
+  if (alike > kClearTruth * n && alike > mirrored) return 1;
+  if (mirrored > kClearTruth * n && mirrored > alike) return -1;
   return 0;
 }
 
-void check_unit(Checked& checked, const std::vector<Stretch>& stretches) {
+void check_unit(Checked& checked, const std::vector<TruthStretch>& stretches) {
   std::vector<double> ratios;
-  for (const Stretch& one : stretches) {
+  for (const TruthStretch& one : stretches) {
     const double way = one.wheels.position().norm();
     if (way > 0.3) ratios.push_back(one.truth.norm() / way);
   }
-  if (ratios.size() < kFewest) return;
+  if (ratios.size() < kFewestTruths) return;
   const double ratio = median(std::move(ratios));
   if (!(ratio > 0.0) || !looks_like_a_unit(ratio)) return;
   const std::string unit = unit_of_ratio(ratio);
@@ -128,10 +128,10 @@ void check_unit(Checked& checked, const std::vector<Stretch>& stretches) {
               "convert the truth to metres, or the wheels' travels");
 }
 
-void check_turned(Checked& checked, const std::vector<Stretch>& stretches) {
+void check_turned(Checked& checked, const std::vector<TruthStretch>& stretches) {
   const bool to_the_side = !checked.recording.drive.sideways.empty();
   MeanAngle offset;
-  for (const Stretch& one : stretches) {
+  for (const TruthStretch& one : stretches) {
     if (std::abs(one.wheels.heading) > kStraight || one.truth.norm() < 0.3) continue;
     if (to_the_side) {
       offset.add(one.heading + one.aside - direction(one.truth));
@@ -172,30 +172,32 @@ void check_compass_frame(Checked& checked) {
 
 TruthAgreement truth_agreement(const Checked& checked, const Track& track) {
   TruthAgreement result;
-  const std::vector<Stretch> stretches = stretches_of(checked.recording, track);
-  if (stretches.size() < kFewest) return result;
+  const std::vector<TruthStretch> stretches = stretches_of(checked.recording, track);
+  if (stretches.size() < kFewestTruths) return result;
   const double radians = correlation(stretches, 2.0 * std::numbers::pi);
   const double going_on = correlation(stretches, 0.0);
-  result.in_degrees = std::abs(radians) < kClear &&
-                      std::abs(correlation(stretches, 360.0)) > kClear &&
+  result.in_degrees = std::abs(radians) < kClearTruth &&
+                      std::abs(correlation(stretches, 360.0)) > kClearTruth &&
                       turns_more_than_wheels(stretches);
   if (result.in_degrees) return result;
-  if (std::abs(radians) < kClear && std::abs(going_on) > kClear) {  // whole turns between rows
+  if (std::abs(radians) < kClearTruth &&
+      std::abs(going_on) > kClearTruth) {  // whole turns between rows
     result.by_heading = going_on > 0.0 ? 1 : -1;
   }
-  if (std::abs(radians) > kClear) result.by_heading = radians > 0.0 ? 1 : -1;
+  if (std::abs(radians) > kClearTruth) result.by_heading = radians > 0.0 ? 1 : -1;
   result.by_course = sign_of_course(stretches);
   double turned = 0.0;
-  for (const Stretch& one : stretches) turned += std::pow(wrap_angle(one.turn), 2);
+  for (const TruthStretch& one : stretches) turned += std::pow(wrap_angle(one.turn), 2);
   constexpr double kTurns = 0.2;      // rad, rms
   constexpr double kOnTheSpot = 0.4;  // rad
   constexpr std::ptrdiff_t kFewestSpins = 6;
-  const auto spins = std::count_if(stretches.begin(), stretches.end(), [&](const Stretch& one) {
-    const double turn = wrap_angle(one.turn);
-    return std::abs(turn) > kOnTheSpot &&
-           looks_unsigned(turn, one.wheels.heading * checked.wheelbase, 2.0 * one.way,
-                          checked.wheelbase);
-  });
+  const auto spins =
+      std::count_if(stretches.begin(), stretches.end(), [&](const TruthStretch& one) {
+        const double turn = wrap_angle(one.turn);
+        return std::abs(turn) > kOnTheSpot &&
+               looks_unsigned(turn, one.wheels.heading * checked.wheelbase, 2.0 * one.way,
+                              checked.wheelbase);
+      });
   result.unsigned_wheels = result.by_heading == 0 && spins >= kFewestSpins;
   result.contradicts =
       result.by_heading == 0 && turned > kTurns * kTurns * static_cast<double>(stretches.size());
@@ -203,8 +205,8 @@ TruthAgreement truth_agreement(const Checked& checked, const Track& track) {
 }
 
 void check_truth(Checked& checked, const Track& track, const TruthAgreement& agreement) {
-  const std::vector<Stretch> stretches = stretches_of(checked.recording, track);
-  if (stretches.size() < kFewest) return;
+  const std::vector<TruthStretch> stretches = stretches_of(checked.recording, track);
+  if (stretches.size() < kFewestTruths) return;
   check_unit(checked, stretches);
   if (agreement.in_degrees) {
     checked.add(

@@ -24,15 +24,15 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLongest = 30.0;   // s
-constexpr double kFarthest = 12.0;  // m
-constexpr double kLeastWay = 0.3;   // m, or
-constexpr double kLeastTurn = 0.5;  // rad
+constexpr double kLongestView = 30.0;   // s
+constexpr double kFarthestView = 12.0;  // m
+constexpr double kLeastWay = 0.3;       // m, or
+constexpr double kLeastTurn = 0.5;      // rad
 constexpr std::size_t kMostPairs = 300;
 constexpr std::size_t kFewestPairs = 8;
 constexpr double kAgrees = 0.45;  // median error by the size of the shift
-constexpr double kFits = 0.3;
-constexpr double kBetter = 0.5;  // of the error as recorded
+constexpr double kShiftFits = 0.3;
+constexpr double kShiftBetter = 0.5;  // of the error as recorded
 
 struct Pair {
   const Sighting* first = nullptr;
@@ -50,11 +50,11 @@ std::vector<Pair> pairs_of(const Recording& recording, const Track& track, doubl
   for (const Sighting& one : recording.sightings) {
     if (!is_view(one) || one.t < from || one.t > to) continue;
     const Sighting*& before = last[one.landmark];
-    if (before != nullptr && one.t - before->t <= kLongest) {
+    if (before != nullptr && one.t - before->t <= kLongestView) {
       const double way = track.way_at(one.t) - track.way_at(before->t);
       const double turn = track.at(one.t).heading - track.at(before->t).heading;
       if (way < kLeastWay && std::abs(turn) < kLeastTurn) continue;
-      if (way <= kFarthest) pairs.push_back({before, &one});
+      if (way <= kFarthestView) pairs.push_back({before, &one});
     }
     before = &one;
   }
@@ -228,7 +228,7 @@ TurnAgreement check_views(Checked& checked, const Track& track) {
     recorded = turned;
   }
   const Explained best = best_explanation(checked, pairs, {recorded, WheelMistake::none, stated});
-  if (best.error > kFits || best.error > kBetter * recorded) return result;
+  if (best.error > kShiftFits || best.error > kShiftBetter * recorded) return result;
   const std::string evidence =
       joined("of ", pairs.size(), " landmarks seen again the wheels lead ",
              fixed_text(100.0 * recorded, 0), " % of the shift astray (median), and ",

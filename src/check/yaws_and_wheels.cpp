@@ -21,10 +21,10 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLongest = 600.0;  // s: until then the wheels have not drifted by much
-constexpr double kLeastSine = 0.4;  // of the turn
-constexpr double kAgrees = 0.35;    // rad, median
-constexpr std::size_t kFewestPairs = 8;
+constexpr double kLongestYaws = 600.0;  // s: until then the wheels have not drifted by much
+constexpr double kLeastSine = 0.4;      // of the turn
+constexpr double kYawsAgree = 0.35;     // rad, median
+constexpr std::size_t kFewestYaws = 8;
 
 /// In degrees, where a fifth of them are beyond a whole turn in radians. Returns rad per unit.
 double unit_of(Checked& checked, const char* file, const char* column, const char* plural,
@@ -63,7 +63,7 @@ int yaws_sign(const Checked& checked, const Track& track) {
   for (const Sighting& one : checked.recording.sightings) {
     if (!std::isfinite(one.yaw)) continue;
     const Sighting*& before = last[one.landmark];
-    if (before != nullptr && one.t - before->t <= kLongest) {
+    if (before != nullptr && one.t - before->t <= kLongestYaws) {
       const double turn = track.at(one.t).heading - track.at(before->t).heading;
       const double change = checked.yaw_unit * (one.yaw - before->yaw);
       if (std::abs(std::sin(turn)) > kLeastSine) {
@@ -73,11 +73,11 @@ int yaws_sign(const Checked& checked, const Track& track) {
     }
     before = &one;
   }
-  if (as_recorded.size() < kFewestPairs) return 0;
+  if (as_recorded.size() < kFewestYaws) return 0;
   const double right = median(std::move(as_recorded));
   const double wrong = median(std::move(negated));
-  if (right < kAgrees && right < wrong) return 1;
-  return wrong < kAgrees ? -1 : 0;
+  if (right < kYawsAgree && right < wrong) return 1;
+  return wrong < kYawsAgree ? -1 : 0;
 }
 
 }  // namespace trussmap

@@ -29,7 +29,7 @@ std::optional<int> number_in(const std::string& name) {
 }
 
 /// Per landmark; none where the name has no number, or another landmark's has the same.
-std::vector<std::optional<int>> ids_of(const LandmarkGraph& map) {
+std::vector<std::optional<int>> yaml_ids_of(const LandmarkGraph& map) {
   std::vector<std::optional<int>> ids;
   std::map<int, int> bearers;
   for (int k = 0; k < map.landmarks(); ++k) {
@@ -140,7 +140,7 @@ YamlMap format_map_yaml(const LandmarkGraph& map, const YamlMapOptions& options)
   if (options.tag_size && !(*options.tag_size > 0.0 && std::isfinite(*options.tag_size))) {
     throw std::invalid_argument("the tag size must be above 0");
   }
-  const std::vector<std::optional<int>> ids = ids_of(map);
+  const std::vector<std::optional<int>> ids = yaml_ids_of(map);
   YamlMap result;
   for (int k = 0; k < map.landmarks(); ++k) {
     const Landmark& one = map.landmark(k);

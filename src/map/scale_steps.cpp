@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kUnheld = 1e-12;  // share of its stiffness that an unknown keeps when held
 constexpr int kMostHalvings = 10;
-constexpr double kFlattest = 1e-4;  // a frame that can still be gone back from
-constexpr int kUnknowns = 6;        // per group
+constexpr double kFlattestFrame = 1e-4;  // a frame that can still be gone back from
+constexpr int kUnknowns = 6;             // per group
 
 /// A group of landmarks in one line may be pulled out of it without bound.
-bool is_modest(const Matrix2& L, double flattest = kFlattest) {
+bool is_modest(const Matrix2& L, double flattest = kFlattestFrame) {
   return L.allFinite() && std::abs(L.determinant()) > flattest * L.squaredNorm();
 }
 
@@ -261,7 +261,7 @@ double ScaleSums::move(int level, const Free& free) {
       }
     }
     if (parent >= 0) touch_group(level + 1, parent);
-    if (!is_modest(now.L, 100.0 * kFlattest)) touch_group(level, group);  // for a new frame
+    if (!is_modest(now.L, 100.0 * kFlattestFrame)) touch_group(level, group);  // for a new frame
   }
   ++now_;
   moved_ = std::max(moved_, moved);

@@ -111,20 +111,20 @@ void truth_heading(Sketch& s) {
       .text({192, 72}, "the tracker's", Ink::cause, "start");
 }
 
-constexpr EffectDrawing kDrawings[] = {{"compass offset", compass_offset},
-                                       {"hard iron", hard_iron},
-                                       {"soft iron", soft_iron},
-                                       {"body tilt", body_tilt},
-                                       {"compass lag", compass_lag},
-                                       {"motor current", motor_current},
-                                       {"local magnetic anomaly", magnetic_anomaly},
-                                       {"compass disturbance", compass_disturbance},
-                                       {"truth heading", truth_heading}};
+constexpr EffectDrawing kHeadingDrawings[] = {{"compass offset", compass_offset},
+                                              {"hard iron", hard_iron},
+                                              {"soft iron", soft_iron},
+                                              {"body tilt", body_tilt},
+                                              {"compass lag", compass_lag},
+                                              {"motor current", motor_current},
+                                              {"local magnetic anomaly", magnetic_anomaly},
+                                              {"compass disturbance", compass_disturbance},
+                                              {"truth heading", truth_heading}};
 
 }  // namespace
 
 std::span<const EffectDrawing> drawings_of_headings() {
-  return kDrawings;
+  return kHeadingDrawings;
 }
 
 }  // namespace trussmap

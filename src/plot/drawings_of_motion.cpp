@@ -226,32 +226,33 @@ void steering_gain(Sketch& s) {
   s.text({86, 52}, "the larger the angle,").text({86, 68}, "the further off", Ink::cause);
 }
 
-constexpr EffectDrawing kDrawings[] = {{"wheelbase", wheelbase},
-                                       {"constant creep", constant_creep},
-                                       {"cross-slope creep", cross_slope},
-                                       {"centrifugal side-slip", side_slip},
-                                       {"slope", slope},
-                                       {"arc loss", arc_loss},
-                                       {"spin loss", spin_loss},
-                                       {"turn scrub", turn_scrub},
-                                       {"turn asymmetry", turn_asymmetry},
-                                       {"twist per spin", twist_per_spin},
-                                       {"heading drift", heading_drift},
-                                       {"gyro bias", gyro_bias},
-                                       {"gyro warm-up", gyro_warm_up},
-                                       {"gyro temperature drift", gyro_temperature},
-                                       {"gyro scale", gyro_scale},
-                                       {"gyro asymmetry", gyro_asymmetry},
-                                       {"slippery patch", slippery_patch},
-                                       {"roller slip", roller_slip},
-                                       {"steering offset", steering_offset},
-                                       {"steering offset by direction", steering_by_direction},
-                                       {"steering gain", steering_gain}};
+constexpr EffectDrawing kMotionDrawings[] = {
+    {"wheelbase", wheelbase},
+    {"constant creep", constant_creep},
+    {"cross-slope creep", cross_slope},
+    {"centrifugal side-slip", side_slip},
+    {"slope", slope},
+    {"arc loss", arc_loss},
+    {"spin loss", spin_loss},
+    {"turn scrub", turn_scrub},
+    {"turn asymmetry", turn_asymmetry},
+    {"twist per spin", twist_per_spin},
+    {"heading drift", heading_drift},
+    {"gyro bias", gyro_bias},
+    {"gyro warm-up", gyro_warm_up},
+    {"gyro temperature drift", gyro_temperature},
+    {"gyro scale", gyro_scale},
+    {"gyro asymmetry", gyro_asymmetry},
+    {"slippery patch", slippery_patch},
+    {"roller slip", roller_slip},
+    {"steering offset", steering_offset},
+    {"steering offset by direction", steering_by_direction},
+    {"steering gain", steering_gain}};
 
 }  // namespace
 
 std::span<const EffectDrawing> drawings_of_motion() {
-  return kDrawings;
+  return kMotionDrawings;
 }
 
 }  // namespace trussmap

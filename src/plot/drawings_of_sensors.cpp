@@ -124,21 +124,21 @@ void yaw_offset(Sketch& s) {
       .text({216, 152}, "turns every landmark", Ink::believed);
 }
 
-constexpr EffectDrawing kDrawings[] = {{"sighting delay", sighting_delay},
-                                       {"antenna ahead of the axle", antenna_ahead},
-                                       {"antenna beside the axle", antenna_beside},
-                                       {"fix delay", fix_delay},
-                                       {"lever arm", lever_arm},
-                                       {"lever arm to the left", lever_left},
-                                       {"range bias", range_bias},
-                                       {"range scale", range_scale},
-                                       {"bearing offset", bearing_offset},
-                                       {"yaw offset", yaw_offset}};
+constexpr EffectDrawing kSensorDrawings[] = {{"sighting delay", sighting_delay},
+                                             {"antenna ahead of the axle", antenna_ahead},
+                                             {"antenna beside the axle", antenna_beside},
+                                             {"fix delay", fix_delay},
+                                             {"lever arm", lever_arm},
+                                             {"lever arm to the left", lever_left},
+                                             {"range bias", range_bias},
+                                             {"range scale", range_scale},
+                                             {"bearing offset", bearing_offset},
+                                             {"yaw offset", yaw_offset}};
 
 }  // namespace
 
 std::span<const EffectDrawing> drawings_of_sensors() {
-  return kDrawings;
+  return kSensorDrawings;
 }
 
 }  // namespace trussmap

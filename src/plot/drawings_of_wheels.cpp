@@ -170,24 +170,25 @@ void radius_of_wheel(Sketch& s, std::string_view part) {
   s.line({200, 130}, {300, 130}, Ink::plain).text({250, 152}, "its radius", Ink::cause);
 }
 
-constexpr EffectDrawing kDrawings[] = {{"wheel diameter ratio", wheel_diameter_ratio},
-                                       {"travel scale", travel_scale},
-                                       {"wheel scale", wheel_scale},
-                                       {"slip with speed", slip_with_speed},
-                                       {"loss per start", loss_per_start},
-                                       {"load on both wheels", load_on_both},
-                                       {"load on one wheel", load_on_one},
-                                       {"tyre drift", tyre_drift},
-                                       {.name = "backlash", .draw_part = backlash},
-                                       {"backlash twist", backlash_twist},
-                                       {.name = "missed ticks", .draw_part = missed_ticks},
-                                       {"sampling skew", sampling_skew},
-                                       {.name = "radius of a wheel", .draw_part = radius_of_wheel}};
+constexpr EffectDrawing kWheelDrawings[] = {
+    {"wheel diameter ratio", wheel_diameter_ratio},
+    {"travel scale", travel_scale},
+    {"wheel scale", wheel_scale},
+    {"slip with speed", slip_with_speed},
+    {"loss per start", loss_per_start},
+    {"load on both wheels", load_on_both},
+    {"load on one wheel", load_on_one},
+    {"tyre drift", tyre_drift},
+    {.name = "backlash", .draw_part = backlash},
+    {"backlash twist", backlash_twist},
+    {.name = "missed ticks", .draw_part = missed_ticks},
+    {"sampling skew", sampling_skew},
+    {.name = "radius of a wheel", .draw_part = radius_of_wheel}};
 
 }  // namespace
 
 std::span<const EffectDrawing> drawings_of_wheels() {
-  return kDrawings;
+  return kWheelDrawings;
 }
 
 }  // namespace trussmap

@@ -9,8 +9,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kMostPoints = 120;  // of a source
-constexpr std::size_t kFewest = 5;        // values that make a line
+constexpr std::size_t kMostQuantiles = 120;  // of a source
+constexpr std::size_t kFewest = 5;           // values that make a line
 
 double normal_order_statistic(std::size_t k, std::size_t count) {
   return normal_quantile((static_cast<double>(k) + 0.5) / static_cast<double>(count));
@@ -20,14 +20,14 @@ double normal_order_statistic(std::size_t k, std::size_t count) {
 /// among them.
 std::vector<std::size_t> drawn_places(std::size_t count) {
   std::vector<std::size_t> places;
-  if (count <= kMostPoints) {
+  if (count <= kMostQuantiles) {
     for (std::size_t k = 0; k < count; ++k) places.push_back(k);
     return places;
   }
   const double end = normal_order_statistic(count - 1, count);
-  for (std::size_t k = 0; k < kMostPoints; ++k) {
+  for (std::size_t k = 0; k < kMostQuantiles; ++k) {
     const double z =
-        end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostPoints - 1) - 1.0);
+        end * (2.0 * static_cast<double>(k) / static_cast<double>(kMostQuantiles - 1) - 1.0);
     const double share = normal_p_value(-z);
     const auto place = static_cast<std::size_t>(std::clamp(
         std::floor(share * static_cast<double>(count)), 0.0, static_cast<double>(count - 1)));

@@ -18,12 +18,12 @@
 namespace trussmap {
 namespace {
 
-constexpr double kEdge = 16.0;      // pixels round the picture
-constexpr double kLeftAxis = 62.0;  // numbers and label of the y axis
+constexpr double kPictureEdge = 16.0;  // pixels round the picture
+constexpr double kLeftAxis = 62.0;     // numbers and label of the y axis
 constexpr double kBottomAxis = 48.0;
 constexpr double kPanelTitle = 26.0;
 constexpr double kRightGap = 14.0;
-constexpr double kCharacter = 6.7;  // mean width of one at 13 px
+constexpr double kPictureCharacter = 6.7;  // mean width of one at 13 px
 
 Range fitted(const std::vector<Mark>& marks, int axis) {
   constexpr double kRangeMargin = 0.07;
@@ -149,15 +149,16 @@ std::string draw_legend(const Figure& figure, double width, double& bottom) {
   constexpr double kGap = 22.0;
   std::set<std::string> listed;
   std::string svg;
-  double x = kEdge;
+  double x = kPictureEdge;
   for (const Panel& panel : figure.panels) {
     for (const Mark& mark : panel.marks) {
       if (mark.legend.empty() || !listed.insert(mark.legend).second) continue;
-      const double wide = kSymbol + kCharacter * static_cast<double>(mark.legend.size()) + kGap;
+      const double wide =
+          kSymbol + kPictureCharacter * static_cast<double>(mark.legend.size()) + kGap;
       if (listed.size() == 1) {
         bottom += kRow;
-      } else if (x + wide - kGap > width - kEdge) {
-        x = kEdge;
+      } else if (x + wide - kGap > width - kPictureEdge) {
+        x = kPictureEdge;
         bottom += kRow;
       }
       const double y = bottom - 10.0;
@@ -230,23 +231,24 @@ std::vector<Vector2> ellipse_outline(const Vector2& centre, const Matrix2& covar
 
 std::string draw_figure(const Figure& figure) {
   check(figure);
-  const double width = 2.0 * kEdge + figure.panel_width * static_cast<double>(figure.panels.size());
-  double top = kEdge + 16.0;
-  std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n", px(kEdge),
-                                px(top), xml_escaped(figure.title));
+  const double width =
+      2.0 * kPictureEdge + figure.panel_width * static_cast<double>(figure.panels.size());
+  double top = kPictureEdge + 16.0;
+  std::string svg = fmt::format("<text class=\"title\" x=\"{}\" y=\"{}\">{}</text>\n",
+                                px(kPictureEdge), px(top), xml_escaped(figure.title));
   if (!figure.subtitle.empty()) {
     top += 21.0;
-    svg += fmt::format("<text class=\"subtitle\" x=\"{}\" y=\"{}\">{}</text>\n", px(kEdge), px(top),
-                       xml_escaped(figure.subtitle));
+    svg += fmt::format("<text class=\"subtitle\" x=\"{}\" y=\"{}\">{}</text>\n", px(kPictureEdge),
+                       px(top), xml_escaped(figure.subtitle));
   }
   top += 8.0;
   svg += draw_legend(figure, width, top);
   top += 4.0;
   for (std::size_t k = 0; k < figure.panels.size(); ++k) {
-    const double left = kEdge + figure.panel_width * static_cast<double>(k);
+    const double left = kPictureEdge + figure.panel_width * static_cast<double>(k);
     svg += draw_panel(figure, figure.panels[k], left, top, k);
   }
-  const double height = top + figure.panel_height + 0.5 * kEdge;
+  const double height = top + figure.panel_height + 0.5 * kPictureEdge;
   return fmt::format(
              "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
              "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n{3}"

@@ -12,7 +12,7 @@ namespace trussmap {
 namespace {
 
 constexpr double kLeastCondition = 1e-14;
-constexpr double kRounding = 1e-14;  // componentwise backward error
+constexpr double kBackwardError = 1e-14;  // componentwise backward error
 
 std::vector<int> sizes_of(const std::vector<bool>& held) {
   std::vector<int> sizes;
@@ -44,7 +44,7 @@ Residual residual_of(const SparseMatrix& lower, const Eigen::VectorXd& u,
 }
 
 bool shows_rounding(const Residual& residual) {
-  return (residual.value.array().abs() > kRounding * residual.terms.array()).any();
+  return (residual.value.array().abs() > kBackwardError * residual.terms.array()).any();
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::accessible_pages_test {
 namespace {
 
 using nlohmann::json;
@@ -126,4 +126,4 @@ TEST(AccessibleInBrowser, FaultsAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::accessible_pages_test

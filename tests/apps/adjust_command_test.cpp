@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::adjust_command_test {
 namespace {
 
 testing::Ran run(const std::string& arguments) {
@@ -84,4 +84,4 @@ TEST_F(AdjustCommand, RefusesToStartFromAFileWithoutEstimates) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::adjust_command_test

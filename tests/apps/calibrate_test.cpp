@@ -19,7 +19,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::calibrate_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -360,4 +360,4 @@ TEST(CalibrateOptiOdom, LegsHeldOutOfSetsThatAreOutOfStepArePredictedBetter) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::calibrate_test

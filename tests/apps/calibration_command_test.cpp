@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::calibration_command_test {
 namespace {
 
 using nlohmann::json;
@@ -379,4 +379,4 @@ TEST(CalibrationCommands, BadWallDistancesAndStraightRunsNameWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::calibration_command_test

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::check_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ TEST(CheckCommand, AModelWithoutAWheelbaseIsNamed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::check_command_test

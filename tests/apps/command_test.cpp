@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::command_test {
 namespace {
 
 using nlohmann::json;
@@ -414,4 +414,4 @@ TEST(Command, BuildTakesAModelsEffectsOutAndRefusesWhatItCannot) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::command_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::completion_test {
 namespace {
 
 using testing::Ran;
@@ -136,4 +136,4 @@ TEST(Manual, HasAPagePerCommandWithAllItsOptions) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::completion_test

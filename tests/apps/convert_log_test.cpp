@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::convert_log_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST(SlowConvertLog, EveryFormatLeadsToTheSameDiagnosis) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::convert_log_test

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::criticism_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -255,4 +255,4 @@ TEST(CriticismCommands, TheStrongestTrendOfThePracticeRecordingsIsTheRightOne) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::criticism_command_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::documentation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST(DocumentedCommands, AreFoundInCodeAlone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::documentation_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap::explore {
+namespace trussmap::explore::explore_test {
 namespace {
 
 /// Landmarks that routes join to the first, by following them.
@@ -176,4 +176,4 @@ TEST(SlowExplorer, MapsBetterThanEulerToursOfTheSameLength) {
 }
 
 }  // namespace
-}  // namespace trussmap::explore
+}  // namespace trussmap::explore::explore_test

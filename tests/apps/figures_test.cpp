@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::figures_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,4 +156,4 @@ TEST(TourMaps, OfARobotWithoutACompassLieOnTheTruth) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::figures_test

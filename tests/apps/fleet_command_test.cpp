@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fleet_command_test {
 namespace {
 
 using testing::run_trussmap;
@@ -76,4 +76,4 @@ TEST(FleetCommand, TwoThatAddAtOnceLoseNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fleet_command_test

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::json_schema_test {
 namespace {
 
 using nlohmann::json;
@@ -132,4 +132,4 @@ TEST_F(JsonSchema, HasWhatCalibrationsWrite) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::json_schema_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::long_words_test {
 namespace {
 
 using testing::Ran;
@@ -161,4 +161,4 @@ TEST(ReadingLimits, AreOptionsOfTheCommands) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::long_words_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::page_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ TEST(PageInBrowser, RunsNoScriptButItsOwn) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::page_command_test

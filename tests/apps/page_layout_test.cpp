@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::page_layout_test {
 namespace {
 
 using nlohmann::json;
@@ -180,4 +180,4 @@ TEST(PageLayoutInBrowser, SheetsAreCounted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::page_layout_test

@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::page_scripts_test {
 namespace {
 
 using nlohmann::json;
@@ -131,4 +131,4 @@ TEST(PageScripts, TypesThatLieAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::page_scripts_test

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::path_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -90,4 +90,4 @@ TEST(PathCommand, BuildWritesNoMapWithoutLandmarks) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::path_command_test

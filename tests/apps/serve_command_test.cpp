@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::serve_command_test {
 namespace {
 
 using nlohmann::json;
@@ -319,4 +319,4 @@ TEST(ServeCommand, OtherWorkIsNotGoneOnWith) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::serve_command_test

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::shard_command_test {
 namespace {
 
 using testing::Ran;
@@ -60,4 +60,4 @@ TEST(ShardCommand, SaysWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::shard_command_test

@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::simulate_command_test {
 namespace {
 
 using nlohmann::json;
@@ -326,4 +326,4 @@ TEST(SimulateCommand, HelpListsTheCatalogue) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::simulate_command_test

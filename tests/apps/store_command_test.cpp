@@ -23,7 +23,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::store_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ TEST(SlowStoreCommand, KillLosesNothingThatWasAcknowledged) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::store_command_test

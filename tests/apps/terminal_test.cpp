@@ -27,7 +27,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::terminal_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -239,4 +239,4 @@ TEST(TerminalCommand, InterruptedWhileItWritesLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::terminal_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::ways_out_test {
 namespace {
 
 using testing::Ran;
@@ -121,4 +121,4 @@ TEST_F(WaysOut, AMapBecomesYaml) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::ways_out_test

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::workbench_history_test {
 namespace {
 
 using nlohmann::json;
@@ -140,4 +140,4 @@ TEST(WorkbenchInBrowser, EffectsAreExplainedOnTheirCards) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::workbench_history_test

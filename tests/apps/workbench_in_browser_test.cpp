@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::workbench_in_browser_test {
 namespace {
 
 using nlohmann::json;
@@ -286,4 +286,4 @@ TEST(WorkbenchInBrowser, TwoTabsShowTheSame) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::workbench_in_browser_test

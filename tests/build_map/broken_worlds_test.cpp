@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::broken_worlds_test {
 namespace {
 
 using bench::BrokenWorld;
@@ -105,4 +105,4 @@ TEST(BrokenWorlds, AWrongUnitIsDoubtful) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::broken_worlds_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::build_map_test {
 namespace {
 
 /// Two tours of a 4x4 mesh.
@@ -228,4 +228,4 @@ TEST(ExtendMap, ASessionElsewhereIsRefusedOrDoubted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::build_map_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::built_path_test {
 namespace {
 
 using testing::placed_drive;
@@ -186,4 +186,4 @@ TEST(SlowBuiltPath, OfTheLectureHallIsNearItsTruth) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::built_path_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_under_effects_test {
 namespace {
 
 constexpr Method kMethods[] = {Method::elastic, Method::elastic_printed, Method::gauss_markov,
@@ -193,4 +193,4 @@ TEST(MapUnderEffectsTogether, SeveralActSideBySide) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_under_effects_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::mrclam_test {
 namespace {
 
 MrclamRecording robot(int set, int number) {
@@ -140,4 +140,4 @@ TEST(Mrclam, WithoutTheGateMisreadLabelsSpoilAMap) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::mrclam_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::oriented_map_test {
 namespace {
 
 Mesh small_mesh() {
@@ -180,4 +180,4 @@ TEST(OrientedMap, LegsUseYawsBesideACompass) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::oriented_map_test

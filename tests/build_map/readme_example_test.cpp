@@ -30,7 +30,7 @@ int main() {
 // README: end
 #undef main
 
-namespace trussmap {
+namespace trussmap::readme_example_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -59,4 +59,4 @@ TEST(ReadmeExample, MapsARecording) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::readme_example_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::coverage_test {
 namespace {
 
 using testing::simulated_runs;
@@ -93,4 +93,4 @@ TEST(UmbmarkStandardErrors, AgreeWithTheScatterOfManyCalibrations) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::coverage_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::end_moments_test {
 namespace {
 
 const TestPath kPaths[] = {{{10.0, 0.0}, {-10.0, 0.0}},
@@ -73,4 +73,4 @@ TEST(EndMoments, TheBendIsLargeOnALongPathWithUsualWheels) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::end_moments_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::heading_offset_test {
 namespace {
 
 using testing::draw;
@@ -109,4 +109,4 @@ TEST(WheelCalibration, ATruthThatIsTurnedALittleIsFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::heading_offset_test

@@ -20,7 +20,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::paper_tables_test {
 namespace {
 
 using nlohmann::json;
@@ -289,4 +289,4 @@ TEST(PaperTables, XAndYGiveFactorsThatAgreeWithinAPercent) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::paper_tables_test

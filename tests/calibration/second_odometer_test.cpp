@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::second_odometer_test {
 namespace {
 
 using testing::after;
@@ -175,4 +175,4 @@ TEST(SecondOdometer, LoopsThatOnlyCloseGiveNoScale) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::second_odometer_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::square_checks_test {
 namespace {
 
 using testing::simulated_clusters;
@@ -116,4 +116,4 @@ TEST(SquareOutliers, ARunFarFromTheOthersIsNamedAndOrdinaryScatterIsNot) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::square_checks_test

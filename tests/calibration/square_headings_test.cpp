@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::square_headings_test {
 namespace {
 
 constexpr SquareSetup kSquare{4.0, 0.34};
@@ -303,4 +303,4 @@ TEST(FigureEight, AloneHidesWhatTheSquaresShow) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::square_headings_test

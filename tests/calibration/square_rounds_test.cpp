@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::square_rounds_test {
 namespace {
 
 using testing::simulated_runs;
@@ -87,4 +87,4 @@ TEST(SquareRounds, DoubtsNameTheirRound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::square_rounds_test

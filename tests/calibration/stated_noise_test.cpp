@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::stated_noise_test {
 namespace {
 
 constexpr double kLeft = 0.0004;  // Chong & Kleeman (1997), section 5.2
@@ -123,4 +123,4 @@ TEST(StatedNoise, StandsInTheAnalysisWhereAsked) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::stated_noise_test

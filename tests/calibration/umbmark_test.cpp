@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::umbmark_test {
 namespace {
 
 using testing::Case;
@@ -206,4 +206,4 @@ TEST(PathError, JacobianAgreesWithDifferences) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::umbmark_test

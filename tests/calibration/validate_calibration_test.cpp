@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::validate_calibration_test {
 namespace {
 
 using testing::draw;
@@ -133,4 +133,4 @@ TEST(ValidateCalibration, TheVerdictNeedsAGainBeyondItsScatter) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::validate_calibration_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wall_distances_test {
 namespace {
 
 /// The paper's: two to the long side, at the robot's right, one to the short side, behind it.
@@ -227,4 +227,4 @@ TEST(WallDistances, RefuseSensorsAndDistancesThatSayNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wall_distances_test

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheel_calibration_test {
 namespace {
 
 using testing::draw;
@@ -291,4 +291,4 @@ TEST(DriveErrors, NeedTruth) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheel_calibration_test

@@ -15,7 +15,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheel_noise_test {
 namespace {
 
 constexpr double kLeft = 0.0004;  // Chong & Kleeman (1997), section 5.2
@@ -343,4 +343,4 @@ TEST(NoiseChecks, DoubtsNameTheirCause) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheel_noise_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::check_test {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -459,4 +459,4 @@ TEST(Check, RealRobotsHaveNoFindingButTheExchangedLabelsOfOneSurvey) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::check_test

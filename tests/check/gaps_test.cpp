@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::gaps_test {
 namespace {
 
 /// A drive with rests of up to 20 s at half of its stops; truth from its own clockwork.
@@ -146,4 +146,4 @@ TEST(CheckGaps, RowsLostUpToARestAreAGap) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::gaps_test

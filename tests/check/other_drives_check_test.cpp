@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::other_drives_check_test {
 namespace {
 
 using testing::drive_world;
@@ -346,4 +346,4 @@ TEST(CheckOfDrives, KindsAreListed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::other_drives_check_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::still_wheels_test {
 namespace {
 
 constexpr double kRow = 0.1;    // s
@@ -135,4 +135,4 @@ TEST(CheckStillWheels, AnotherStretchThatIsATurnHidesNoneThatIsNot) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::still_wheels_test

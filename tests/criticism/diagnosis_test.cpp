@@ -19,7 +19,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::diagnosis_test {
 namespace {
 
 /// An answer that counts: a channel, and a word that the shape must contain ("1": a constant).
@@ -303,4 +303,4 @@ TEST(Diagnosis, UnderNoiseThatItEstimatedNoWarningBlamesTheStated) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::diagnosis_test

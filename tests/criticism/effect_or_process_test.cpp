@@ -18,7 +18,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_or_process_test {
 namespace {
 
 constexpr Eigen::Index kInstants = 40;
@@ -152,4 +152,4 @@ TEST(ProcessColumns, LikelihoodIsThatOfTheStates) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_or_process_test

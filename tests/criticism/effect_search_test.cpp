@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_search_test {
 namespace {
 
 Tested tested(Form form, const std::string& family, double score, int tried) {
@@ -160,4 +160,4 @@ TEST(LeadingLaw, IsBeyondChanceAndExplainsMoreThanAnyEffect) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_search_test

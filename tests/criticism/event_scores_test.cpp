@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::event_scores_test {
 namespace {
 
 class EventScores : public ::testing::Test {
@@ -64,4 +64,4 @@ TEST_F(EventScores, APriorPullsTheSizeAndTakesItsShareOfTheScore) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::event_scores_test

@@ -14,7 +14,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::event_tests_test {
 namespace {
 
 using testing::Bump;
@@ -187,4 +187,4 @@ TEST(SlowEventTests, WhereNothingHappenedNothingIsNamed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::event_tests_test

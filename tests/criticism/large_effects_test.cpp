@@ -20,7 +20,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::large_effects_test {
 namespace {
 
 Effect sized(Effect effect, double coefficient) {
@@ -182,4 +182,4 @@ TEST(LargeEffects, AreShownOnTheirCurve) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::large_effects_test

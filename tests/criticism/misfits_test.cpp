@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::misfits_test {
 namespace {
 
 TEST(Misfits, LegsAreAsMuchTooLongAsTheWheelsSay) {
@@ -34,4 +34,4 @@ TEST(Misfits, LegsAreAsMuchTooLongAsTheWheelsSay) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::misfits_test

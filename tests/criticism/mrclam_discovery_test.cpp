@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::mrclam_discovery_test {
 namespace {
 
 Pose truth_at(const std::vector<TruthRow>& truth, std::size_t after, double t) {
@@ -94,4 +94,4 @@ TEST(SlowMrclamDiscovery, FindsDelayAndLossInArcsAndDeadReckoningGetsBetter) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::mrclam_discovery_test

@@ -20,7 +20,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::noise_tests_test {
 namespace {
 
 using testing::add_noise;
@@ -257,4 +257,4 @@ TEST(SlowNoiseTests, WithTheRightNoiseNoneIsNamed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::noise_tests_test

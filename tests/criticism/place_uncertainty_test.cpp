@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::place_uncertainty_test {
 namespace {
 
 struct Drawn {
@@ -117,4 +117,4 @@ TEST(Diagnosis, AnImplausibleSizeIsNamedAndSaid) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::place_uncertainty_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::response_test {
 namespace {
 
 Effect effect(Channel channel, const std::vector<Shape>& shape,
@@ -112,4 +112,4 @@ TEST(FittedMap, HasEveryLandmarkAndAPathOfAsManyPointsAsWanted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::response_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::score_test_test {
 namespace {
 
 using testing::Equipment;
@@ -208,4 +208,4 @@ TEST(Comparison, ChiSquareOfLegsRoutesAndLandmarksIsTheWhole) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::score_test_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::trends_test {
 namespace {
 
 using testing::NoisyDrive;
@@ -59,4 +59,4 @@ TEST(Trends, WhatCountsAsATurnDoesNotHangOnTheRateOfLogging) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::trends_test

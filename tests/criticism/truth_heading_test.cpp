@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::truth_heading_test {
 namespace {
 
 /// A drive with truth once a second, its headings turned.
@@ -82,4 +82,4 @@ TEST(TruthHeading, IsNoCandidateWithoutTruth) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::truth_heading_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::verdict_test {
 namespace {
 
 Trend trend(double p_adjusted) {
@@ -94,4 +94,4 @@ TEST(SlowVerdict, TheModelFoundIsJudgedAsDiagnoseAndCompareJudgeIt) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::verdict_test

@@ -27,7 +27,7 @@
 #include "distributed/hilbert.hpp"
 #endif
 
-namespace trussmap {
+namespace trussmap::distributed_test {
 namespace {
 
 using testing::Ran;
@@ -235,4 +235,4 @@ TEST(Distributed, HilbertsCurveGoesFromCellToNeighbour) {
 #endif
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::distributed_test

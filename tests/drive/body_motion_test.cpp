@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::body_motion_test {
 namespace {
 
 const Robot kRobot{.wheelbase = 0.4};
@@ -53,4 +53,4 @@ TEST(RowMotion, HasWhatAnErrorOfEachWheelDoes) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::body_motion_test

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::causal_variables_test {
 namespace {
 
 using testing::add_rows;
@@ -127,4 +127,4 @@ TEST(CausalVariables, AskingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::causal_variables_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::row_variables_test {
 namespace {
 
 using testing::add_rows;
@@ -112,4 +112,4 @@ TEST(RowVariables, RatesAreSmoothed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::row_variables_test

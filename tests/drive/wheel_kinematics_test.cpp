@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheel_kinematics_test {
 namespace {
 
 using testing::other_drive;
@@ -204,4 +204,4 @@ TEST(WheelColumns, NamesComeBack) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheel_kinematics_test

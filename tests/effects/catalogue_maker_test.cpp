@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::catalogue_maker_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -142,4 +142,4 @@ TEST(CatalogueMaker, HasTakenEveryFile) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::catalogue_maker_test

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::catalogue_test {
 namespace {
 
 TEST(Catalogue, EveryShapeCanBeReadAndSpeaksOfWhatThereIs) {
@@ -168,4 +168,4 @@ TEST(Catalogue, ParametersGoThroughANameWithoutLoss) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::catalogue_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::channel_physics_test {
 namespace {
 
 constexpr double kWheelbase = 0.4;
@@ -273,4 +273,4 @@ TEST(Channels, HaveOneNameEach) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::channel_physics_test

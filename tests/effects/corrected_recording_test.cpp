@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::corrected_recording_test {
 namespace {
 
 constexpr double kWheelbase = 0.5;
@@ -92,4 +92,4 @@ TEST(CorrectedRecording, RefusesWithTheEffectsName) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::corrected_recording_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::shape_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -190,4 +190,4 @@ TEST(Shape, TheSimplestAreTheSameWithoutAParser) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::shape_test

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::compass_free_test {
 namespace {
 
 const double kToSigma = std::sqrt(std::numbers::pi / 2.0);  // mean absolute value -> sd
@@ -136,4 +136,4 @@ TEST(SlowCompassFree, FullLeastSquaresIsAsGoodAsTheReference) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::compass_free_test

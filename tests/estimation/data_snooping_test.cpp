@@ -12,7 +12,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::data_snooping_test {
 namespace {
 
 using testing::simulate_recording;
@@ -182,4 +182,4 @@ TEST(DataSnooping, WithoutWrongSightingsTheRobustOptionLeavesNothingOut) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::data_snooping_test

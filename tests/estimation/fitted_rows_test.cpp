@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fitted_rows_test {
 namespace {
 
 TEST(FittedRows, AreThoseOfTheWholeInverse) {
@@ -40,4 +40,4 @@ TEST(FittedRows, AreThoseOfTheWholeInverse) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fitted_rows_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::measurement_rows_test {
 namespace {
 
 /// Two landmarks (nodes 0, 1), two poses (nodes 2, 3) and the second landmark's orientation (4).
@@ -146,4 +146,4 @@ TEST(MeasurementRows, WhatFitsHasNoError) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::measurement_rows_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::motion_changes_test {
 namespace {
 
 /// So many rows of 0.1 s of these travels.
@@ -49,4 +49,4 @@ TEST(MotionChanges, ATwitchIsNone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::motion_changes_test

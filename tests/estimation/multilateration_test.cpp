@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::multilateration_test {
 namespace {
 
 std::vector<RangeReading> readings_of(const Vector2& beacon, const std::vector<Vector2>& path,
@@ -173,4 +173,4 @@ TEST(RangesAlone, ABearingTellsTheSide) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::multilateration_test

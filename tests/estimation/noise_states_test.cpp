@@ -25,7 +25,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::noise_states_test {
 namespace {
 
 using testing::process_covariance;
@@ -854,4 +854,4 @@ TEST(LastingNoise, OfASegmentIsWhatItsStatesAdd) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::noise_states_test

@@ -15,7 +15,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pure_error_test {
 namespace {
 
 /// A ring of eight with chords, true positions.
@@ -141,4 +141,4 @@ TEST(PureError, WithoutRepeatsNothingIsTested) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pure_error_test

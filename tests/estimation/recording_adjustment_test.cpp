@@ -14,7 +14,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::recording_adjustment_test {
 namespace {
 
 using testing::Equipment;
@@ -201,4 +201,4 @@ TEST(RecordingAdjustment, DriftingHeadingsDoNotSpoilTheStart) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::recording_adjustment_test

@@ -14,7 +14,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::recording_border_test {
 namespace {
 
 using testing::simulate_recording;
@@ -202,4 +202,4 @@ TEST(RecordingEffectParameters, StandardErrorsOfTheShapeAreThoseOfInnerConstrain
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::recording_border_test

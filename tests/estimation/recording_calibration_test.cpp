@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::recording_calibration_test {
 namespace {
 
 using testing::Equipment;
@@ -101,4 +101,4 @@ TEST(SlowRecordingCalibration, Chi2EllipsesAndPValuesHoldOverAThousandRecordings
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::recording_calibration_test

@@ -16,7 +16,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::restricted_likelihood_test {
 namespace {
 
 struct Dense {
@@ -111,4 +111,4 @@ TEST(RestrictedLikelihood, WhatIsLeftOutCountsForNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::restricted_likelihood_test

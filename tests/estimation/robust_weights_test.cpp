@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::robust_weights_test {
 namespace {
 
 /// The weight that makes w r^2 + penalty(w) least, on a grid: what weights stand for (Black &
@@ -96,4 +96,4 @@ TEST(RobustWeights, ReconsideringEnds) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::robust_weights_test

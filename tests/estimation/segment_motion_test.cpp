@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::segment_motion_test {
 namespace {
 
 constexpr double kWheelbase = 0.34;
@@ -132,4 +132,4 @@ TEST(SegmentMotion, DerivativesByEffectsAreThoseOfDifferences) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::segment_motion_test

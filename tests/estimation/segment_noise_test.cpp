@@ -11,7 +11,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::segment_noise_test {
 namespace {
 
 using Vector3 = Eigen::Vector3d;
@@ -206,4 +206,4 @@ TEST(SegmentNoise, LinearisedWhereTheNoiseIsItIsUnbiasedAsTheRecordIsNot) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::segment_noise_test

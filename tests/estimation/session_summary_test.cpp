@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::session_summary_test {
 namespace {
 
 using testing::Days;
@@ -128,4 +128,4 @@ TEST(SessionSummary, IsTheQuadraticOfItsSession) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::session_summary_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::simulated_effects_test {
 namespace {
 
 struct Simulated {
@@ -145,4 +145,4 @@ TEST(SimulatedEffects, AFitFindsTheCoefficientsThatWereGiven) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::simulated_effects_test

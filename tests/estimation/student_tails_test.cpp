@@ -19,7 +19,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::student_tails_test {
 namespace {
 
 using testing::invert;
@@ -251,4 +251,4 @@ TEST(StudentTails, NoEffectIsMadeOfThem) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::student_tails_test

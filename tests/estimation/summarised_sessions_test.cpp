@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::summarised_sessions_test {
 namespace {
 
 using testing::border_of;
@@ -394,4 +394,4 @@ TEST(SummarisedSessions, RefuseOtherCoefficients) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::summarised_sessions_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::triangulation_test {
 namespace {
 
 std::vector<Vector2> line(const Vector2& from, const Vector2& to, int count) {
@@ -136,4 +136,4 @@ TEST(BearingsAlone, GoWithOtherSightings) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::triangulation_test

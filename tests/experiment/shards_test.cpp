@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::shards_test {
 namespace {
 
 using Shares = std::vector<std::pair<std::string, ShardResults>>;
@@ -115,4 +115,4 @@ TEST(Shards, ToursInPartsComeToTheSame) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::shards_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::tour_experiment_test {
 namespace {
 
 using nlohmann::json;
@@ -186,4 +186,4 @@ TEST(Tour, RefusesWhatIsNoExperiment) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::tour_experiment_test

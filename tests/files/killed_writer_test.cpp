@@ -31,7 +31,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::killed_writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -402,4 +402,4 @@ TEST(SlowKilledWriter, LeavesASimulatedRecordingOldOrNew) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::killed_writer_test

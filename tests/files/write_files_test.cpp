@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::write_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST(WriteFiles, ASimulatedRecordingAndItsSummaryComeTogether) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::write_files_test

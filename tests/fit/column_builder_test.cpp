@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::column_builder_test {
 namespace {
 
 TEST(ColumnBuilder, AgreesWithTheBorderOfTheAdjustmentInEveryChannel) {
@@ -76,4 +76,4 @@ TEST(ColumnBuilder, SessionsOfTheirOwnAddUpToTheWhole) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::column_builder_test

@@ -19,7 +19,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::corrected_odometry_drives_test {
 namespace {
 
 using testing::other_drive;
@@ -220,4 +220,4 @@ TEST(CorrectedOdometryOfDrives, RobotsWithoutTheirColumnsOrLengthsAreRefused) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::corrected_odometry_drives_test

@@ -20,7 +20,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::corrected_odometry_test {
 namespace {
 
 using testing::Equipment;
@@ -277,4 +277,4 @@ TEST(CorrectedOdometry, ResetCountsThePoseAnew) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::corrected_odometry_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::corrected_odometry_use_test {
 namespace {
 
 using testing::own_effect;
@@ -140,4 +140,4 @@ TEST(CorrectedOdometry, TheGuidesExampleRuns) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::corrected_odometry_use_test

@@ -15,7 +15,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_columns_test {
 namespace {
 
 using testing::invert;
@@ -390,4 +390,4 @@ TEST(EffectColumns, RetimingMovesSightingsAndTruthBack) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_columns_test

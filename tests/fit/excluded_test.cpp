@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::excluded_test {
 namespace {
 
 using testing::simulate_recording;
@@ -144,4 +144,4 @@ TEST(ExcludedTimes, OfRecordingsThatAreNotThereAreRefused) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::excluded_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fitted_path_test {
 namespace {
 
 using testing::disturbed_cases;
@@ -118,4 +118,4 @@ TEST(FittedPath, PoseAtGoesAlongTheRow) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fitted_path_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fixes_test {
 namespace {
 
 using testing::expect_right;
@@ -271,4 +271,4 @@ TEST(SlowFixes, ChiSquareAndIntervalsAreThoseOfTheNoise) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fixes_test

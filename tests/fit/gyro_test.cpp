@@ -23,7 +23,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::gyro_test {
 namespace {
 
 struct World {
@@ -366,4 +366,4 @@ TEST(Gyro, AHeadingThatWasIntegratedIsNoCompass) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::gyro_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::landmark_yaw_test {
 namespace {
 
 using testing::add_fit;
@@ -244,4 +244,4 @@ TEST(LandmarkYaw, IsWrittenAsItIsRead) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::landmark_yaw_test

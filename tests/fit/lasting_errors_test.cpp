@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::lasting_errors_test {
 namespace {
 
 /// Now faster, now slower: of a steady circle a delay would turn the map, and no more. rad
@@ -137,4 +137,4 @@ TEST(LargestButForSpikes, IsTheLargestWhereNoneStandsOut) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::lasting_errors_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::loops_test {
 namespace {
 
 using testing::expect_right;
@@ -184,4 +184,4 @@ TEST(Loops, MustLieInTheDrive) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::loops_test

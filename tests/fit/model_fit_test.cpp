@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::model_fit_test {
 namespace {
 
 using testing::Disturbance;
@@ -407,4 +407,4 @@ TEST(SlowModelFit, TheScaleOfEffectFreeDrivesIsUnbiased) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::model_fit_test

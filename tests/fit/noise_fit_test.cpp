@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::noise_fit_test {
 namespace {
 
 /// Tours whose noise is not what the model states; the nominal model goes with it.
@@ -204,4 +204,4 @@ TEST(NoiseBudgets, LeaveOutHorizonsLongerThanTheDrive) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::noise_fit_test

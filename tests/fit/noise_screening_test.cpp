@@ -11,7 +11,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::noise_screening_test {
 namespace {
 
 std::vector<ScreenedNoise> screened(const Recording& recording, const Model& model) {
@@ -123,4 +123,4 @@ TEST(NoiseScreening, TheFirstGuessIsWhereTheScoreIsExpected) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::noise_screening_test

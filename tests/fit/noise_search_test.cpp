@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::noise_search_test {
 namespace {
 
 Eigen::VectorXd free_of_bounds(Eigen::VectorXd x) {
@@ -68,4 +68,4 @@ TEST(NoiseSearch, CurvaturesAreThoseOfAQuadratic) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::noise_search_test

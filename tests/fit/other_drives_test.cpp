@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::other_drives_test {
 namespace {
 
 using testing::after;
@@ -273,4 +273,4 @@ TEST(OtherDrivesCalibration, WheelsThatRollInOtherDirectionsAreReckonedAway) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::other_drives_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::replicated_recording_test {
 namespace {
 
 struct Fitted {
@@ -113,4 +113,4 @@ TEST(ReplicatedRecording, SaysWhatItCannotDraw) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::replicated_recording_test

@@ -15,7 +15,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::robot_poses_test {
 namespace {
 
 using testing::Equipment;
@@ -188,4 +188,4 @@ TEST(PoseText, KittiLinesAreTheMatricesOfThePoses) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::robot_poses_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::seen_in_parts_test {
 namespace {
 
 using testing::expect_right;
@@ -47,4 +47,4 @@ TEST(SlowSeenInParts, ByBearingsAlone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::seen_in_parts_test

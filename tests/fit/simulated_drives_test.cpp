@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::simulated_drives_test {
 namespace {
 
 struct Case {
@@ -156,4 +156,4 @@ INSTANTIATE_TEST_SUITE_P(Drives, SimulatedDrives,
                          });
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::simulated_drives_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::summarised_fit_test {
 namespace {
 
 struct Robot3x3 {
@@ -78,7 +78,7 @@ TEST(SummarisedFit, IsTheFitOfAllDaysAtOnce) {
   for (const Robot3x3& what :
        {Robot3x3{true, true, false}, Robot3x3{true, false, false}, Robot3x3{false, true, false},
         Robot3x3{true, true, true}, Robot3x3{false, false, false}}) {
-    SCOPED_TRACE(testing::Message() << what.compass << what.survey << what.gyro);
+    SCOPED_TRACE(::testing::Message() << what.compass << what.survey << what.gyro);
     const std::vector<Recording> days = days_of(what, 4, 11);
     const Model model = model_of(what.survey ? std::vector<std::string>{"wheelbase", "wheel scale"}
                                              : std::vector<std::string>{"wheelbase"});
@@ -298,4 +298,4 @@ TEST(SummarisedFit, TheFirstSessionHasToShowEveryCoefficient) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::summarised_fit_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fleet_store_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -145,4 +145,4 @@ TEST(FleetStore, WhatIsNoneIsSaidInOneLine) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fleet_store_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fleet_test {
 namespace {
 
 /// A surveyed 3x3 mesh with landmark names of its own.
@@ -144,4 +144,4 @@ TEST(RandomEffects, EqualErrorsGiveTheAnalysisOfVariance) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fleet_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap::fuzz {
+namespace trussmap::fuzz::corpora_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -49,4 +49,4 @@ TEST(FuzzCorpora, EveryFolderHasATarget) {
 }
 
 }  // namespace
-}  // namespace trussmap::fuzz
+}  // namespace trussmap::fuzz::corpora_test

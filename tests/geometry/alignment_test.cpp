@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::alignment_test {
 namespace {
 
 std::vector<Vector2> cloud(std::uint64_t seed) {
@@ -72,4 +72,4 @@ TEST(Alignment, RefusesWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::alignment_test

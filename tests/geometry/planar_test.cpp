@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::planar_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -59,4 +59,4 @@ TEST(QuarterTurn, IsCounterClockwise) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::planar_test

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::bad_recording_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -238,4 +238,4 @@ TEST(BadRecordingFolder, EveryPrefixOfADriveIsReadOrRefusedNeverWorse) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::bad_recording_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::bag_round_trip_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -170,4 +170,4 @@ TEST(BagRoundTrip, AnImuWithoutTheReadingIsRefused) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::bag_round_trip_test

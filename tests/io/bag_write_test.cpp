@@ -24,7 +24,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::bag_write_test {
 namespace {
 
 using nlohmann::json;
@@ -446,4 +446,4 @@ TEST(Cdr, NumbersStandAtMultiplesOfTheirSize) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::bag_write_test

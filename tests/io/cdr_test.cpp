@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::cdr_test {
 namespace {
 
 using std::string_literals::operator""s;
@@ -143,4 +143,4 @@ TEST(Cdr, LargeMessagesCostWhatIsKept) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::cdr_test

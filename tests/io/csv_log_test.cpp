@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::csv_log_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -222,4 +222,4 @@ TEST(CsvLog, ATableThatNobodyWantsIsCounted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::csv_log_test

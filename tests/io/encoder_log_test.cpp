@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::encoder_log_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -116,4 +116,4 @@ TEST(EncoderLogData, TheGuessesOffByFactorsAreCalibrated) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::encoder_log_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::g2o_test {
 namespace {
 
 constexpr const char* kEveryKind =
@@ -173,4 +173,4 @@ TEST(G2o, SaysWhichFileCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::g2o_test

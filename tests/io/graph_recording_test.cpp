@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::graph_recording_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -105,4 +105,4 @@ TEST(SlowGraphRecording, IntelIsWhatTheGraphIs) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::graph_recording_test

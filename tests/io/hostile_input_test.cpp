@@ -18,7 +18,7 @@
 #include <gtest/gtest.h>
 #include <lzma.h>
 
-namespace trussmap {
+namespace trussmap::hostile_input_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -192,4 +192,4 @@ TEST(HostileInput, ControlsAreEscapedForTheEye) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::hostile_input_test

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::landmark_conversion_test {
 namespace {
 
 const Matrix2 kCovariance = (Matrix2() << 0.04, 0.01, 0.01, 0.09).finished();
@@ -101,4 +101,4 @@ TEST(LandmarkConversion, RefusesWhatIsNoLandmarkMap) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::landmark_conversion_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::line_robot_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -85,4 +85,4 @@ TEST(SlowLineRobot, WheelsClockAndRangesAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::line_robot_test

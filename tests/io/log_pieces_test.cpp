@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::log_pieces_test {
 namespace {
 
 constexpr std::int64_t kSecond = 1000000000;
@@ -299,4 +299,4 @@ TEST(Signal, ClocksAreSet) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::log_pieces_test

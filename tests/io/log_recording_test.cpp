@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::log_recording_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -386,4 +386,4 @@ TEST(LogFiles, AreToldByWhatIsInThem) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::log_recording_test

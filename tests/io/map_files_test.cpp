@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_files_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -121,4 +121,4 @@ TEST(MapFiles, WhatIsNoMapIsRefusedByTheFilesName) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_files_test

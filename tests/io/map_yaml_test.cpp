@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_yaml_test {
 namespace {
 
 LandmarkGraph tags() {
@@ -133,4 +133,4 @@ TEST(MapYaml, NamesOfAllKindsAreQuoted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_yaml_test

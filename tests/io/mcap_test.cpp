@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::mcap_test {
 namespace {
 
 using testing::ReadLog;
@@ -283,4 +283,4 @@ TEST(Mcap, TopicsAreToldByTheirNames) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::mcap_test

@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::model_and_map_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -470,4 +470,4 @@ TEST(ModelFile, DrivesComeBack) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::model_and_map_test

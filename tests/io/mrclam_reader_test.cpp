@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::mrclam_reader_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -80,4 +80,4 @@ TEST(MrclamReader, TruthEndsWithTheDrive) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::mrclam_reader_test

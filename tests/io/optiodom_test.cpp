@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::optiodom_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -159,4 +159,4 @@ TEST(OptiOdom, TheOmnidirectionalRobotsOtherPathEndsThreeTimesNearer) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::optiodom_test

@@ -20,7 +20,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::phil_test {
 namespace {
 
 using testing::Ran;
@@ -304,4 +304,4 @@ TEST(Phil, RealTrialsHaveTheirClocksNamed) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::phil_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::place_loops_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -90,4 +90,4 @@ TEST(SlowPlaceLoops, LeadARobotThroughALectureHall) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::place_loops_test

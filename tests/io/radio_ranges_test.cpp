@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::radio_ranges_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -98,4 +98,4 @@ TEST(SlowRadioRanges, MapALawnAndThePathOverIt) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::radio_ranges_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::recording_csv_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -194,4 +194,4 @@ TEST(AtomicFile, RefusesWhatIsNoXzFile) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::recording_csv_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::roadrunner_log_test {
 namespace {
 
 using testing::bytes_of;
@@ -164,4 +164,4 @@ with RoadRunnerLog(path) as log:
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::roadrunner_log_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::ros2_definition_test {
 namespace {
 
 const std::string kLine(80, '=');
@@ -154,4 +154,4 @@ TEST(Ros2Definition, StandardMessagesAreKnown) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::ros2_definition_test

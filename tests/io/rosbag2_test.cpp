@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::rosbag2_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -265,4 +265,4 @@ TEST(Rosbag2, AFolderOfARecordingIsNone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::rosbag2_test

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::steered_truck_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -236,4 +236,4 @@ TEST(SlowSteeredTruck, VictoriaParksTreesTellTheSteeringAsItsGpsDoes) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::steered_truck_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wpilog_test {
 namespace {
 
 using testing::bytes_of;
@@ -346,4 +346,4 @@ TEST(Wpilog, LongLogsAreReadInBlocks) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wpilog_test

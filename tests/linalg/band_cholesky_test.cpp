@@ -10,7 +10,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::band_cholesky_test {
 namespace {
 
 TEST(BandMatrix, SolvesWhatADenseFactorSolves) {
@@ -51,4 +51,4 @@ TEST(BandMatrix, HoldsWhatIsFreeToMove) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::band_cholesky_test

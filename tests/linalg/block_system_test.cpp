@@ -10,7 +10,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::block_system_test {
 namespace {
 
 /// Nodes of 3, 2, held, 3, 2 unknowns; node 2 is held, nodes 0 and 3 are paired twice.
@@ -114,4 +114,4 @@ TEST(EliminationOrder, LeavesTheHubOfAStarToTheEnd) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::block_system_test

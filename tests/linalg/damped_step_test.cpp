@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::damped_step_test {
 namespace {
 
 /// Two nodes of two unknowns: A is [4 1; 1 3] and `last` on the diagonal, coupled a little.
@@ -62,4 +62,4 @@ TEST(DampedStep, PredictsWhatTheQuadraticLoses) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::damped_step_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::dense_test {
 namespace {
 
 /// Three springs in a row between four joints, the first held by a fourth of this stiffness.
@@ -41,4 +41,4 @@ TEST(DenseCholesky, LeastPivotShareIsWhatOthersLeave) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::dense_test

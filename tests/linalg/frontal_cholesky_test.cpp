@@ -16,7 +16,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::frontal_cholesky_test {
 namespace {
 
 /// Nodes in the plane, each tied to some near ones; sizes of 1 to `largest` unknowns.
@@ -356,4 +356,4 @@ TEST(Dissection, CopesWithNodesInOnePlace) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::frontal_cholesky_test

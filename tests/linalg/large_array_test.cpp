@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::large_array_test {
 namespace {
 
 TEST(LargeArray, HoldsAsManyNumbersAsAsked) {
@@ -27,4 +27,4 @@ TEST(LargeArray, ThrowsWhereThereIsNotEnoughMemory) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::large_array_test

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::selected_inverse_test {
 namespace {
 
 /// A chain with some chords, as a robot's poses are.
@@ -53,4 +53,4 @@ TEST(SelectedInverse, RefusesAMatrixThatIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::selected_inverse_test

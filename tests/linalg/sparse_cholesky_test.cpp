@@ -11,7 +11,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::sparse_cholesky_test {
 namespace {
 
 /// Lower triangle of a sum of (2 x 1)-blocked springs between random nodes, those of a tree among
@@ -118,4 +118,4 @@ TEST(SparseCholesky, AFactorThatGrewByRowsEqualsANewOne) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::sparse_cholesky_test

@@ -14,7 +14,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::updatable_factor_test {
 namespace {
 
 class Sequence {
@@ -159,4 +159,4 @@ TEST(UpdatableFactor, RefusesWhatIsNoLongerPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::updatable_factor_test

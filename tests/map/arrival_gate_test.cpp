@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::arrival_gate_test {
 namespace {
 
 constexpr int kSide = 5;
@@ -161,4 +161,4 @@ TEST(ArrivalGate, RefusesAGateOfNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::arrival_gate_test

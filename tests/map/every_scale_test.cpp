@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::every_scale_test {
 namespace {
 
 constexpr int kSide = 12;
@@ -188,4 +188,4 @@ TEST(EveryScale, LegsInTheRobotsOwnAxesTakeOver) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::every_scale_test

@@ -19,7 +19,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::expected_falls_test {
 namespace {
 
 /// Nine landmarks, uneven lines; neighbours are joined.
@@ -251,4 +251,4 @@ TEST(ExpectedFalls, AWayThatLeavesTheRoutesIsRefused) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::expected_falls_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::first_sight_test {
 namespace {
 
 using Landmarks = std::vector<int>;
@@ -191,4 +191,4 @@ TEST(OpenChain, ShortcutsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::first_sight_test

@@ -23,7 +23,7 @@
 #include <boost/range/iterator_range.hpp>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::graph_model_test {
 namespace {
 
 using Position = Vector2 Landmark::*;
@@ -210,4 +210,4 @@ TEST(GraphModel, AnEmptyMapIsAnEmptyGraph) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::graph_model_test

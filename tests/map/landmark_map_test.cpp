@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::landmark_map_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -96,4 +96,4 @@ TEST(LandmarkGraph, RefusesTwinsAndLoops) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::landmark_map_test

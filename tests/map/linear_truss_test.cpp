@@ -14,7 +14,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::linear_truss_test {
 namespace {
 
 /// A ring with chords, each route driven 1 to 4 times (seed).
@@ -133,4 +133,4 @@ TEST(LinearTruss, NamesALandmarkThatIsTiedToNothing) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::linear_truss_test

@@ -17,7 +17,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_builder_energy_test {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of the energy before
@@ -215,4 +215,4 @@ TEST(SlowMapBuilderEnergy, NeverRises) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_builder_energy_test

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_builder_failure_test {
 namespace {
 
 // A factor that was built anew rounds otherwise than one that was updated.
@@ -251,4 +251,4 @@ TEST(MapBuilderFailure, NamesTheLandmarkThatCannotBeSolved) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_builder_failure_test

@@ -17,7 +17,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_builder_test {
 namespace {
 
 std::string name(int k) {
@@ -419,4 +419,4 @@ TEST(MapBuilder, RefusesAMapThatNoBuilderCanHave) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_builder_test

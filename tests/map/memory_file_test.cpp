@@ -23,7 +23,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::memory_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -393,4 +393,4 @@ TEST_F(MemoryFileTest, AFailureLeavesFileAndBuilderAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::memory_file_test

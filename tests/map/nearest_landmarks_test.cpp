@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::nearest_landmarks_test {
 namespace {
 
 std::vector<int> nearest_of_all(const LandmarkGraph& map, const Vector2& to, int count) {
@@ -77,4 +77,4 @@ TEST(NearestLandmarks, OfThoseEquallyFarTheLowestNumbersAreTaken) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::nearest_landmarks_test

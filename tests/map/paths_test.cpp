@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::paths_test {
 namespace {
 
 LandmarkGraph with_landmarks(int count) {
@@ -176,4 +176,4 @@ TEST(Path, RefusesWhatIsNotOfTheMap) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::paths_test

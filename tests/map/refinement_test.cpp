@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::refinement_test {
 namespace {
 
 using nlohmann::json;
@@ -171,4 +171,4 @@ TEST(FirstSightChain, SeriesCompliancesEqualTheStiffnessMethod) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::refinement_test

@@ -21,7 +21,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::scale_sums_test {
 namespace {
 
 /// Landmarks met on a random way over a grid, bars where routes are, and groups along the way.
@@ -248,4 +248,4 @@ TEST(ScaleSums, WhatIsTakenBackOrSettledIsWhereItWas) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::scale_sums_test

@@ -20,7 +20,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheeled_map_test {
 namespace {
 
 constexpr double kWheelbase = 0.34;  // m
@@ -384,4 +384,4 @@ TEST(WheeledMap, AnglesDependOnOffsetsAsTheirGradientsSay) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheeled_map_test

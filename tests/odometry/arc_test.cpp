@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::arc_test {
 namespace {
 
 using nlohmann::json;
@@ -135,4 +135,4 @@ TEST(SlantingArc, StraightAheadIsTheArcOfTwoWheels) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::arc_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::classical_test {
 namespace {
 
 constexpr double kDistance = 3.0;  // D, m
@@ -108,4 +108,4 @@ TEST(ClosedForm, IsTheLimitOfTheDiscreteRecursion) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::classical_test

@@ -13,7 +13,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::dead_reckoning_test {
 namespace {
 
 /// Spin, straight, arc, reverse: 20 rows of 0.1 s each, wheel noise added if asked (seed 5).
@@ -117,4 +117,4 @@ TEST(DeadReckoning, RangeAndBearingMeetInEveryQuadrant) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::dead_reckoning_test

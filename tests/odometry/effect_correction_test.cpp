@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_correction_test {
 namespace {
 
 Recording drive_about(bool compass) {
@@ -69,4 +69,4 @@ TEST(EffectCorrection, TheAnswerOfAPracticeRecordingImprovesItsReckoning) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_correction_test

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::merge_test {
 namespace {
 
 constexpr double kWheelbase = 0.34;  // m
@@ -200,4 +200,4 @@ TEST(MergeRows, OfANoisyDriveGiveNearlyTheCovarianceOfTheRows) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::merge_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::row_reckoner_test {
 namespace {
 
 Noise hazy(ProcessKind process, double length) {
@@ -51,4 +51,4 @@ TEST(WhiteEquivalent, TakesEachProcessByItsOwnLag) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::row_reckoner_test

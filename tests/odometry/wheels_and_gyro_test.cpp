@@ -11,7 +11,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheels_and_gyro_test {
 namespace {
 
 Noise noise_of(double left, double right, double gyro) {
@@ -106,4 +106,4 @@ TEST(WheelsAndGyro, AreTakenTogetherOnce) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheels_and_gyro_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::parallel_for_test {
 namespace {
 
 class ParallelFor : public ::testing::Test {
@@ -94,4 +94,4 @@ TEST_F(ParallelFor, RefusesNoThread) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::parallel_for_test

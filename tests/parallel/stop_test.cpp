@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::stop_test {
 namespace {
 
 TEST(Stop, NobodyIsAskedWithoutAQuestion) {
@@ -86,4 +86,4 @@ TEST(Stop, EndsALoopOnManyThreads) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::stop_test

@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::chart_test {
 namespace {
 
 using nlohmann::json;
@@ -140,4 +140,4 @@ TEST(ChartSvg, TheFirstCategoryStandsOnTop) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::chart_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::drive_charts_test {
 namespace {
 
 using testing::other_drive;
@@ -116,4 +116,4 @@ TEST(SteeringChart, IsOfRobotsThatSteerAndMoveAlone) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::drive_charts_test

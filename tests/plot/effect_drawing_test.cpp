@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_drawing_test {
 namespace {
 
 Effect named(std::string_view name, Channel channel) {
@@ -99,4 +99,4 @@ TEST(Sketch, PlacesBesideAreCounterClockwise) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_drawing_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::fit_charts_test {
 namespace {
 
 SourceResiduals normal_sample(const char* source, std::size_t count, double sd) {
@@ -102,4 +102,4 @@ TEST(TrussChart, NoiseAloneLooksCalm) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::fit_charts_test

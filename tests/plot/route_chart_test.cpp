@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::route_chart_test {
 namespace {
 
 FittedMap triangle() {
@@ -108,4 +108,4 @@ TEST(RouteChart, ManyRoutesAreOneNetBesideTheWorst) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::route_chart_test

@@ -14,7 +14,7 @@
 #include <boost/property_tree/xml_parser.hpp>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::svg_test {
 namespace {
 
 Figure some_figure() {
@@ -135,4 +135,4 @@ TEST(EllipseOutline, EveryPointIsAtItsMahalanobisDistance) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::svg_test

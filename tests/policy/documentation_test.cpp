@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::documentation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -191,4 +191,4 @@ TEST(Documentation, LapsesAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::documentation_test

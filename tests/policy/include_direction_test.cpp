@@ -21,7 +21,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::include_direction_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -330,4 +330,4 @@ TEST(IncludeDirection, WrongWaysAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::include_direction_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::licence_test {
 namespace {
 
 /// Modify, MatrixOps and Supernodal are under the GPL; these are of Core and Cholesky (LGPL).
@@ -35,4 +35,4 @@ TEST(Licence, OnlyModulesUnderTheLgplAreCalled) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::licence_test

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::recipes_test {
 namespace {
 
 using testing::source_files;
@@ -145,4 +145,4 @@ TEST(Recipes, SetOptionsThatThereAre) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::recipes_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::source_text_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST(SourceText, LapsesAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::source_text_test

@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::type_names_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST(TypeNames, ClashesAreFound) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::type_names_test

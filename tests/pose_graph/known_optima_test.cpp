@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::known_optima_test {
 namespace {
 
 struct Known {
@@ -124,4 +124,4 @@ TEST(CityTrees, ComeOutAsSureAsTheyClaim) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::known_optima_test

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_adjustment_test {
 namespace {
 
 using testing::landmark_walk;
@@ -225,4 +225,4 @@ TEST(Adjust, AcceptsSemidefiniteInformation) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_adjustment_test

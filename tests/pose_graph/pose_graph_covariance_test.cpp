@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_covariance_test {
 namespace {
 
 using testing::landmark_walk;
@@ -55,4 +55,4 @@ TEST(Covariances, GrowLikeARandomWalkAlongAChain) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_covariance_test

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_gauge_test {
 namespace {
 
 using testing::Measurer;
@@ -170,4 +170,4 @@ TEST(Chains, LeadThroughDisplacementsToWhereTheyPoint) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_gauge_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_robust_test {
 namespace {
 
 using testing::SyntheticGraph;
@@ -141,4 +141,4 @@ TEST(Robust, TakesTheCheaperOfTwoDescents) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_robust_test

@@ -13,7 +13,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_system_test {
 namespace {
 
 Matrix3 random_information(std::mt19937_64& random) {
@@ -169,4 +169,4 @@ TEST(PoseGraphSystem, StrainEnergyIsTheQuadraticFormOfTheNormalMatrix) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_system_test

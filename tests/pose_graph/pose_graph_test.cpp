@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::pose_graph_test {
 namespace {
 
 Eigen::Isometry2d transform(const Pose& pose) {
@@ -105,4 +105,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& hard) { return hard.param.name; });
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::pose_graph_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::legs_test {
 namespace {
 
 /// One metre a second for ten seconds, in rows of one second.
@@ -59,4 +59,4 @@ TEST(Legs, ReverseCountsAsDrivenPathAndRowsAreCutLinearly) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::legs_test

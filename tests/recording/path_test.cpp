@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::path_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -85,4 +85,4 @@ TEST(GeometryErrors, GoIntoAModelAndComeBack) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::path_test

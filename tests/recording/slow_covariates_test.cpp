@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::slow_covariates_test {
 namespace {
 
 /// 20 minutes of rows of 0.1 s, with columns of all kinds. Seed 1.
@@ -60,4 +60,4 @@ TEST(SlowCovariates, NeedEnoughRowsToSaySo) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::slow_covariates_test

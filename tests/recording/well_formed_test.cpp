@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::well_formed_test {
 namespace {
 
 /// Ten rows straight ahead, from landmark A to landmark B.
@@ -105,4 +105,4 @@ TEST(WellFormed, EveryCallThatReadsRecordingsAsksForIt) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::well_formed_test

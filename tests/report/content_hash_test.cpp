@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::content_hash_test {
 namespace {
 
 TEST(ContentHash, IsThatOfTheStandardsExamples) {
@@ -38,4 +38,4 @@ TEST(ContentHash, IsThatOfHashlibAtEveryEdgeOfABlock) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::content_hash_test

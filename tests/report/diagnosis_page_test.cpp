@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::diagnosis_page_test {
 namespace {
 
 /// A diagnosis with two effects missing, of which the second is as unsure as `sd` says.
@@ -93,4 +93,4 @@ TEST(DiagnosisPage, BeginsWithPicturesAndClosesTables) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::diagnosis_page_test

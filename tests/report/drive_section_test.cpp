@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::drive_section_test {
 namespace {
 
 using testing::other_drive;
@@ -49,4 +49,4 @@ TEST(DrivePage, IsAsBeforeOfTwoWheelsAndOfWheelsThatAreNowhere) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::drive_section_test

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::page_test {
 namespace {
 
 const PageRuntime kRuntime{"main { color: red }\n", "/* the script */"};
@@ -215,4 +215,4 @@ TEST(SlowPage, TenThousandLegsStaySmall) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::page_test

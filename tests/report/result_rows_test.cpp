@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::result_rows_test {
 namespace {
 
 const std::vector<std::string> kQuestions{
@@ -346,4 +346,4 @@ TEST(ResultRows, TrendsThatAreNoneHaveNoChart) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::result_rows_test

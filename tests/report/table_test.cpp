@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::table_test {
 namespace {
 
 TEST(TextTable, AlignsByCharactersAndEndsLinesCleanly) {
@@ -87,4 +87,4 @@ TEST(ShortenedWords, CutsNoCharacterInTwo) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::table_test

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_physics_test {
 namespace {
 
 struct Case {
@@ -371,4 +371,4 @@ TEST(EffectPhysics, WheelsThatCouldNotShowTheMotionAreRefused) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_physics_test

@@ -15,7 +15,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::hidden_effects_test {
 namespace {
 
 struct Field {
@@ -120,4 +120,4 @@ TEST(HiddenEffects, AreOfASizeThatShowsAndThatARobotMayHave) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::hidden_effects_test

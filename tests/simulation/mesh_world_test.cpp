@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::mesh_world_test {
 namespace {
 
 TEST(MeshSize, IsReadFromText) {
@@ -111,4 +111,4 @@ TEST(Mesh, RefusesWhatIsNoMesh) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::mesh_world_test

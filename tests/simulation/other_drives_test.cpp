@@ -20,7 +20,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::other_drives_test {
 namespace {
 
 using testing::other_drive;
@@ -273,4 +273,4 @@ TEST(HiddenEffects, AreThoseOfTheDrive) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::other_drives_test

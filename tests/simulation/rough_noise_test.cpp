@@ -23,7 +23,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::rough_noise_test {
 namespace {
 
 using std::numbers::pi;
@@ -511,4 +511,4 @@ TEST(RoughNoise, EveryRowIsMisreadAsItsLegIs) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::rough_noise_test

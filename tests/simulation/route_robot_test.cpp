@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::route_robot_test {
 namespace {
 
 using std::numbers::pi;
@@ -124,4 +124,4 @@ TEST(RouteRobot, AveragesOverEulerWalksFollowTheReferenceCurve) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::route_robot_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::tape_robot_test {
 namespace {
 
 TEST(TapeRobot, APerfectOneEndsWhereItThinks) {
@@ -83,4 +83,4 @@ TEST(TapeRobot, RefusesNoWheelbase) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::tape_robot_test

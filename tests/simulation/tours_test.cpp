@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::tours_test {
 namespace {
 
 using Pair = std::pair<int, int>;
@@ -207,4 +207,4 @@ TEST(WalkKind, IsReadByName) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::tours_test

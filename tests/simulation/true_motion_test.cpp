@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::true_motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -194,4 +194,4 @@ TEST(TrueMotion, RefusesWhatCannotBeDriven) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::true_motion_test

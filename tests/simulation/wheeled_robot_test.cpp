@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::wheeled_robot_test {
 namespace {
 
 struct Field {
@@ -232,4 +232,4 @@ TEST(WheeledRobot, RefusesSensorsThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::wheeled_robot_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::distributions_test {
 namespace {
 
 /// Simpson's rule.
@@ -88,4 +88,4 @@ TEST(Distributions, StudentOfOneDegreeIsCauchyAndFisherItsSquare) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::distributions_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::multiple_tests_test {
 namespace {
 
 TEST(MultipleTests, HolmAsInHisPaper) {
@@ -54,4 +54,4 @@ TEST(MultipleTests, FalseAlarmsStayBelowTheLevel) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::multiple_tests_test

@@ -29,7 +29,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::map_store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -643,4 +643,4 @@ TEST(SlowMapStore, WhatWasAcknowledgedSurvivesKill) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::map_store_test

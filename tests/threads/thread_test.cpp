@@ -32,7 +32,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::thread_test {
 namespace {
 
 constexpr int kThreads = 4;
@@ -317,4 +317,4 @@ TEST(Threads, TourAtOnce) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::thread_test

@@ -49,7 +49,7 @@ int __wrap_cholmod_solve2(int system, cholmod_factor* factor, cholmod_dense* b,
 
 }  // extern "C"
 
-namespace trussmap {
+namespace trussmap::cholmod_calls_test {
 namespace {
 
 void count_anew() {
@@ -140,4 +140,4 @@ TEST(CholmodCalls, ItFactorisesForElasticCorrections) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::cholmod_calls_test

@@ -14,7 +14,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::measured_truss_test {
 namespace {
 
 struct Measurement {
@@ -114,4 +114,4 @@ TEST(MeasuredTruss, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::measured_truss_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::reference_test {
 namespace {
 
 using nlohmann::json;
@@ -73,4 +73,4 @@ TEST(SmallTruss, DisplacementsAndReactionsEqualTheReference) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::reference_test

@@ -24,7 +24,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::relaxation_test {
 namespace {
 
 using nlohmann::json;
@@ -305,4 +305,4 @@ TEST(Equilibrium, TheLiveFactorEqualsANewOneAtEveryStep) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::relaxation_test

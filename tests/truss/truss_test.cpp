@@ -11,7 +11,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::truss_test {
 namespace {
 
 struct RandomTruss {
@@ -180,4 +180,4 @@ TEST(Truss, RefusesWhatIsNoTruss) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::truss_test

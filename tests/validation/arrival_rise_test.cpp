@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::arrival_rise_test {
 namespace {
 
 /// Legs by their numbers, with so many metres between prediction and truth.
@@ -49,4 +49,4 @@ TEST(ArrivalRise, OfOneLegOrOfLegsThatRiseAlikeNothingIsChance) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::arrival_rise_test

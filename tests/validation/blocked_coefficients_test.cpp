@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::blocked_coefficients_test {
 namespace {
 
 using testing::Disturbance;
@@ -122,4 +122,4 @@ TEST(BlockedCoefficients, VainEffectsGainLessThanInTheSample) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::blocked_coefficients_test

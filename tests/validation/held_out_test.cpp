@@ -16,7 +16,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::held_out_test {
 namespace {
 
 using testing::Disturbance;
@@ -414,4 +414,4 @@ TEST(HeldOut, WithoutAShareNothingIsPredicted) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::held_out_test

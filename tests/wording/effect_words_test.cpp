@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::effect_words_test {
 namespace {
 
 TEST(EffectWords, APlaceIsReadOffTheShapeNotOffTheName) {
@@ -83,4 +83,4 @@ TEST(EffectWords, ALoadIsInKilograms) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::effect_words_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::explanations_test {
 namespace {
 
 Effect of_entry(const CatalogueEntry& entry) {
@@ -87,4 +87,4 @@ TEST(Explanation, OfOnesOwnEffectNamesItsPartAndItsCauses) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::explanations_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace trussmap {
+namespace trussmap::verdicts_test {
 namespace {
 
 /// A model that nothing could contradict is not said to explain anything.
@@ -42,4 +42,4 @@ TEST(Verdicts, ASlightMisfitIsCalledSo) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::verdicts_test

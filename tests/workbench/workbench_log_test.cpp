@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::workbench_log_test {
 namespace {
 
 using testing::ScratchFolder;
@@ -114,4 +114,4 @@ TEST(WorkbenchLog, WhatIsNoLogIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::workbench_log_test

@@ -21,7 +21,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace trussmap {
+namespace trussmap::workbench_test {
 namespace {
 
 const std::filesystem::path kRiddle = std::filesystem::path(TRUSSMAP_SOURCE_DIR) / "maps/riddle";
@@ -415,4 +415,4 @@ TEST(Workbench, LegsAreMarkedInTimeOverTheWholeHeight) {
 }
 
 }  // namespace
-}  // namespace trussmap
+}  // namespace trussmap::workbench_test

@@ -13,8 +13,8 @@
 namespace trussmap {
 namespace {
 
-constexpr std::size_t kHeader = 4;   // bytes
-constexpr std::size_t kPadding = 3;  // that may follow the last field
+constexpr std::size_t kEncapsulation = 4;  // bytes
+constexpr std::size_t kPadding = 3;        // that may follow the last field
 
 constexpr std::uint32_t kLastCharacter = 0x10FFFFU;
 
@@ -264,7 +264,7 @@ bool same(const FieldRef& a, const FieldRef& b) {
 }
 
 bool big_endian(std::string_view message) {
-  if (message.size() < kHeader) {
+  if (message.size() < kEncapsulation) {
     throw CdrError("has " + std::to_string(message.size()) + " bytes, expected 4 or more");
   }
   const auto first = static_cast<unsigned char>(message[0]);
@@ -281,7 +281,7 @@ bool big_endian(std::string_view message) {
 void decode_cdr(std::string_view message, const Ros2Layout& layout, std::size_t elements,
                 FieldTree& tree) {
   const bool big = big_endian(message);
-  const std::string_view body = message.substr(kHeader);
+  const std::string_view body = message.substr(kEncapsulation);
   const auto decode = [&](std::size_t wide) {
     tree.clear();
     Decoder(body, big, wide, layout, elements, tree).decode();

@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kElements = 4;  // of a list of numbers that are looked at
 constexpr std::size_t kJoints = 256;  // of a list of numbers that are kept: beside joints' names
-constexpr std::size_t kMostFields = 400;  // of a topic
-constexpr std::size_t kMostSteps = 4096;  // of which the median is taken
-constexpr std::uint64_t kAllOf = 50000;   // messages of a topic; of more every so many'th
+constexpr std::size_t kMostTopicFields = 400;  // of a topic
+constexpr std::size_t kMostSteps = 4096;       // of which the median is taken
+constexpr std::uint64_t kAllOf = 50000;        // messages of a topic; of more every so many'th
 constexpr std::uint64_t kEveryBeyond = 16;
 
 struct TopicState {
@@ -118,7 +118,7 @@ class Surveyor {
     for (const NamedField& one : fields_of(message.fields)) {
       auto known = state.by_path.find(one.path);
       if (known == state.by_path.end()) {
-        if (state.facts.fields.size() >= kMostFields) continue;
+        if (state.facts.fields.size() >= kMostTopicFields) continue;
         known = state.by_path.emplace(one.path, state.facts.fields.size()).first;
         state.facts.fields.emplace_back().path = one.path;
         state.before.emplace_back();

@@ -20,22 +20,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kSecond = 1000000000;  // ns
+constexpr std::int64_t kNanosecondsPerSecond = 1000000000;  // ns
 
 /// Times of a recording: from a whole second on where they are those of a calendar.
 class Clock {
  public:
   explicit Clock(std::int64_t first) {
-    constexpr std::int64_t kDays = 1000000 * kSecond;  // no robot runs longer without a restart
-    if (std::abs(first) > kDays) epoch_ = first / kSecond * kSecond;
+    constexpr std::int64_t kDays =
+        1000000 * kNanosecondsPerSecond;  // no robot runs longer without a restart
+    if (std::abs(first) > kDays) epoch_ = first / kNanosecondsPerSecond * kNanosecondsPerSecond;
   }
   /// s; the nearest number to the decimal one.
   [[nodiscard]] double seconds(std::int64_t t) const {
-    return static_cast<double>(t - epoch_) / static_cast<double>(kSecond);
+    return static_cast<double>(t - epoch_) / static_cast<double>(kNanosecondsPerSecond);
   }
   [[nodiscard]] std::string text() const {
-    return epoch_ == 0 ? "t is the log's own time"
-                       : fmt::format("t = 0 is {} s of the log's time", epoch_ / kSecond);
+    return epoch_ == 0
+               ? "t is the log's own time"
+               : fmt::format("t = 0 is {} s of the log's time", epoch_ / kNanosecondsPerSecond);
   }
 
  private:
@@ -55,13 +57,13 @@ void add_heading(Signal& heading, const std::vector<std::int64_t>& bounds, Drive
 }
 
 void add_yaw_rate(Signal& rate, const std::vector<std::int64_t>& bounds, Drive& drive) {
-  const auto gap = static_cast<std::int64_t>(10.0 * rate.typical_step() * kSecond);
+  const auto gap = static_cast<std::int64_t>(10.0 * rate.typical_step() * kNanosecondsPerSecond);
   for (std::size_t k = 1; k < bounds.size(); ++k) {
     const std::int64_t from = bounds[k - 1];
     const std::int64_t to = bounds[k];
     const bool read = from >= rate.times().front() && to <= rate.times().back() &&
                       rate.has_sample(from - gap, to);
-    const double dt = static_cast<double>(to - from) / static_cast<double>(kSecond);
+    const double dt = static_cast<double>(to - from) / static_cast<double>(kNanosecondsPerSecond);
     drive.yaw_rate.push_back(read ? rate.sum(from, to) / dt : kAbsent);
   }
 }

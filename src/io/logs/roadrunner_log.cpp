@@ -34,10 +34,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "RR";
-constexpr std::size_t kMostTopics = 100000;
-constexpr std::size_t kMostFields = std::size_t{1} << 20U;  // of a message, or of a schema
-constexpr int kDeepest = 32;
+constexpr std::string_view kRoadRunnerMagic = "RR";
+constexpr std::size_t kMostRoadRunnerTopics = 100000;
+constexpr std::size_t kMostSchemaFields = std::size_t{1} << 20U;  // of a message, or of a schema
+constexpr int kDeepestSchema = 32;
 
 enum class Kind : std::int32_t { group, whole, long_whole, real, text, boolean, constant, list };
 
@@ -119,13 +119,14 @@ class RoadRunnerLog {
   bool read_header() {
     constexpr std::size_t kHeader = 4;
     const std::string_view bytes = window_.peek(kHeader).substr(0, kHeader);
-    if (!bytes.starts_with(kMagic)) fail_at(name_, 0, "is no Road Runner log, expected \"RR\"");
+    if (!bytes.starts_with(kRoadRunnerMagic))
+      fail_at(name_, 0, "is no Road Runner log, expected \"RR\"");
     if (bytes.size() < kHeader) return cut("in the middle of the header");
     Entry header(bytes, name_, 0);
-    header.take(kMagic.size());
+    header.take(kRoadRunnerMagic.size());
     version_ = header.number<std::int16_t>();
     if (version_ != 0 && version_ != 1) {
-      fail_at(name_, kMagic.size(),
+      fail_at(name_, kRoadRunnerMagic.size(),
               "version " + std::to_string(version_) + " of the format, expected 0 or 1");
     }
     window_.skip(kHeader);
@@ -198,7 +199,7 @@ class RoadRunnerLog {
         entry.fail("no bytes 0 behind a channel with arrays, expected them in version 0");
       }
     }
-    if (topics_.size() == kMostTopics) entry.fail("more than 100000 channels");
+    if (topics_.size() == kMostRoadRunnerTopics) entry.fail("more than 100000 channels");
     parts_ = parts;
     topics_.push_back(std::move(topic));
   }
@@ -210,7 +211,8 @@ class RoadRunnerLog {
       entry.fail("a schema of kind " + std::to_string(kind) + ", expected 0 to 7");
     }
     schema.kind = static_cast<Kind>(kind);
-    if (depth > kDeepest || ++parts > kMostFields / 4) entry.fail("a schema beyond all measure");
+    if (depth > kDeepestSchema || ++parts > kMostSchemaFields / 4)
+      entry.fail("a schema beyond all measure");
     if (schema.kind == Kind::list) {
       ++arrays;
       schema.parts.push_back(read_schema(entry, depth + 1, parts, arrays));
@@ -220,7 +222,7 @@ class RoadRunnerLog {
       for (std::size_t k = 0; k < count; ++k) {
         std::string name(entry.text());
         if (schema.kind == Kind::constant) {
-          if (++parts > kMostFields / 4) entry.fail("a schema beyond all measure");
+          if (++parts > kMostSchemaFields / 4) entry.fail("a schema beyond all measure");
           schema.constants.push_back(std::move(name));
           continue;
         }
@@ -313,7 +315,7 @@ class RoadRunnerLog {
         read_list(schema, name, entry);
         break;
     }
-    if (tree_.size() > kMostFields) entry.fail("a message of over a million fields");
+    if (tree_.size() > kMostSchemaFields) entry.fail("a message of over a million fields");
   }
 
   void read_list(const Schema& schema, std::string_view name, Entry& entry) {

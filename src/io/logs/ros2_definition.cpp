@@ -16,9 +16,9 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kLongestText = std::size_t{1} << 20U;  // bytes
-constexpr std::size_t kDeepest = 32;
+constexpr std::size_t kDeepestType = 32;
 constexpr std::size_t kMostGroups = 1000;
-constexpr std::uint64_t kMostFields = 100000;  // those of lists once
+constexpr std::uint64_t kMostTypeFields = 100000;  // those of lists once
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40U;
 constexpr std::size_t kShortestLine = 10;  // of = between two definitions
 constexpr std::uint64_t kMostElements = std::numeric_limits<std::uint32_t>::max();
@@ -160,7 +160,7 @@ class Parser {
       if (layout_.groups[known->second].least == 0) fail("type " + name + " contains itself");
       return known->second;
     }
-    if (depth > kDeepest) fail("its types are nested too deep");
+    if (depth > kDeepestType) fail("its types are nested too deep");
     if (layout_.groups.size() == kMostGroups) fail("it has too many types");
     const std::size_t at = layout_.groups.size();
     layout_.groups.emplace_back().type = name;
@@ -189,7 +189,7 @@ class Parser {
     }
     result.least = std::max<std::uint64_t>(result.least, 1);  // an empty one has a byte
     result.depth += 1;
-    if (result.depth > kDeepest) fail("its types are nested too deep");
+    if (result.depth > kDeepestType) fail("its types are nested too deep");
     return result;
   }
 
@@ -211,8 +211,8 @@ class Parser {
     if (field.list == Ros2List::fixed) least *= field.count;
     group.least = std::min(group.least + least, kMostBytes);
     group.all += all;
-    if (group.all > kMostFields)
-      fail("it has more than " + std::to_string(kMostFields) + " fields");
+    if (group.all > kMostTypeFields)
+      fail("it has more than " + std::to_string(kMostTypeFields) + " fields");
     group.fields.push_back(std::move(field));
   }
 

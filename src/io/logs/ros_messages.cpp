@@ -15,14 +15,14 @@ namespace trussmap {
 namespace {
 
 /// A type's own definition, and the types it names.
-struct Definition {
+struct MessageDefinition {
   std::string_view type;  // PACKAGE/NAME
   std::string_view fields;
   std::array<std::string_view, 3> parts = {};
 };
 
 // Fields in the order of the published definitions: the bytes of a message depend on it.
-constexpr Definition kDefinitions[] = {
+constexpr MessageDefinition kMessageDefinitions[] = {
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"},
     {"geometry_msgs/PointStamped",
@@ -80,17 +80,18 @@ constexpr Definition kDefinitions[] = {
      {"geometry_msgs/TransformStamped"}},
 };
 
-const Definition& definition_of(std::string_view type) {
-  const auto* const found = std::find_if(std::begin(kDefinitions), std::end(kDefinitions),
-                                         [&](const Definition& one) { return one.type == type; });
-  if (found == std::end(kDefinitions)) {
+const MessageDefinition& definition_of(std::string_view type) {
+  const auto* const found =
+      std::find_if(std::begin(kMessageDefinitions), std::end(kMessageDefinitions),
+                   [&](const MessageDefinition& one) { return one.type == type; });
+  if (found == std::end(kMessageDefinitions)) {
     throw std::invalid_argument("no definition of the message type " + std::string(type));
   }
   return *found;
 }
 
 /// All types within, each once, in the order in which they are met.
-void collect_parts(const Definition& of, std::vector<std::string_view>& found) {
+void collect_parts(const MessageDefinition& of, std::vector<std::string_view>& found) {
   for (const std::string_view part : of.parts) {
     if (part.empty() || std::find(found.begin(), found.end(), part) != found.end()) continue;
     found.push_back(part);
@@ -155,7 +156,7 @@ std::string ros_definition(const std::string& type) {
   if (const std::size_t at = name.find(kWithin); at != std::string::npos) {
     name.replace(at, kWithin.size(), "/");
   }
-  const Definition& of = definition_of(name);
+  const MessageDefinition& of = definition_of(name);
   std::vector<std::string_view> parts;
   collect_parts(of, parts);
   std::string text(of.fields);

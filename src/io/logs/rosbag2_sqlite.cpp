@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestDefinition = std::size_t{1} << 20U;    // bytes
 constexpr std::size_t kLargestDefinitions = std::size_t{32} << 20U;  // all together
-constexpr std::size_t kMostTopics = 65536;
+constexpr std::size_t kMostBagTopics = 65536;
 constexpr int kMostPages = -16 * 1024;  // KiB of memory for pages of the file
 
 /// As a URI, in which a few characters have a meaning.
@@ -137,7 +137,7 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-struct Definition {
+struct TypeDefinition {
   std::string encoding;
   std::string text;
   bool kept = true;
@@ -187,7 +187,7 @@ class Rosbag2Reader {
                    "message_definitions");
     while (rows.next()) {
       const std::string type(rows.bytes(0));
-      Definition one;
+      TypeDefinition one;
       one.encoding = rows.bytes(1);
       const std::string_view text = rows.bytes(2);
       one.kept = text.size() <= kLargestDefinition;
@@ -211,8 +211,8 @@ class Rosbag2Reader {
         channel.definition = found->second.text;
         channel.definition_known = found->second.kept;
       }
-      if (channels_.size() == kMostTopics) {
-        database_->fail("has more than " + std::to_string(kMostTopics) + " topics");
+      if (channels_.size() == kMostBagTopics) {
+        database_->fail("has more than " + std::to_string(kMostBagTopics) + " topics");
       }
       channels_.emplace(id, topics_->add(channel));
     }
@@ -245,7 +245,7 @@ class Rosbag2Reader {
 
   const Database* database_;
   BagTopics* topics_;
-  std::map<std::string, Definition> definitions_;
+  std::map<std::string, TypeDefinition> definitions_;
   std::map<std::int64_t, std::size_t> channels_;
   std::size_t kept_ = 0;  // bytes of names and definitions
 };

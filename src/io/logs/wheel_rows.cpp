@@ -14,7 +14,7 @@
 namespace trussmap {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;  // ns
+constexpr std::int64_t kWheelSecond = 1000000000;  // ns
 
 /// Named left and right, and not columns of their own.
 bool has_two_wheels(const Robot& robot) {
@@ -160,7 +160,7 @@ void warn_of_gaps(const std::vector<std::int64_t>& bounds, std::vector<std::stri
   std::size_t gaps = 0;
   double longest = 0.0;
   for (std::size_t k = 1; k < bounds.size(); ++k) {
-    const double dt = static_cast<double>(bounds[k] - bounds[k - 1]) / kSecond;
+    const double dt = static_cast<double>(bounds[k] - bounds[k - 1]) / kWheelSecond;
     if (dt <= kLong * step || dt <= 1.0) continue;
     ++gaps;
     longest = std::max(longest, dt);
@@ -234,7 +234,7 @@ WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
     travels.reserve(rows.bounds.size());
     for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
       const double sum = wheels[w].signal.sum(rows.bounds[k - 1], rows.bounds[k]);
-      const double dt = static_cast<double>(rows.bounds[k] - rows.bounds[k - 1]) / kSecond;
+      const double dt = static_cast<double>(rows.bounds[k] - rows.bounds[k - 1]) / kWheelSecond;
       travels.push_back(steers ? sum / dt : sum);
     }
     if (two) {

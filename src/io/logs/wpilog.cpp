@@ -32,10 +32,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMagic = "WPILOG";
-constexpr std::size_t kMostTopics = 100000;
+constexpr std::string_view kWpilogMagic = "WPILOG";
+constexpr std::size_t kMostEntries = 100000;
 
-struct Topic {
+struct LogEntry {
   LogTopic topic;
   WpilogType type;
   std::size_t number = 0;
@@ -59,7 +59,7 @@ class Wpilog {
       }
     }
     LogEnd end;
-    for (Topic& one : topics_) {
+    for (LogEntry& one : topics_) {
       if (one.type.content != WpilogContent::schema) end.topics.push_back(std::move(one.topic));
     }
     end.cut_off = cut_off_;
@@ -75,15 +75,15 @@ class Wpilog {
   bool read_header() {
     constexpr std::size_t kHeader = 12;
     const std::string_view bytes = window_.peek(kHeader).substr(0, kHeader);
-    if (!bytes.starts_with(kMagic)) {
+    if (!bytes.starts_with(kWpilogMagic)) {
       fail_at(name_, 0, "is no WPILib data log, expected \"WPILOG\"");
     }
     if (bytes.size() < kHeader) return cut("in the middle of the header");
     ByteReader reader(bytes, name_, 0);
-    reader.skip(kMagic.size());
+    reader.skip(kWpilogMagic.size());
     const auto version = reader.number<std::uint16_t>();
     if (version >> 8U != 1) {
-      fail_at(name_, kMagic.size(),
+      fail_at(name_, kWpilogMagic.size(),
               "version " + std::to_string(version >> 8U) + "." + std::to_string(version & 0xFFU) +
                   " of the format, expected 1.0");
     }
@@ -118,7 +118,7 @@ class Wpilog {
       fail_at(name_, window_.offset(),
               "a record of " + std::to_string(size) + " bytes, expected at most 256 MiB");
     }
-    Topic* const topic = entry == 0 ? nullptr : topic_by(entry);
+    LogEntry* const topic = entry == 0 ? nullptr : topic_by(entry);
     if (topic == nullptr ? entry != 0 : !needed(*topic)) {
       const std::uint64_t begin = window_.offset();
       if (window_.skip(length + size) == length + size) {
@@ -157,7 +157,7 @@ class Wpilog {
   }
 
   /// None of an entry that has been finished.
-  Topic* topic_by(std::uint32_t entry) {
+  LogEntry* topic_by(std::uint32_t entry) {
     const auto place = entries_.find(entry);
     if (place == entries_.end()) {
       fail_at(name_, window_.offset(),
@@ -195,11 +195,11 @@ class Wpilog {
     }
   }
 
-  Topic* started(const std::string& name, const std::string& type, const ByteReader& reader) {
+  LogEntry* started(const std::string& name, const std::string& type, const ByteReader& reader) {
     const auto [place, fresh] = by_name_.try_emplace({name, type}, topics_.size());
     if (!fresh) return &topics_[place->second];
-    if (topics_.size() == kMostTopics) {
-      reader.fail("more than " + std::to_string(kMostTopics) + " topics");
+    if (topics_.size() == kMostEntries) {
+      reader.fail("more than " + std::to_string(kMostEntries) + " topics");
     }
     WpilogType content = wpilog_type(name, type);
     topics_.push_back({{name, type, "wpilog", content.unread}, content});
@@ -209,7 +209,7 @@ class Wpilog {
   }
 
   /// Whether the message is decoded; asks of the topic where that is not known yet.
-  bool needed(Topic& topic) {
+  bool needed(LogEntry& topic) {
     if (topic.type.content == WpilogContent::schema) return true;
     if (schemas_alone_) return false;
     if (topic.type.content == WpilogContent::structure && topic.schemas != schema_changes_) {
@@ -222,7 +222,7 @@ class Wpilog {
     return topic.wanted && topic.topic.unread.empty() && visit_->message != nullptr;
   }
 
-  void find_type(Topic& topic) {
+  void find_type(LogEntry& topic) {
     StructSchemas::Found found = schemas_.find(topic.type.structure);
     if (!all_schemas_ && (found.type == nullptr || !schemas_.states(topic.type.structure))) {
       look_ahead();
@@ -248,7 +248,7 @@ class Wpilog {
     ++schema_changes_;
   }
 
-  void read_message(Topic& topic, ByteReader& payload, std::uint64_t time) {
+  void read_message(LogEntry& topic, ByteReader& payload, std::uint64_t time) {
     ++topic.topic.messages;
     if (topic.type.content == WpilogContent::schema) {
       const std::string schema(payload.take(payload.left()));
@@ -275,10 +275,10 @@ class Wpilog {
   bool schemas_alone_;
   FileWindow window_;
   std::string cut_off_;
-  std::deque<Topic> topics_;  // which entries and messages refer to
+  std::deque<LogEntry> topics_;  // which entries and messages refer to
   std::size_t shown_topics_ = 0;
   std::map<std::pair<std::string, std::string>, std::size_t> by_name_;
-  std::unordered_map<std::uint32_t, Topic*> entries_;
+  std::unordered_map<std::uint32_t, LogEntry*> entries_;
   StructSchemas schemas_;
   std::map<std::string, std::string> first_schemas_;
   std::size_t schema_changes_ = 1;
@@ -293,9 +293,9 @@ bool is_wpilog(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return false;
   std::ifstream stream(file, std::ios::binary);
-  std::string bytes(kMagic.size(), '\0');
+  std::string bytes(kWpilogMagic.size(), '\0');
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return bytes == kMagic;
+  return bytes == kWpilogMagic;
 }
 
 LogEnd read_wpilog(const fs::path& file, const LogVisit& visit) {

@@ -10,9 +10,9 @@
 namespace trussmap {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kStructBlanks = " \t\r\n";
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 24U;  // bytes of a struct
-constexpr int kDeepest = 32;
+constexpr int kDeepestStruct = 32;
 
 struct Known {
   const char* name;
@@ -36,23 +36,24 @@ constexpr Known kKnown[] = {{"ChassisSpeeds", "double vx;double vy;double omega"
                             {"Translation3d", "double x;double y;double z"},
                             {"Twist2d", "double dx;double dy;double dtheta"}};
 
-struct Plain {
+struct PlainMember {
   const char* name;
   StructKind kind;
   std::uint64_t size;
 };
 
-constexpr Plain kPlain[] = {{"bool", StructKind::boolean, 1},   {"char", StructKind::character, 1},
-                            {"int8", StructKind::whole, 1},     {"int16", StructKind::whole, 2},
-                            {"int32", StructKind::whole, 4},    {"int64", StructKind::whole, 8},
-                            {"uint8", StructKind::natural, 1},  {"uint16", StructKind::natural, 2},
-                            {"uint32", StructKind::natural, 4}, {"uint64", StructKind::natural, 8},
-                            {"float", StructKind::real, 4},     {"float32", StructKind::real, 4},
-                            {"double", StructKind::real, 8},    {"float64", StructKind::real, 8}};
+constexpr PlainMember kPlainMembers[] = {
+    {"bool", StructKind::boolean, 1},   {"char", StructKind::character, 1},
+    {"int8", StructKind::whole, 1},     {"int16", StructKind::whole, 2},
+    {"int32", StructKind::whole, 4},    {"int64", StructKind::whole, 8},
+    {"uint8", StructKind::natural, 1},  {"uint16", StructKind::natural, 2},
+    {"uint32", StructKind::natural, 4}, {"uint64", StructKind::natural, 8},
+    {"float", StructKind::real, 4},     {"float32", StructKind::real, 4},
+    {"double", StructKind::real, 8},    {"float64", StructKind::real, 8}};
 
 std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+  text.remove_prefix(std::min(text.find_first_not_of(kStructBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kStructBlanks) + 1);
 }
 
 /// Takes the text up to one of these characters.
@@ -89,7 +90,7 @@ std::optional<Declaration> parsed(std::string_view text) {
     text = trimmed(text.substr(end + 1));
   }
   Declaration found;
-  found.type = take_until(text, kBlanks);
+  found.type = take_until(text, kStructBlanks);
   found.name = take_until(text, " \t\r\n[:");
   if (found.type.empty() || found.name.empty()) return std::nullopt;
   if (text.empty()) return found;
@@ -182,7 +183,7 @@ StructSchemas::Found StructSchemas::find(const std::string& name) {
 
 StructSchemas::Found StructSchemas::made(const std::string& name, int depth) {
   if (const auto place = types_.find(name); place != types_.end()) return {place->second, ""};
-  if (depth > kDeepest) return {nullptr, "its structs are nested too deeply"};
+  if (depth > kDeepestStruct) return {nullptr, "its structs are nested too deeply"};
   std::string_view text;
   if (const auto place = stated_.find(name); place != stated_.end()) {
     text = place->second;
@@ -222,9 +223,9 @@ std::string StructSchemas::add_member(StructType& type, std::string_view declare
   member.offset = type.size;
   std::uint64_t fields = 1;
   const auto* const plain =
-      std::find_if(std::begin(kPlain), std::end(kPlain),
-                   [&parts](const Plain& one) { return parts->type == one.name; });
-  if (plain != std::end(kPlain)) {
+      std::find_if(std::begin(kPlainMembers), std::end(kPlainMembers),
+                   [&parts](const PlainMember& one) { return parts->type == one.name; });
+  if (plain != std::end(kPlainMembers)) {
     member.kind = plain->kind;
     member.size = plain->size;
   } else {

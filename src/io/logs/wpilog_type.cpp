@@ -8,13 +8,13 @@
 namespace trussmap {
 namespace {
 
-struct Plain {
+struct PlainType {
   const char* name;
   WpilogContent content;
   std::size_t size;  // bytes of an element
 };
 
-constexpr Plain kPlain[] = {
+constexpr PlainType kPlainTypes[] = {
     {"boolean", WpilogContent::boolean, 1}, {"int64", WpilogContent::whole, 8},
     {"float", WpilogContent::single, 4},    {"double", WpilogContent::real, 8},
     {"string", WpilogContent::text, 0},     {"json", WpilogContent::text, 0}};
@@ -83,7 +83,7 @@ WpilogType wpilog_type(const std::string& entry, const std::string& type) {
     found.structure = element.substr(kStruct.size());
     return found;
   }
-  for (const Plain& one : kPlain) {
+  for (const PlainType& one : kPlainTypes) {
     if (element != one.name || (found.list && element == "json")) continue;
     found.content = one.content;
     found.size = one.size;
