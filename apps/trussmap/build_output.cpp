@@ -14,11 +14,11 @@
 namespace trussmap::app {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
-json survey_json(const MapOnSurvey& on_survey) {
+Json survey_json(const MapOnSurvey& on_survey) {
   const SurveyComparison& map = on_survey.comparison;
-  json exchanged = json::array();
+  Json exchanged = Json::array();
   for (const auto& [a, b] : map.exchanged) exchanged.push_back({a, b});
   return {{"landmarks", map.landmarks},
           {"rms_m", map.rigid.rms},
@@ -30,10 +30,10 @@ json survey_json(const MapOnSurvey& on_survey) {
           {"exchanged", exchanged}};
 }
 
-json freed_json(const std::vector<FreedError>& freed) {
-  json result = nlohmann::ordered_json::array();
+Json freed_json(const std::vector<FreedError>& freed) {
+  Json result = nlohmann::ordered_json::array();
   for (const FreedError& one : freed) {
-    json effect = effect_json(one.effect);
+    Json effect = effect_json(one.effect);
     effect["coefficients"] = one.effect.coefficients;
     effect["sd"] = one.sd;
     result.push_back(std::move(effect));
@@ -41,7 +41,7 @@ json freed_json(const std::vector<FreedError>& freed) {
   return result;
 }
 
-json quality_json(const MapQuality& quality) {
+Json quality_json(const MapQuality& quality) {
   return {{"median_sd_m", quality.median_sd},
           {"worst_sd_m", quality.worst_sd},
           {"worst_landmark", quality.worst_landmark},
@@ -58,10 +58,10 @@ json quality_json(const MapQuality& quality) {
 }  // namespace
 
 nlohmann::ordered_json positions_json(const LandmarkGraph& map) {
-  json positions = json::object();
+  Json positions = Json::object();
   for (int k = 0; k < map.landmarks(); ++k) {
     const Landmark& one = map.landmark(k);
-    json at = {{"x", one.position.x()}, {"y", one.position.y()}};
+    Json at = {{"x", one.position.x()}, {"y", one.position.y()}};
     if (one.covariance) {
       at["c_xx"] = (*one.covariance)(0, 0);
       at["c_xy"] = (*one.covariance)(0, 1);
@@ -75,10 +75,10 @@ nlohmann::ordered_json positions_json(const LandmarkGraph& map) {
 }
 
 /// Errors after each tour, after the best rotation and translation of the map as it then was.
-json tours_json(const std::vector<TourErrors>& tours) {
-  json list = json::array();
+Json tours_json(const std::vector<TourErrors>& tours) {
+  Json list = Json::array();
   for (const TourErrors& one : tours) {
-    json tour = {{"tour", list.size() + 1},
+    Json tour = {{"tour", list.size() + 1},
                  {"stretch_error", one.errors.stretch},
                  {"orientation_error_rad", one.errors.orientation},
                  {"routes", one.errors.routes},
@@ -90,14 +90,14 @@ json tours_json(const std::vector<TourErrors>& tours) {
 }
 
 nlohmann::ordered_json build_json(const BuiltMap& built, const std::string& method) {
-  json rejected = json::array();
+  Json rejected = Json::array();
   for (const RejectedSighting& one : built.rejected) {
     rejected.push_back({{"recording", one.recording},
                         {"t", one.t},
                         {"landmark", one.landmark},
                         {"misfit_m", one.misfit}});
   }
-  json result = {{"method", method},
+  Json result = {{"method", method},
                  {"verdict", verdict_of(built)},
                  {"legs", built.legs},
                  {"landmarks", built.map.landmarks()},

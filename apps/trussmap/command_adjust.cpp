@@ -47,7 +47,7 @@ struct Run {
   double seconds = 0.0;
 };
 
-nlohmann::ordered_json json(const Run& run) {
+nlohmann::ordered_json json_of(const Run& run) {
   const PoseGraphAdjustment& r = run.result;
   nlohmann::ordered_json out{{"chi2", r.chi2},
                              {"dof", r.dof},
@@ -120,7 +120,7 @@ void run_adjust(const AdjustOptions& options) {
     }
     files.emplace_back(options.out, format_g2o(graph));
   }
-  if (!options.json.empty()) files.emplace_back(options.json, json(run).dump(2) + "\n");
+  if (!options.json.empty()) files.emplace_back(options.json, json_of(run).dump(2) + "\n");
   files.write();
   progress.end();
   const std::optional<std::size_t> left_out =

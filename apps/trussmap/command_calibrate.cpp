@@ -59,7 +59,7 @@ TestedDrives tested(const std::vector<Recording>& recordings, const Model& nomin
   return result;
 }
 
-ordered_json json(const TestedDrives& test) {
+ordered_json json_of(const TestedDrives& test) {
   ordered_json out = {{"recordings", test.names.size()},
                       {"end_rms_m", rms_end(test.calibrated)},
                       {"end_rms_nominal_m", rms_end(test.nominal)},
@@ -76,7 +76,7 @@ ordered_json json(const TestedDrives& test) {
   return out;
 }
 
-ordered_json json(const CalibrationValidation& held) {
+ordered_json json_of(const CalibrationValidation& held) {
   const bool judged = held.legs() > 0;
   return {{"legs", held.legs()},
           {"held_out", held.scheme == HoldoutScheme::none     ? ordered_json()
@@ -86,8 +86,8 @@ ordered_json json(const CalibrationValidation& held) {
           {"arrival_rms_nominal_m", judged ? ordered_json(held.nominal.rms()) : ordered_json()}};
 }
 
-ordered_json json(const WheelCalibration& found, const CalibrationValidation& held,
-                  const std::optional<TestedDrives>& test) {
+ordered_json json_of(const WheelCalibration& found, const CalibrationValidation& held,
+                     const std::optional<TestedDrives>& test) {
   ordered_json out;
   const auto add = [&out](const char* name, const std::optional<Calibrated>& one) {
     out[name] = one ? ordered_json(one->value) : ordered_json();
@@ -107,8 +107,8 @@ ordered_json json(const WheelCalibration& found, const CalibrationValidation& he
   }
   out["chi2"] = found.chi2;
   out["dof"] = found.dof;
-  out["heldout"] = json(held);
-  if (test) out["test"] = json(*test);
+  out["heldout"] = json_of(held);
+  if (test) out["test"] = json_of(*test);
   if (!found.truth.clocks.empty()) {
     ordered_json clocks = ordered_json::array();
     for (const auto& [session, clock] : found.truth.clocks) {
@@ -149,7 +149,7 @@ void run_calibrate(const CalibrateOptions& options) {
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(found.model));
   if (!options.json.empty()) {
-    files.emplace_back(options.json, json(found, held, test).dump(2) + "\n");
+    files.emplace_back(options.json, json_of(found, held, test).dump(2) + "\n");
   }
   if (options.page.wanted()) {
     add_page(

@@ -106,7 +106,7 @@ ordered_json outliers_json(const Comparison& result) {
   return outliers;
 }
 
-ordered_json json(const Comparison& result) {
+ordered_json json_of(const Comparison& result) {
   return {{"verdict", verdict_of(result)},
           {"chi2", result.chi2},
           {"dof", result.dof},
@@ -138,7 +138,7 @@ void run_compare(const CompareCommand& options) {
   const std::vector<NoiseBudget> budget = noise_budget(input.recordings, input.model);
   Files files;
   if (!options.input.json.empty()) {
-    ordered_json report = json(result);
+    ordered_json report = json_of(result);
     report["noise_budget"] = budget_json(budget);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");

@@ -30,7 +30,7 @@ struct DiagnoseCommand {
   PageOptions page;
 };
 
-ordered_json json(const Finding& finding) {
+ordered_json json_of(const Finding& finding) {
   const Effect& effect = finding.effect;
   ordered_json one = effect_json(effect);
   one["score"] = finding.score;
@@ -49,7 +49,7 @@ ordered_json json(const Finding& finding) {
   return one;
 }
 
-ordered_json json(const Unobservable& unseen) {
+ordered_json json_of(const Unobservable& unseen) {
   const Advice advice = advice_on(unseen);
   ordered_json one = effect_json(unseen.effect);
   one["why"] = advice.why;
@@ -57,14 +57,14 @@ ordered_json json(const Unobservable& unseen) {
   return one;
 }
 
-ordered_json json(const NoiseTest& test) {
+ordered_json json_of(const NoiseTest& test) {
   return {{"law", test.law},           {"score", test.score},
           {"dof", test.dof},           {"p_adjusted", test.p_adjusted},
           {"size", test.size},         {"unit", test.unit},
           {"in_words", in_words(test)}};
 }
 
-ordered_json json(const EventTest& event) {
+ordered_json json_of(const EventTest& event) {
   return {{"kind", name_of(event.kind)},    {"name", event.name},
           {"score", event.score},           {"dof", event.dof},
           {"p_adjusted", event.p_adjusted}, {"in_words", in_words(event)}};
@@ -73,11 +73,11 @@ ordered_json json(const EventTest& event) {
 template <typename Item>
 ordered_json list_json(const std::vector<Item>& items) {
   ordered_json list = ordered_json::array();
-  for (const Item& one : items) list.push_back(json(one));
+  for (const Item& one : items) list.push_back(json_of(one));
   return list;
 }
 
-ordered_json json(const Diagnosis& result) {
+ordered_json json_of(const Diagnosis& result) {
   return {
       {"verdict", verdict_of(result)},
       {"missing", result.missing},
@@ -113,7 +113,7 @@ void run_diagnose(const DiagnoseCommand& options) {
       noise_budget(input.recordings, result.under ? result.under->fit.model : fit.model);
   Files files;
   if (!options.input.json.empty()) {
-    ordered_json report = json(result);
+    ordered_json report = json_of(result);
     report["noise_budget"] = budget_json(budget);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");

@@ -36,7 +36,7 @@ ordered_json optional_json(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
-ordered_json json(const DiscoveryStep& step) {
+ordered_json json_of(const DiscoveryStep& step) {
   ordered_json one = {{"added", nullptr},
                       {"chi2", step.chi2},
                       {"dof", step.dof},
@@ -54,9 +54,9 @@ ordered_json json(const DiscoveryStep& step) {
   return one;
 }
 
-ordered_json json(const Discovery& result) {
+ordered_json json_of(const Discovery& result) {
   ordered_json steps = ordered_json::array();
-  for (const DiscoveryStep& step : result.steps) steps.push_back(json(step));
+  for (const DiscoveryStep& step : result.steps) steps.push_back(json_of(step));
   ordered_json effects = ordered_json::array();
   for (const EffectEstimate& one : result.found.effects) effects.push_back(estimate_json(one));
   return {{"steps", steps},
@@ -115,7 +115,7 @@ void run_discover(const DiscoverCommand& options) {
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.found.model));
   if (!options.input.json.empty()) {
-    ordered_json report = json(result);
+    ordered_json report = json_of(result);
     report["noise_budget"] = budget_json(budget);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");

@@ -57,7 +57,7 @@ std::vector<std::string> unfitted_words(const EffectEstimate& estimate) {
   return lines;
 }
 
-ordered_json json(const EffectGain& result) {
+ordered_json json_of(const EffectGain& result) {
   ordered_json effects = ordered_json::array();
   for (const EffectEstimate& one : result.with.effects) {
     effects.push_back(estimate_json(one));
@@ -102,7 +102,7 @@ void run_fit(const FitCommand& options) {
   Files files;
   if (!options.out.empty()) files.emplace_back(options.out, format_model(result.with.model));
   if (!options.input.json.empty()) {
-    ordered_json report = json(result);
+    ordered_json report = json_of(result);
     if (noise) report["noise"] = noise_json(*noise);
     report["notes"] = input.notes;
     files.emplace_back(options.input.json, report.dump(2) + "\n");

@@ -91,7 +91,7 @@ void run_merge(const MergeCommand& options) {
              rows == 1 ? "day of a robot" : "days of robots");
 }
 
-ordered_json json(const FleetRobot& one) {
+ordered_json json_of(const FleetRobot& one) {
   return {{"robot", one.robot},
           {"days", one.days},
           {"value", one.value},
@@ -106,7 +106,7 @@ ordered_json json(const FleetRobot& one) {
           {"p_drifts", one.p_drifts}};
 }
 
-ordered_json json(const FleetCoefficient& one) {
+ordered_json json_of(const FleetCoefficient& one) {
   ordered_json result{
       {"shape", one.shape},     {"robots", one.robots},       {"mean", one.mean},
       {"sd", one.sd},           {"p_common", one.p_common},   {"common", one.common},
@@ -130,18 +130,18 @@ ordered_json json(const FleetCoefficient& one) {
   }
   result["goes_with"] = keys;
   ordered_json robots = ordered_json::array();
-  for (const FleetRobot& robot : one.members) robots.push_back(json(robot));
+  for (const FleetRobot& robot : one.members) robots.push_back(json_of(robot));
   result["each"] = robots;
   return result;
 }
 
-ordered_json json(const FleetReport& report) {
+ordered_json json_of(const FleetReport& report) {
   ordered_json result{{"robots", report.robots}, {"days", report.days},   {"chi2", report.chi2},
                       {"dof", report.dof},       {"level", report.level}, {"keys", report.keys}};
   ordered_json findings = ordered_json::array();
   for (const FleetFinding& one : report.findings) {
     ordered_json coefficients = ordered_json::array();
-    for (const FleetCoefficient& each : one.coefficients) coefficients.push_back(json(each));
+    for (const FleetCoefficient& each : one.coefficients) coefficients.push_back(json_of(each));
     ordered_json alike = ordered_json::array();
     for (const FleetLookAlike& rival : one.look_alikes) {
       alike.push_back({{"effect", rival.effect}, {"cosine", rival.cosine}});
@@ -174,7 +174,7 @@ ordered_json json(const FleetReport& report) {
 void run_report(const ReportCommand& options) {
   const FleetReport report = fleet_report(read_fleet(options.store), options.level);
   Files files;
-  if (!options.json.empty()) files.emplace_back(options.json, json(report).dump(2) + "\n");
+  if (!options.json.empty()) files.emplace_back(options.json, json_of(report).dump(2) + "\n");
   if (options.page.wanted()) add_page(files, fleet_page(report, options.store), options.page);
   files.write();
   const std::vector<std::string> lines = in_words(report);

@@ -120,7 +120,7 @@ ordered_json constants_json(const NoiseEstimate& e) {
 }
 
 /// The estimates in use; both kinds under `first_order` and `exact`.
-ordered_json json(const NoiseAnalysis& result, const NoiseOptions& options) {
+ordered_json json_of(const NoiseAnalysis& result, const NoiseOptions& options) {
   const NoiseEstimate& e = result.estimate;
   ordered_json out = constants_json(e);
   out["runs"] = e.runs;
@@ -159,7 +159,7 @@ void run_noise(const NoiseOptions& options) {
     files.emplace_back(options.tape.out, format_model(model));
   }
   if (!options.tape.json.empty()) {
-    files.emplace_back(options.tape.json, json(result, options).dump(2) + "\n");
+    files.emplace_back(options.tape.json, json_of(result, options).dump(2) + "\n");
   }
   if (!options.tape.page.plots.empty()) {
     files.add_plot(options.tape.page.plots, "noise.svg",

@@ -210,7 +210,7 @@ void run_umbmark(const UmbmarkOptions& options) {
              paths_alone_text(alone, style_of(stdout)));
 }
 
-constexpr const char* kFooter =
+constexpr const char* kSquareFooter =
     "RUNS.csv has the columns direction,x,y and a row per run: direction is cw (turning right) or\n"
     "ccw (turning left); x and y [m] are where the robot was measured to stand after the square\n"
     "minus where its odometry had it, x along the first leg and y to its left. Two runs or more "
@@ -268,7 +268,7 @@ void setup_umbmark(const Command& app) {
       .check(whole_number(1))
       .capture_default_str()
       .group("Rehearsal with a simulated robot");
-  command.footer(std::string(kFooter) + kWallHelp);
+  command.footer(std::string(kSquareFooter) + kWallHelp);
   command.callback([options, command] {
     check_source(command, !options->files.empty());
     if (options->tape.simulate && !options->straight.empty()) {

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kWidth = 60;  // of a name in a table
+constexpr std::size_t kNameWidth = 60;  // of a name in a table
 
 std::string number_text(double value) {
   return value == value ? fmt::format("{:.6g}", value) : "";
@@ -32,7 +32,7 @@ std::string rate_text(const LogTopicFacts& topic) {
 }
 
 std::string name_text(const std::string& name) {
-  return shortened(escaped_controls(name), kWidth);
+  return shortened(escaped_controls(name), kNameWidth);
 }
 
 void print_topics(const LogInspection& log) {

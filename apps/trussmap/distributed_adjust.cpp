@@ -44,7 +44,7 @@ std::string table(const Run& run, const std::string& solver) {
   return text;
 }
 
-nlohmann::ordered_json json(const Run& run, const std::string& solver) {
+nlohmann::ordered_json json_of(const Run& run, const std::string& solver) {
   const DistributedAdjustment& r = run.result;
   return {{"chi2", r.chi2},
           {"dof", r.dof},
@@ -78,7 +78,7 @@ void run_distributed_adjust(const DistributedAdjustOptions& options) {
   if (!first) return;
   Files files;
   if (!options.json.empty()) {
-    files.emplace_back(options.json, json(run, options.solver).dump(2) + "\n");
+    files.emplace_back(options.json, json_of(run, options.solver).dump(2) + "\n");
   }
   files.write();
   fmt::print("{}", table(run, options.solver));

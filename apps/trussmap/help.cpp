@@ -9,7 +9,7 @@
 namespace trussmap::app {
 namespace {
 
-constexpr std::size_t kWidth = 100;
+constexpr std::size_t kHelpWidth = 100;
 constexpr std::size_t kColumn = 30;  // where descriptions begin
 
 constexpr const char* kRecordingFormat =
@@ -66,7 +66,7 @@ class HelpFormatter : public CLI::Formatter {
     if (description.empty()) return name + "\n";
     name += name.size() + 1 < kColumn ? std::string(kColumn - name.size(), ' ')
                                       : "\n" + std::string(kColumn, ' ');
-    return name + wrapped(description, kWidth - kColumn, kColumn) + "\n";
+    return name + wrapped(description, kHelpWidth - kColumn, kColumn) + "\n";
   }
 
   std::string make_subcommand(const CLI::App* command) const override {
@@ -74,11 +74,11 @@ class HelpFormatter : public CLI::Formatter {
     name.resize(std::max(name.size() + 1, kColumn), ' ');
     std::string said = command->get_description();
     if (said.ends_with('.')) said.pop_back();
-    return name + wrapped(said, kWidth - kColumn, kColumn) + "\n";
+    return name + wrapped(said, kHelpWidth - kColumn, kColumn) + "\n";
   }
 
   std::string make_description(const CLI::App* app) const override {
-    return wrapped(app->get_description(), kWidth, 0) + "\n";
+    return wrapped(app->get_description(), kHelpWidth, 0) + "\n";
   }
 
   std::string make_footer(const CLI::App* app) const override {

@@ -8,7 +8,7 @@ namespace trussmap::app {
 namespace {
 
 /// Absent: 0.
-nlohmann::ordered_json number_or_null(double value) {
+nlohmann::ordered_json null_if_absent(double value) {
   return value > 0.0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
@@ -40,11 +40,11 @@ nlohmann::ordered_json noise_json(const FittedNoise& noise) {
     }
     source["stated"] = one.stated;
     source["sd"] = one.sd;
-    source["sd_error"] = number_or_null(one.sd_error);
+    source["sd_error"] = null_if_absent(one.sd_error);
     source["at_limit"] = one.at_limit;
     if (one.process.length > 0.0) {
       source["length"] = one.process.length;
-      source["length_error"] = number_or_null(one.length_error);
+      source["length_error"] = null_if_absent(one.length_error);
     }
     source["gain"] = one.gain;
     if (one.lasts) source["p_adjusted"] = one.p_value;

@@ -8,7 +8,7 @@
 namespace trussmap::app {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 /// How many fixes, or loops.
 std::ptrdiff_t ties_of(const BuiltPath& path, bool loops) {
@@ -18,17 +18,17 @@ std::ptrdiff_t ties_of(const BuiltPath& path, bool loops) {
 }  // namespace
 
 nlohmann::ordered_json paths_json(const std::vector<BuiltPath>& paths) {
-  json result = json::array();
+  Json result = Json::array();
   for (const BuiltPath& path : paths) {
-    json left_out = json::array();
+    Json left_out = Json::array();
     for (const PathTie& tie : path.ties) {
       if (!tie.left_out) continue;
-      json one = {{"kind", tie.loop ? "loop" : "fix"}, {"t", tie.t}};
+      Json one = {{"kind", tie.loop ? "loop" : "fix"}, {"t", tie.t}};
       if (tie.loop) one["t2"] = tie.t2;
       one["misfit_m"] = tie.misfit;
       left_out.push_back(std::move(one));
     }
-    json one = {
+    Json one = {
         {"recording", path.recording},   {"length_m", path.length},
         {"median_sd_m", path.median_sd}, {"worst_sd_m", path.worst_sd},
         {"worst_t", path.worst_t},       {"dead_reckoning_off_rms_m", path.rms_dead_reckoning},

@@ -26,7 +26,7 @@
 namespace trussmap::app {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* kAxes = "axes";  // a note of the store: whose axes its map has
 
@@ -106,7 +106,7 @@ void add_sessions(const StoreSessions& options) {
   take_wheels(recordings, model.robot);
   warn_of_mistakes(recordings, model, options.model);
   MapStore store = opened(options);
-  json sessions = json::array();
+  Json sessions = Json::array();
   for (const Recording& recording : recordings) {
     const std::string key = fingerprint(recording);
     if (store.has_session(key)) {
@@ -115,7 +115,7 @@ void add_sessions(const StoreSessions& options) {
     }
     const BuiltMap built = added(store, key, recording, model, options);
     print_session(recording, built);
-    json session = build_json(built, option_of(built.method));
+    Json session = build_json(built, option_of(built.method));
     session["recording"] = recording.name;
     sessions.push_back(std::move(session));
   }
@@ -131,7 +131,7 @@ void add_sessions(const StoreSessions& options) {
   }
   if (!options.csv.empty()) files.emplace_back(options.csv, format_positions(map));
   if (!options.json_file.empty()) {
-    const json result = {{"store", options.store},
+    const Json result = {{"store", options.store},
                          {"method", method},
                          {"landmarks", map.landmarks()},
                          {"routes", map.routes()},
