@@ -3,8 +3,8 @@
 #
 # TRUSSMAP_UNITY compiles up to TRUSSMAP_UNITY_SIZE sources of a folder as one: most of the time goes
 # into templates that they have in common. A first build takes less than half of the time, each later
-# one more. `make` turns it on in a new tree. Sources that have private names in common with others of
-# their folder are compiled alone: trussmap_alone(SOURCE...).
+# one more. `make` turns it on in a new tree. A private name is the only one of its folder, therefore; what
+# cannot be has the property SKIP_UNITY_BUILD_INCLUSION.
 option(TRUSSMAP_UNITY "Compile the sources of a folder as one" OFF)
 set(TRUSSMAP_UNITY_SIZE 30 CACHE STRING "How many sources are compiled as one at most")
 
@@ -29,6 +29,9 @@ function(trussmap_unity target)
     list(LENGTH sources_${id} count)
     math(EXPR parts "(${count} + ${TRUSSMAP_UNITY_SIZE} - 1) / ${TRUSSMAP_UNITY_SIZE}")
     get_filename_component(name "${name_${id}}" NAME)
+    if(NOT name)  # the target's own folder
+      get_filename_component(name ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+    endif()
     set(place 0)
     foreach(source IN LISTS sources_${id})
       math(EXPR part "${place} * ${parts} / ${count}")
@@ -36,9 +39,4 @@ function(trussmap_unity target)
       set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name}_${part})
     endforeach()
   endforeach()
-endfunction()
-
-function(trussmap_alone target)
-  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
