@@ -3,6 +3,7 @@
 #include "check/misfit.hpp"
 
 #include "check/findings.hpp"
+#include "check/still_limits.hpp"
 #include "geometry/units.hpp"
 
 #include <algorithm>
@@ -18,7 +19,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kSampleTurn = 0.5;         // rad, of a sample
-constexpr double kWholeTurns = 2.5;         // rad between two readings: whole turns are not told
 constexpr double kWay = 0.5;                // m, of a sample
 constexpr double kLongestSample = 10.0;     // s
 constexpr std::size_t kFewestSamples = 10;  // samples
@@ -44,7 +44,7 @@ class MeanMisfit {
 class TurnMisfit {
  public:
   void add(double by_columns, double by_other) {
-    told_ = told_ && std::abs(by_columns) < kWholeTurns;
+    told_ = told_ && std::abs(by_columns) < kUntold;
     columns_ += by_columns;
     other_ += by_other;
     const double size = std::max(std::abs(columns_), std::abs(other_));

@@ -5,6 +5,7 @@
 // the motion that is left. A wheel may well stand still: of three, the rear one on the way ahead.
 #include "check/findings.hpp"
 #include "check/misfit.hpp"
+#include "check/still_limits.hpp"
 #include "text/number_text.hpp"
 
 #include <algorithm>
@@ -17,11 +18,9 @@
 namespace trussmap {
 namespace {
 
-constexpr double kStillTurns = 30.0;   // wheelbases that the fastest other wheel has gone
-constexpr double kStillTravel = 10.0;  // m
-constexpr double kStillTime = 20.0;    // s, of the one wheel of a drive that is steered
-constexpr double kWhole = 1.0;         // m, where the column never moves
-constexpr double kContradicts = 0.2;   // misfit
+constexpr double kStillTime = 20.0;   // s, of the one wheel of a drive that is steered
+constexpr double kWhole = 1.0;        // m, where the column never moves
+constexpr double kContradicts = 0.2;  // misfit
 constexpr double kHardly = 4.0 * std::numbers::pi;  // rad turned about a place on the wheel's axle
 
 struct Stretch {

@@ -4,6 +4,7 @@
 // A wheel that stands still while the other one drives: an encoder that has lost its counts, or a
 // robot that turns about it, which compass, gyro, truth or bearings show.
 #include "check/findings.hpp"
+#include "check/still_limits.hpp"
 #include "recording/legs.hpp"
 #include "text/number_text.hpp"
 
@@ -17,11 +18,8 @@
 namespace trussmap {
 namespace {
 
-constexpr double kTurnsAbout = 30.0;      // wheelbases: five turns about the wheel
-constexpr double kOtherTravel = 10.0;     // m that the other wheel has gone
 constexpr double kStillShare = 1e-6;      // of the other wheel's way
 constexpr double kStep = 0.5;             // rad by the wheels, to be compared
-constexpr double kUntoldTurn = 2.5;       // rad between two readings: whole turns are not told
 constexpr int kFewestSteps = 6;           // steps
 constexpr double kClearSteps = 0.8;       // correlation
 constexpr double kWheelbaseFactor = 2.5;  // factor
@@ -30,7 +28,7 @@ constexpr double kWheelbaseFactor = 2.5;  // factor
 class Turned {
  public:
   void add(double by_wheels, double by_other) {
-    if (std::abs(by_wheels) > kUntoldTurn) return;
+    if (std::abs(by_wheels) > kUntold) return;
     wheels_ += by_wheels;
     other_ += by_other;
     if (std::abs(wheels_) < kStep) return;
@@ -183,7 +181,7 @@ void ask(Checked& checked, const std::vector<double>& wheels, const char* name,
         "look at the encoder's cable and at the column's source");
     return;
   }
-  const double least = std::max(kOtherTravel, kTurnsAbout * checked.wheelbase);
+  const double least = std::max(kStillTravel, kStillTurns * checked.wheelbase);
   std::vector<StillStretch> stretches = still_stretches(wheel, other, least);
   std::erase_if(stretches,
                 [&](const StillStretch& one) { return turns_about_it(checked, one, wheels); });

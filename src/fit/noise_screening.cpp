@@ -17,7 +17,6 @@ namespace {
 
 constexpr Eigen::Index kDraws = 96;
 constexpr std::size_t kFewestStates = 6;
-constexpr double kLeastLength = 1e-3;  // s or m
 
 class Screening {
  public:
@@ -38,7 +37,7 @@ class Screening {
     Eigen::VectorXd q;
     if (one.lasts()) {
       const LaidProcess laid = reml_.layer().lay(one.process.channel, one.process.process,
-                                                 std::max(one.process.length, kLeastLength));
+                                                 std::max(one.process.length, kLeastProcessLength));
       if (laid.states.size() < kFewestStates) return std::nullopt;
       q = quadratic(laid, draws_);
     } else {

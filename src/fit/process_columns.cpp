@@ -10,8 +10,6 @@
 namespace trussmap {
 namespace {
 
-constexpr double kLeastMemory = 1e-3;  // s or m
-
 /// W A, but for what was left out of the fit.
 Eigen::MatrixXd by_states(const FitState& fit, const LaidProcess& laid, Eigen::Index rows) {
   const RecordingProblem& problem = fit.problem;
@@ -66,7 +64,7 @@ std::optional<Eigen::MatrixXd> process_columns(const FitState& fit, const NoiseP
                                                Eigen::Index rows, Eigen::Index most) {
   const ProcessLayer layer(fit.problem, fit.recordings, fit.model.robot);
   const LaidProcess laid =
-      layer.lay(process.channel, process.process, std::max(process.length, kLeastMemory));
+      layer.lay(process.channel, process.process, std::max(process.length, kLeastProcessLength));
   const auto states = static_cast<Eigen::Index>(laid.states.size());
   if (states == 0 || (states > most && !is_walk(process.process))) return std::nullopt;
   Eigen::MatrixXd columns = by_states(fit, laid, rows);

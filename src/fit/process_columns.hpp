@@ -19,6 +19,9 @@
 
 namespace trussmap {
 
+/// Of a process: s or m. A shorter one is laid as one of this length.
+inline constexpr double kLeastProcessLength = 1e-3;
+
 /// What one unit of a view's pattern changes of a measurement, where the fit stands.
 [[nodiscard]] ByView by_view_of(const FitState& fit, const RecordingProblem& problem,
                                 std::size_t measurement);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/nominal_wheelbase.hpp"
 #include "io/number_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
@@ -13,8 +14,6 @@ namespace trussmap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kNominalWheelbase = 1.0;  // m: the data state none
 
 // As the authors give them beside the columns.
 constexpr double kPost = 4.42848;              // m, where it stands

@@ -20,13 +20,11 @@ constexpr double kCreateWheelbase = 0.258;  // m, iRobot Create, the maker's fig
 constexpr double kFrame = 0.005;            // s
 constexpr int kLastRobot = 5;               // subjects up to here are robots
 
-using MrclamRow = std::vector<double>;
-
-std::vector<MrclamRow> read_rows(const fs::path& file, std::size_t columns) {
+std::vector<NumberRow> read_rows(const fs::path& file, std::size_t columns) {
   return read_number_rows(file, columns, kWhiteSpace);
 }
 
-std::vector<MrclamRow> require_rows(const fs::path& path, std::size_t columns) {
+std::vector<NumberRow> require_rows(const fs::path& path, std::size_t columns) {
   return read_rows(require_plain_or_xz(path), columns);
 }
 
@@ -37,7 +35,7 @@ int number_of(double value) {
 }
 
 void read_drive(const fs::path& prefix, MrclamRecording& result) {
-  const std::vector<MrclamRow> rows = require_rows(beside(prefix, "_Odometry.dat"), 3);
+  const std::vector<NumberRow> rows = require_rows(beside(prefix, "_Odometry.dat"), 3);
   result.epoch = std::floor(rows.front()[0]);
   Drive& drive = result.recording.drive;
   double before = since(result.epoch, rows.front()[0]);
@@ -65,14 +63,14 @@ void read_drive(const fs::path& prefix, MrclamRecording& result) {
 
 void read_sightings(const fs::path& prefix, MrclamRecording& result) {
   std::map<int, int> subjects;
-  for (const MrclamRow& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
+  for (const NumberRow& row : require_rows(prefix.parent_path() / "Barcodes.dat", 2)) {
     subjects[number_of(row[1])] = number_of(row[0]);
   }
   const fs::path file = require_plain_or_xz(beside(prefix, "_Measurement.dat"));
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
   double before = -std::numeric_limits<double>::infinity();
-  for (const MrclamRow& row : read_rows(file, 4)) {
+  for (const NumberRow& row : read_rows(file, 4)) {
     if (row[2] < 0.0) {
       throw InputError(
           file.string(), 0,
@@ -109,7 +107,7 @@ void read_sightings(const fs::path& prefix, MrclamRecording& result) {
 void read_survey(const fs::path& prefix, Recording& recording) {
   const fs::path file = plain_or_xz(prefix.parent_path() / "Landmark_Groundtruth.dat");
   if (file.empty()) return;
-  for (const MrclamRow& row : read_rows(file, 5)) {
+  for (const NumberRow& row : read_rows(file, 5)) {
     const int subject = number_of(row[0]);
     if (subject < 0) continue;
     const double sd = std::sqrt(0.5 * (row[3] * row[3] + row[4] * row[4]));
@@ -124,7 +122,7 @@ void read_truth(const fs::path& prefix, MrclamRecording& result) {
   if (file.empty()) return;
   const Drive& drive = result.recording.drive;
   std::vector<TruthRow>& truth = result.recording.truth;
-  for (const MrclamRow& row : read_rows(file, 4)) {
+  for (const NumberRow& row : read_rows(file, 4)) {
     const double t = since(result.epoch, row[0]);
     if (t < drive.start() || t > drive.t.back()) continue;
     if (!truth.empty() && t <= truth.back().t) continue;

@@ -13,11 +13,13 @@ namespace trussmap {
 inline constexpr std::string_view kWhiteSpace = " \t\r";
 inline constexpr std::string_view kCommas = ", \t\r";
 
+using NumberRow = std::vector<double>;
+
 /// Rows of `columns` finite numbers between `separators`; blank lines and what begins with # are
 /// skipped. Decompresses .xz. Throws InputError with line, also where there is no row.
-[[nodiscard]] std::vector<std::vector<double>> read_number_rows(const std::filesystem::path& file,
-                                                                std::size_t columns,
-                                                                std::string_view separators);
+[[nodiscard]] std::vector<NumberRow> read_number_rows(const std::filesystem::path& file,
+                                                      std::size_t columns,
+                                                      std::string_view separators);
 
 /// The file, plain or with .xz appended; empty if there is neither.
 [[nodiscard]] std::filesystem::path plain_or_xz(const std::filesystem::path& path);

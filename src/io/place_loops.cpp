@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/nominal_wheelbase.hpp"
 #include "io/number_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
@@ -17,8 +18,6 @@ namespace trussmap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kLoopsWheelbase = 1.0;  // m: the data state none
 
 struct TaggedRow {
   std::string_view tag;
@@ -73,7 +72,7 @@ void add_velocity(const TaggedRow& row, const std::string& file, TaggedRow& befo
       throw InputError(file, row.line, "time repeats or runs backwards at " + csv_number(t));
     }
     const double path = duration * before.numbers[1];
-    const double apart = 0.5 * kLoopsWheelbase * duration * before.numbers[3];
+    const double apart = 0.5 * kNominalWheelbase * duration * before.numbers[3];
     drive.t.push_back(t);
     drive.left.push_back(path - apart);
     drive.right.push_back(path + apart);
@@ -119,7 +118,7 @@ PlaceLoopRecording read_place_loops(const fs::path& prefix) {
   if (result.recording.loops.empty()) {
     throw InputError(file.string(), 0, "no loop lies within the drive");
   }
-  result.model.robot.wheelbase = kLoopsWheelbase;
+  result.model.robot.wheelbase = kNominalWheelbase;
   result.model.noise.left = result.model.noise.right = 0.02;
   result.model.noise.heading_per_s = 0.003;
   // What looks alike lies within a metre, and is looked at from about the same side.

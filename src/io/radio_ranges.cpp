@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/csv.hpp"
+#include "io/nominal_wheelbase.hpp"
 #include "io/number_rows.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/recording_files.hpp"
@@ -15,27 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRangesWheelbase = 1.0;  // m: the data state none
-
-using RangeRow = std::vector<double>;
-
-std::vector<RangeRow> required(const fs::path& path, std::size_t columns) {
+std::vector<NumberRow> required(const fs::path& path, std::size_t columns) {
   return read_number_rows(require_plain_or_xz(path), columns, kCommas);
 }
 
 void read_drive(const fs::path& prefix, RangeRecording& result) {
-  const std::vector<RangeRow> rows = required(beside(prefix, "_DR.txt"), 3);
+  const std::vector<NumberRow> rows = required(beside(prefix, "_DR.txt"), 3);
   result.epoch = std::floor(rows.front()[0]);
   Drive& drive = result.recording.drive;
-  for (const RangeRow& row : rows) {
+  for (const NumberRow& row : rows) {
     const double t = since(result.epoch, row[0]);
     if (!drive.t.empty() && t <= drive.t.back()) {
       throw InputError(beside(prefix, "_DR.txt").string(), 0,
                        "time repeats or runs backwards at " + csv_number(row[0]));
     }
     drive.t.push_back(t);
-    drive.left.push_back(row[1] - 0.5 * kRangesWheelbase * row[2]);
-    drive.right.push_back(row[1] + 0.5 * kRangesWheelbase * row[2]);
+    drive.left.push_back(row[1] - 0.5 * kNominalWheelbase * row[2]);
+    drive.right.push_back(row[1] + 0.5 * kNominalWheelbase * row[2]);
   }
   if (drive.rows() < 2) {
     throw InputError(beside(prefix, "_DR.txt").string(), 0, "one row, expected two at least");
@@ -46,7 +43,7 @@ void read_ranges(const fs::path& prefix, RangeRecording& result) {
   const fs::path file = beside(prefix, "_TD.txt");
   const Drive& drive = result.recording.drive;
   std::vector<Sighting>& sightings = result.recording.sightings;
-  for (const RangeRow& row : required(file, 4)) {
+  for (const NumberRow& row : required(file, 4)) {
     constexpr double kLargestId = 1e6;
     if (!(row[2] >= 0.0) || row[2] > kLargestId || row[2] != std::floor(row[2])) {
       throw InputError(file.string(), 0,
@@ -72,7 +69,7 @@ void read_ranges(const fs::path& prefix, RangeRecording& result) {
 void read_truth(const fs::path& prefix, RangeRecording& result) {
   if (plain_or_xz(beside(prefix, "_GT.csv")).empty()) return;
   const Drive& drive = result.recording.drive;
-  for (const RangeRow& row : required(beside(prefix, "_GT.csv"), 4)) {
+  for (const NumberRow& row : required(beside(prefix, "_GT.csv"), 4)) {
     const double t = since(result.epoch, row[0]);
     const bool later = result.recording.truth.empty() || t > result.recording.truth.back().t;
     if (t < drive.start() || t > drive.t.back() || !later) continue;
@@ -93,7 +90,7 @@ RangeRecording read_radio_ranges(const fs::path& prefix) {
   read_drive(prefix, result);
   read_ranges(prefix, result);
   read_truth(prefix, result);
-  result.model.robot.wheelbase = kRangesWheelbase;
+  result.model.robot.wheelbase = kNominalWheelbase;
   result.model.noise.left = result.model.noise.right = 0.02;
   result.model.noise.range = 0.5;
   result.model.noise.heading_per_s = 0.002;

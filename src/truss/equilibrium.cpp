@@ -4,6 +4,7 @@
 
 #include "linalg/block_system.hpp"
 #include "linalg/dense.hpp"
+#include "truss/energy_descent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,6 @@ constexpr double kMostGrowth = 2.0;
 constexpr double kFewNonzeros = 1e4;  // a pass over so many costs little beside a new factor
 constexpr double kTurned = 1e-3;      // change of a gradient, as a share of it
 constexpr int kFewTurned = 100;       // more: a new factor is cheaper
-constexpr int kMostHalvings = 10;     // of a step until the energy has fallen
-constexpr double kRounding = 1e-14;   // of the energy: no rise
 // What elimination may leave of a diagonal entry: 4 digits of the answer are right even then.
 constexpr double kLeastShare = 1e-12;
 
@@ -97,7 +96,7 @@ void Equilibrium::relax(ElasticTruss& truss, const Enough& enough) {
       for (int joint = 1; joint < truss.joints(); ++joint) {
         truss.move(joint, before[idx(joint)] + share * u.segment<2>(unknown_[idx(joint)]));
       }
-      fallen = exact || truss.energy() <= then + kRounding * then;
+      fallen = exact || truss.energy() <= then + kNoRise * then;
     }
     if (!fallen) {
       for (int joint = 1; joint < truss.joints(); ++joint) truss.move(joint, before[idx(joint)]);

@@ -3,6 +3,7 @@
 #include "truss/relaxation.hpp"
 
 #include "linalg/dense.hpp"
+#include "truss/energy_descent.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,6 @@ namespace trussmap {
 namespace {
 
 constexpr double kUnheld = 1e-13;  // share of its stiffness that an unknown keeps when held
-constexpr int kMostRelaxationHalvings = 10;  // of a step until the energy has fallen
-constexpr double kNoRise = 1e-14;            // of the energy: no rise
 
 }  // namespace
 
@@ -212,7 +211,7 @@ bool Relaxation::step(ElasticTruss& truss, const std::vector<FreeJoint>& free, i
   for (const FreeJoint& one : free) before_.push_back(truss.position(one.joint));
   const int size = 2 * modes;
   double share = 1.0;
-  for (int halvings = 0; halvings < kMostRelaxationHalvings; ++halvings, share *= 0.5) {
+  for (int halvings = 0; halvings < kMostHalvings; ++halvings, share *= 0.5) {
     for (std::size_t n = 0; n < free.size(); ++n) {
       Vector2 u = Vector2::Zero();
       const int row = size * rank_[idx(free[n].block)];

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/bag_builder.hpp"
 
+#include "io/logs/calendar.hpp"
 #include "io/logs/mcap_write.hpp"
 #include "trussmap/error.hpp"
 
@@ -13,14 +14,13 @@
 namespace trussmap {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;  // ns
 // Seconds of a ROS time are an int32.
 constexpr std::int64_t kLastSecond = std::numeric_limits<std::int32_t>::max();
 
 /// ns, to the nearest; whole seconds apart, so that nothing of a Unix time is lost.
 std::int64_t ros_nanoseconds(double t) {
   const double whole = std::floor(t);
-  return static_cast<std::int64_t>(whole) * kSecond + std::llround((t - whole) * 1e9);
+  return static_cast<std::int64_t>(whole) * kNanosecondsPerSecond + std::llround((t - whole) * 1e9);
 }
 
 bool is_letter_or_digit(char c) {
@@ -48,7 +48,7 @@ BagBuilder::BagBuilder(const std::string& name, const BagOptions& options, doubl
   bag_.epoch = options.epoch.value_or(0);
   const bool usable = std::abs(first) < static_cast<double>(kLastSecond);
   if (!options.epoch && usable && first < 0.0) {
-    bag_.epoch = static_cast<std::int64_t>(std::ceil(-first)) * kSecond;
+    bag_.epoch = static_cast<std::int64_t>(std::ceil(-first)) * kNanosecondsPerSecond;
   }
 }
 
@@ -56,12 +56,12 @@ std::int64_t BagBuilder::stamp(double t) const {
   const auto refuse = [&] {
     throw InputError(name_, 0,
                      "the time " + std::to_string(t) + " s, with " +
-                         std::to_string(bag_.epoch / kSecond) +
+                         std::to_string(bag_.epoch / kNanosecondsPerSecond) +
                          " s as t = 0, is none of ROS, expected 1970 to 2038");
   };
   if (!(std::abs(t) <= static_cast<double>(kLastSecond) + 1.0)) refuse();
   const std::int64_t ns = ros_nanoseconds(t);
-  const std::int64_t last = (kLastSecond + 1) * kSecond - 1;
+  const std::int64_t last = (kLastSecond + 1) * kNanosecondsPerSecond - 1;
   if (ns < -bag_.epoch || ns > last - bag_.epoch) refuse();
   return ns + bag_.epoch;
 }

@@ -35,8 +35,7 @@ std::optional<std::int64_t> calendar_time(const std::string& text) {
         std::stoi(zone.substr(1, 2)) * kSixty + std::stoi(zone.substr(zone.size() - 2));
     seconds -= (zone.front() == '-' ? -1 : 1) * std::int64_t{minutes} * kSixty;
   }
-  constexpr std::int64_t kSecond = 1000000000;
-  return seconds * kSecond + std::stoll(fraction);
+  return seconds * kNanosecondsPerSecond + std::stoll(fraction);
 }
 
 }  // namespace trussmap

@@ -8,6 +8,8 @@
 
 namespace trussmap {
 
+inline constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
+
 /// ns since 1970 (UTC) of "2026-03-01T12:30:00.25", with T or a blank, with or without a fraction,
 /// Z or an offset like +01:00; none where the text is no such time.
 [[nodiscard]] std::optional<std::int64_t> calendar_time(const std::string& text);

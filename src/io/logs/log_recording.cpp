@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "io/logs/byte_reader.hpp"
+#include "io/logs/calendar.hpp"
 #include "io/logs/gathered_log.hpp"
 #include "io/logs/seen_landmarks.hpp"
 #include "io/logs/tangent_plane.hpp"
@@ -19,8 +20,6 @@ namespace trussmap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kNanosecondsPerSecond = 1000000000;  // ns
 
 /// Times of a recording: from a whole second on where they are those of a calendar.
 class Clock {

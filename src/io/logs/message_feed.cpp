@@ -14,13 +14,13 @@
 namespace trussmap {
 namespace {
 
-constexpr double kFeedSecond = 1e9;    // ns
 constexpr double kLargestTime = 4e18;  // ns
 
 }  // namespace
 
 std::int64_t nanoseconds(double seconds) {
-  return static_cast<std::int64_t>(std::llround(seconds * kFeedSecond));
+  return static_cast<std::int64_t>(
+      std::llround(seconds * static_cast<double>(kNanosecondsPerSecond)));
 }
 
 void MessageFeeds::add(const std::string& path, std::size_t line, Take take) {
@@ -59,7 +59,7 @@ std::int64_t MessageFeeds::time_of(const LogMessage& message, FieldRef timed) {
         if (!t) fail(" is no date and time, expected 2026-03-01T12:30:00.25");
         return *t;
       }
-      const double unit = map_->time.unit * kFeedSecond;
+      const double unit = map_->time.unit * static_cast<double>(kNanosecondsPerSecond);
       const double t = field->number() * unit;
       if (!(std::abs(t) < kLargestTime)) fail(" is no time, expected a number");
       const bool whole = field->kind() == FieldKind::integer && unit >= 1.0;

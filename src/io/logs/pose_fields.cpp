@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/pose_fields.hpp"
 
+#include "io/logs/calendar.hpp"
+
 #include <cmath>
 
 namespace trussmap {
@@ -109,11 +111,10 @@ std::optional<std::int64_t> stamp_of(FieldRef message) {
   const std::optional<FieldRef> sec = stamp->member("sec");
   const std::optional<FieldRef> nanosec = stamp->member("nanosec");
   if (!sec || !nanosec) return std::nullopt;
-  constexpr std::int64_t kSecond = 1000000000;
   constexpr std::int64_t kLargest = 4000000000;  // s: beyond, nanoseconds overflow
   if (std::abs(sec->field().integer) > kLargest) return std::nullopt;
   if (std::abs(nanosec->field().integer) > kLargest) return std::nullopt;
-  const std::int64_t t = sec->field().integer * kSecond + nanosec->field().integer;
+  const std::int64_t t = sec->field().integer * kNanosecondsPerSecond + nanosec->field().integer;
   if (t == 0) return std::nullopt;
   return t;
 }

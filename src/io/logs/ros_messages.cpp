@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/ros_messages.hpp"
 
+#include "io/logs/calendar.hpp"
 #include "io/logs/cdr_write.hpp"
 
 #include <algorithm>
@@ -100,9 +101,8 @@ void collect_parts(const MessageDefinition& of, std::vector<std::string_view>& f
 }
 
 void put(CdrWriter& out, const RosHeader& header) {
-  constexpr std::int64_t kSecond = 1000000000;
-  out.number(static_cast<std::int32_t>(header.stamp / kSecond));
-  out.number(static_cast<std::uint32_t>(header.stamp % kSecond));
+  out.number(static_cast<std::int32_t>(header.stamp / kNanosecondsPerSecond));
+  out.number(static_cast<std::uint32_t>(header.stamp % kNanosecondsPerSecond));
   out.text(header.frame_id);
 }
 

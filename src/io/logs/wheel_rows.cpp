@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "io/logs/wheel_rows.hpp"
 
+#include "io/logs/calendar.hpp"
 #include "io/logs/message_feed.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/planar.hpp"
@@ -13,8 +14,6 @@
 
 namespace trussmap {
 namespace {
-
-constexpr std::int64_t kWheelSecond = 1000000000;  // ns
 
 /// Named left and right, and not columns of their own.
 bool has_two_wheels(const Robot& robot) {
@@ -160,7 +159,7 @@ void warn_of_gaps(const std::vector<std::int64_t>& bounds, std::vector<std::stri
   std::size_t gaps = 0;
   double longest = 0.0;
   for (std::size_t k = 1; k < bounds.size(); ++k) {
-    const double dt = static_cast<double>(bounds[k] - bounds[k - 1]) / kWheelSecond;
+    const double dt = static_cast<double>(bounds[k] - bounds[k - 1]) / kNanosecondsPerSecond;
     if (dt <= kLong * step || dt <= 1.0) continue;
     ++gaps;
     longest = std::max(longest, dt);
@@ -234,7 +233,8 @@ WheelRows wheel_rows(const LogMap& map, GatheredLog& log) {
     travels.reserve(rows.bounds.size());
     for (std::size_t k = 1; k < rows.bounds.size(); ++k) {
       const double sum = wheels[w].signal.sum(rows.bounds[k - 1], rows.bounds[k]);
-      const double dt = static_cast<double>(rows.bounds[k] - rows.bounds[k - 1]) / kWheelSecond;
+      const double dt =
+          static_cast<double>(rows.bounds[k] - rows.bounds[k - 1]) / kNanosecondsPerSecond;
       travels.push_back(steers ? sum / dt : sum);
     }
     if (two) {
