@@ -19,9 +19,9 @@ struct WheelNoiseFit {
   Vector2 sd = Vector2::Zero();  ///< standard errors, by the curvature of the likelihood
 };
 
-/// `corrected`: recordings with the model's effects taken out. The search starts from the model's
-/// noise and reaches a factor of 12 either way in its first round. None where the likelihood has
-/// no maximum there: other noise hides that of the wheels.
+/// `corrected`: recordings with the model's effects taken out. The search (fit/noise_search.hpp)
+/// starts from the model's noise and goes no further than a factor of 150 either way. None where
+/// the likelihood has no maximum there: other noise hides that of the wheels.
 [[nodiscard]] std::optional<WheelNoiseFit> most_likely_noise(
     const std::vector<Recording>& corrected, const Model& model, const ProblemOptions& options,
     const EffectParameters& parameters, const RecordingState& start);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/wheel_calibration.hpp"
 
+#include "calibration/gross_starts.hpp"
 #include "calibration/heading_offset.hpp"
 #include "calibration/measured_distance.hpp"
 #include "calibration/most_likely_noise.hpp"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -237,11 +239,66 @@ bool led_nearby(const WheelCalibration& found, double start) {
 
 }  // namespace
 
+namespace {
+
+/// The stated constants with those of a start in their place.
+std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
+  const std::vector<SoughtConstant> constants = sought_constants(robot);
+  for (std::size_t k = 0; k < constants.size(); ++k) {
+    if (constants[k].channel == Channel::turn) g[k] = start.turn;
+    if (constants[k].channel == Channel::difference) g[k] = start.difference;
+  }
+  return g;
+}
+
+/// Of the starts the one that leads to the least chi^2 under the stated noise; the first that leads
+/// to a possible one is good enough.
+std::optional<std::vector<double>> leading_start(const std::vector<std::vector<double>>& starts,
+                                                 const std::vector<Recording>& recordings,
+                                                 const Model& model,
+                                                 WheelCalibrationOptions options) {
+  constexpr double kPossible = 10.0;  // chi^2/dof
+  options.noise = false;
+  std::optional<std::vector<double>> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& start : starts) {
+    try {
+      const WheelCalibration found = calibrated_from(start, recordings, model, options);
+      if (!found.settled || found.chi2 >= least) continue;
+      least = found.chi2;
+      best = start;
+      if (found.chi2 < kPossible * std::max(1, found.dof)) break;
+    } catch (const SolveError&) {
+      continue;
+    }
+  }
+  return best;
+}
+
+/// From the stated constants, but where they are wrong by a factor.
+WheelCalibration calibrated(const std::vector<Recording>& recordings, const Model& model,
+                            const WheelCalibrationOptions& options) {
+  const std::vector<double> stated = in_force(model);
+  std::vector<std::vector<double>> starts;
+  for (const GrossStart& one : gross_starts(recordings, model.robot)) {
+    starts.push_back(at_start(stated, one, model.robot));
+  }
+  if (!starts.empty()) {
+    starts.push_back(stated);
+    if (const auto start = leading_start(starts, recordings, model, options)) {
+      return calibrated_from(*start, recordings, model, options);
+    }
+  }
+  return calibrated_from(stated, recordings, model, options);
+}
+
+}  // namespace
+
 WheelCalibration calibrate_wheels(const std::vector<Recording>& recordings, const Model& model,
                                   const WheelCalibrationOptions& options) {
   const std::vector<double> g = in_force(model);
   const std::optional<std::size_t> gain = place_of_gain(model.robot);
-  if (!gain) return calibrated_from(g, recordings, model, options);
+  if (!gain) return calibrated(recordings, model, options);
   // A steering whose encoder is geared may turn many times as far as is believed: least squares
   // find that only from near by.
   std::optional<WheelCalibration> best;

@@ -8,12 +8,14 @@
 #include "criticism/look_alikes.hpp"
 #include "criticism/noise_beside.hpp"
 #include "criticism/place_uncertainty.hpp"
+#include "criticism/refits.hpp"
 #include "criticism/remaining_errors.hpp"
 #include "criticism/trends.hpp"
 #include "criticism/verdict.hpp"
 #include "linalg/dense.hpp"
 #include "recording/slow_covariates.hpp"
 #include "text/number_text.hpp"
+#include "trussmap/held_out.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +69,7 @@ class Diagnostician {
     }
     report_findings();
     find_verdict();
-    return {std::move(result_), std::move(candidates_)};
+    return {std::move(result_), std::move(candidates_), {}};
   }
 
  private:
@@ -300,10 +302,9 @@ void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
   }
 }
 
-}  // namespace
-
-DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
-                           const Noise& stated, const DiagnoseOptions& options) {
+/// About a fit that may be believed.
+DiagnosisRun diagnosis_about(const std::vector<Recording>& recordings, const ModelFit& fit,
+                             const Noise& stated, const DiagnoseOptions& options) {
   auto under = std::make_shared<const FitWithNoise>(
       options.estimate_noise ? with_noise_beside(recordings, fit, stated) : FitWithNoise{fit, {}});
   DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
@@ -343,6 +344,54 @@ DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const Model
   }
   if (options.estimate_noise) run.result.under = std::move(under);
   return run;
+}
+
+/// The constants come first; what else is missing, and the noise, are judged beside them.
+DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
+                              GrossConstants constants, const Noise& stated,
+                              const DiagnoseOptions& options) {
+  DiagnosisRun run = diagnosis_about(recordings, constants.fit, stated, options);
+  Diagnosis& result = run.result;
+  ModelFit given = fit;
+  if (result.under) {
+    constants.fit = result.under->fit;
+    const Noise& noise = constants.fit.model.noise;
+    if (!(noise == fit.model.noise)) given = refit_under(recordings, fit, noise);
+    result.under = std::make_shared<const FitWithNoise>(FitWithNoise{given, result.under->noise});
+  }
+  if (result.verdict != Diagnosis::Verdict::missing) result.with_missing = result.held_out;
+  result.held_out = predict_held_out(recordings, given, options.legs);
+  std::vector<Finding> first = findings_of(recordings, constants, options.legs);
+  result.verdict = Diagnosis::Verdict::missing;
+  result.objection = Objection::none;
+  result.missing = first.front().effect.name;
+  result.p_value = first.front().p_adjusted;
+  result.chi2 = given.chi2;
+  result.dof = given.dof;
+  result.coefficients = given.coefficients;
+  result.next_drive.reset();
+  if (const LookAlike* rival = closest_rival(first.front().look_alikes)) {
+    result.next_drive = {first.front().effect, rival->effect, slow_covariates(recordings)};
+  }
+  std::vector<Candidate> candidates;
+  for (const Finding& one : first) {
+    candidates.emplace_back();
+    candidates.back().effect = one.effect;
+  }
+  result.findings.insert(result.findings.begin(), first.begin(), first.end());
+  run.candidates.insert(run.candidates.begin(), candidates.begin(), candidates.end());
+  run.gross = std::move(constants);
+  return run;
+}
+
+}  // namespace
+
+DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
+                           const Noise& stated, const DiagnoseOptions& options) {
+  if (std::optional<GrossConstants> gross = gross_constants(recordings, fit)) {
+    return diagnosis_beside(recordings, fit, *std::move(gross), stated, options);
+  }
+  return diagnosis_about(recordings, fit, stated, options);
 }
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,

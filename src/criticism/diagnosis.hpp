@@ -5,8 +5,10 @@
 #pragma once
 
 #include "criticism/candidates.hpp"
+#include "criticism/gross_constants.hpp"
 #include "trussmap/diagnose.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -14,6 +16,8 @@ namespace trussmap {
 struct DiagnosisRun {
   Diagnosis result;
   std::vector<Candidate> candidates;  ///< one per finding
+  /// Constants that explain most, the first findings; all others are about the fit with them.
+  std::optional<GrossConstants> gross;
 };
 
 /// `stated`: the noise that the user's model has, which the fit's may differ from by now.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "criticism/diagnosis.hpp"
+#include "criticism/effect_strength.hpp"
 #include "criticism/place_uncertainty.hpp"
 #include "effects/catalogue_record.hpp"
 #include "fit/fit_state.hpp"
@@ -18,9 +19,7 @@ namespace trussmap {
 namespace {
 
 constexpr std::size_t kMostRivals = 4;
-constexpr double kDecisive = 6.0;  // of chi^2
-// Wald statistic per coefficient, by the scatter that there is, that keeps an effect: p = 0.0001
-constexpr double kWorthKeeping = 15.0;
+constexpr double kDecisive = 6.0;      // of chi^2
 constexpr double kNoWorse = 1.05;      // of the arrival error
 constexpr double kBeyondChance = 1.5;  // standard errors
 constexpr double kBetter = 0.98;       // of the arrival error, to be preferred
@@ -32,29 +31,6 @@ constexpr double kSame = 0.9999;  // cosine of what is the same effect
 std::optional<double> shown(const HorizonError& error) {
   if (error.windows < kFewestWindows) return std::nullopt;
   return error.rms;
-}
-
-/// What the gate left out costs what it allows, or a fit would be the better for leaving out
-/// more.
-double chi2_of_all(const ModelFit& fit) {
-  return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
-}
-
-/// a' C^-1 a of an effect's coefficients, by the scatter that there is where that is less than
-/// the model's noise allows.
-double wald(const ModelFit& of, std::size_t effect) {
-  const FitState& fit = *of.state;
-  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
-  std::vector<Eigen::Index> places;
-  for (std::size_t k = 0; k < unknown.size(); ++k) {
-    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
-    if (one.effect == effect) places.push_back(static_cast<Eigen::Index>(k));
-  }
-  if (places.empty()) return 0.0;
-  const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
-  const Eigen::VectorXd a = fit.adjustment.coefficients(places);
-  const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
-  return a.dot(DenseLdlt(C).solve(a)) / scatter;
 }
 
 /// The systematic errors that nearly every robot has.
@@ -178,6 +154,10 @@ class Discoverer {
       if (result_.steps.size() == 1) result_.first = result_.last;
       result_.steps.back().held_out = result_.last.held_out;
       result_.stopped = {};
+      if (diagnosis.gross) {
+        take_constants(*diagnosis.gross);
+        continue;
+      }
       if (found_.size() < given_ + options_.most_effects && add_for_reckoning()) continue;
       if (result_.last.verdict != Diagnosis::Verdict::missing) break;
       if (found_.size() >= given_ + options_.most_effects) {
@@ -231,6 +211,27 @@ class Discoverer {
     step.dof = result_.found.dof;
     result_.steps.push_back(std::move(step));
     return result_.steps.back();
+  }
+
+  /// Those that explain most, one step each; their sizes are fitted already.
+  void take_constants(const GrossConstants& gross) {
+    const std::vector<Effect>& all = gross.fit.model.effects;
+    for (std::size_t count = gross.first + 1; count <= all.size(); ++count) {
+      const std::size_t place = count - 1 - gross.first;
+      found_.push_back(candidates_[place]);
+      const double before = result_.found.chi2;
+      Model model = gross.fit.model;
+      model.effects.resize(count);
+      result_.found = count == all.size() ? gross.fit : refit(recordings_, model, gross.fit);
+      DiscoveryStep& step = record();
+      step.added = result_.found.model.effects.back();
+      step.predicted_decrease = before - result_.found.chi2;
+      step.held_out = predict_held_out(recordings_, result_.found, options_.diagnosis.legs);
+      step.predicted = step.held_out;
+      step.reckoned_10 = shown(present_horizons().after_10);
+      step.reckoned_30 = shown(present_horizons().after_30);
+      step.look_alikes = result_.last.findings[place].look_alikes;
+    }
   }
 
   /// The first finding and, where it cannot be had, the next that is missing.

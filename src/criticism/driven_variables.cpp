@@ -3,6 +3,7 @@
 #include "criticism/driven_variables.hpp"
 
 #include "drive/row_variables.hpp"
+#include "drive/wheel_kinematics.hpp"
 
 #include <algorithm>
 #include <set>
@@ -56,6 +57,7 @@ std::vector<std::string> covariates_of(const ShapeContext& context) {
   for (const Covariate& one : context.recordings().front().drive.covariates) {
     const auto& reserved = reserved_variables();
     if (std::find(reserved.begin(), reserved.end(), one.name) != reserved.end()) continue;
+    if (is_own_column(context.robot(), one.name)) continue;
     if (in_all_sessions(one.name, context)) names.push_back(one.name);
   }
   return names;

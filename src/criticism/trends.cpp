@@ -5,6 +5,7 @@
 #include "criticism/tested_candidate.hpp"
 #include "drive/body_motion.hpp"
 #include "drive/row_variables.hpp"
+#include "drive/wheel_kinematics.hpp"
 #include "effects/place_patterns.hpp"
 #include "estimation/kinds/kinds.hpp"
 #include "odometry/wheels_and_gyro.hpp"
@@ -115,6 +116,7 @@ std::vector<Variable> variables_of(const FitState& fit) {
   if (!place.shapes.empty()) variables.push_back(std::move(place));
   if (fit.recordings.size() > 1) variables.push_back({"session", {"session"}});
   for (const Covariate& covariate : fit.recordings.front().drive.covariates) {
+    if (is_own_column(fit.model.robot, covariate.name)) continue;
     if (varies(fit, covariate.name)) variables.push_back({covariate.name, {covariate.name}});
   }
   return variables;

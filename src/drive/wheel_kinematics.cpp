@@ -215,6 +215,10 @@ Recording with_wheels(Recording recording, const Robot& robot) {
   return recording;
 }
 
+bool is_own_column(const Robot& robot, const std::string& name) {
+  return std::find(robot.columns.begin(), robot.columns.end(), name) != robot.columns.end();
+}
+
 bool is_possible_reading(double reading) {
   constexpr double kLargest = 1e6;  // m, rad: beyond all that a row may hold
   return std::abs(reading) <= kLargest;

@@ -9,6 +9,7 @@
 #include "trussmap/robot.hpp"
 
 #include <cstddef>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -33,6 +34,9 @@ class WheelKinematics {
   bool steers_;
   Eigen::MatrixXd matrix_;  ///< 3 x columns, where none steers
 };
+
+/// Whether the column is a wheel's or the steering's, and no covariate.
+[[nodiscard]] bool is_own_column(const Robot& robot, const std::string& name);
 
 /// Whether a reading is one that a row may hold, m or rad: finite, and not beyond all measure.
 [[nodiscard]] bool is_possible_reading(double reading);

@@ -207,6 +207,7 @@ class EffectReader {
     made.code += ",\n .known_as = " + in_cpp(known_as.empty() ? name_ : known_as);
     made.code += ",\n .well_known = " + flag_in_cpp(top_.flag("well_known"));
     made.code += ",\n .common_motion = " + flag_in_cpp(top_.flag("common_motion"));
+    made.code += ",\n .robot_constant = " + flag_in_cpp(top_.flag("robot_constant"));
     made.code += ",\n .former_names = " + former_names();
     made.code += ",\n .explanation = " + explanation();
     made.code += ",\n .drawing = " + drawing();

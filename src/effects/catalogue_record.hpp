@@ -49,6 +49,8 @@ struct CatalogueRecord {
   std::string_view known_as;   ///< in sentences
   bool well_known = false;     ///< an owner asks for it, whether or not it is there
   bool common_motion = false;  ///< systematic, and of nearly every robot's drive
+  /// A number that every robot with such a drive or sensor has: it is sought before noise is.
+  bool robot_constant = false;
   std::vector<FormerName> former_names = {};
   ExplanationText explanation;
   DrawingChoice drawing;

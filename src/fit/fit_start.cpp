@@ -49,13 +49,23 @@ StartOptions start_options(const FitterOptions& options, StartKind kind) {
   return how;
 }
 
-/// Along unbroken drives and, for a map, freed from the model's own effects: the common errors are
-/// what is left.
+/// Whether the model's own effects are of some size already.
+bool own_are_known(const FitState& fit) {
+  const auto own = static_cast<std::ptrdiff_t>(fit.model.effects.size() - fit.common_errors);
+  return std::any_of(fit.model.effects.begin(), fit.model.effects.begin() + own,
+                     [](const Effect& effect) {
+                       return std::any_of(effect.coefficients.begin(), effect.coefficients.end(),
+                                          [](double one) { return one != 0.0; });
+                     });
+}
+
+/// Along unbroken drives, freed from the model's own effects as far as they are known: the common
+/// errors are what is left.
 void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
   FitState& fit = now.fit;
   const Robot& robot = fit.model.robot;
   static_cast<void>(choose_gauge(fit.problem));  // refuses what has no start
-  const bool freed = fit.common_errors > 0 && !now.only_common();
+  const bool freed = own_are_known(fit) || (fit.common_errors > 0 && !now.only_common());
   const bool as_fitted = task.options.problem.left_out.empty() && !freed;
   const std::vector<Recording> without =
       freed ? without_own_effects(task, fit) : std::vector<Recording>();

@@ -1,0 +1,470 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/gross_starts.hpp"
+
+#include "drive/body_motion.hpp"
+#include "odometry/merge.hpp"
+#include "statistics/median.hpp"
+#include "trussmap/dead_reckoning.hpp"
+#include "trussmap/planar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <Eigen/QR>
+
+namespace trussmap {
+namespace {
+
+constexpr std::size_t kMostStarts = 4;
+
+// ----------------------------------------
+// Turns, beside what something else says of them.
+
+/// What one stretch turns: by the wheels, by their ratio, by a gyro's bias; and by the other
+/// sensor.
+struct Turned {
+  Eigen::Vector3d by = Eigen::Vector3d::Zero();  ///< rad, m ahead, s
+  double measured = 0.0;                         ///< rad
+};
+
+/// One that tells its stretches apart by all of a few hundred rows or readings.
+std::size_t rows_of_stretch(std::size_t rows) {
+  constexpr std::size_t kStretches = 300;
+  return std::max<std::size_t>(1, rows / kStretches);
+}
+
+Turned turned_by_wheels(const Drive& drive, double from, double to, const Robot& robot) {
+  Turned result;
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    const BodyMotion body = row.part * body_motion(drive, row.row, robot);
+    result.by += Eigen::Vector3d(body.turn, body.forward, 0.0);
+  }
+  return result;
+}
+
+void add_turns_of_gyro(const Drive& drive, const Robot& robot, std::vector<Turned>& turns) {
+  const std::size_t stretch = rows_of_stretch(drive.rows());
+  Turned sum;
+  for (std::size_t row = 0, taken = 0; row < drive.yaw_rate.size(); ++row) {
+    if (std::isnan(drive.yaw_rate[row])) continue;
+    const BodyMotion body = body_motion(drive, row, robot);
+    sum.by += Eigen::Vector3d(body.turn, body.forward, drive.duration(row));
+    sum.measured += drive.yaw_rate[row] * drive.duration(row);
+    if (++taken % stretch == 0) turns.push_back(std::exchange(sum, {}));
+  }
+}
+
+/// Headings that are so close to each other that less than half a turn lies between.
+void add_turns_of_headings(const Drive& drive, const Robot& robot,
+                           const std::vector<std::pair<double, double>>& headings,
+                           std::vector<Turned>& turns) {
+  const std::size_t stretch = rows_of_stretch(headings.size());
+  double from = 0.0;
+  double measured = 0.0;
+  for (std::size_t k = 0; k < headings.size(); ++k) {
+    if (k > 0) measured += wrap_angle(headings[k].second - headings[k - 1].second);
+    if (k % stretch != 0) continue;
+    if (k > 0) {
+      turns.push_back(turned_by_wheels(drive, from, headings[k].first, robot));
+      turns.back().measured = measured;
+    }
+    from = headings[k].first;
+    measured = 0.0;
+  }
+}
+
+std::vector<Turned> turns_of(const std::vector<Recording>& recordings, const Robot& robot) {
+  std::vector<Turned> turns;
+  for (const Recording& one : recordings) {
+    const Drive& drive = one.drive;
+    if (drive.has_gyro()) add_turns_of_gyro(drive, robot, turns);
+    std::vector<std::pair<double, double>> headings;
+    for (std::size_t row = 0; row < drive.heading.size(); ++row) {
+      if (std::isfinite(drive.heading[row]))
+        headings.emplace_back(drive.t[row], drive.heading[row]);
+    }
+    add_turns_of_headings(drive, robot, std::exchange(headings, {}), turns);
+    for (const TruthRow& row : one.truth) {
+      if (row.t >= drive.start() && row.t <= drive.t.back())
+        headings.emplace_back(row.t, row.heading);
+    }
+    add_turns_of_headings(drive, robot, headings, turns);
+  }
+  return turns;
+}
+
+/// Least absolute residuals, by least squares weighted anew.
+Eigen::VectorXd fitted_line(const std::vector<Turned>& turns, const std::vector<int>& columns) {
+  constexpr int kRounds = 20;
+  constexpr double kLeast = 1e-3;  // rad: nearer ones count alike
+  const auto rows = static_cast<Eigen::Index>(turns.size());
+  Eigen::MatrixXd X(rows, static_cast<Eigen::Index>(columns.size()));
+  Eigen::VectorXd y(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Turned& one = turns[static_cast<std::size_t>(row)];
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      X(row, static_cast<Eigen::Index>(c)) = one.by[columns[c]];
+    }
+    y[row] = one.measured;
+  }
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(rows);
+  Eigen::VectorXd found;
+  for (int round = 0; round < kRounds; ++round) {
+    found = (weights.asDiagonal() * X).colPivHouseholderQr().solve(weights.cwiseProduct(y));
+    weights = (y - X * found).cwiseAbs().cwiseMax(kLeast).cwiseSqrt().cwiseInverse();
+  }
+  return found;
+}
+
+/// Where other constants are as near as that to the stated ones, those are a start themselves.
+constexpr double kNearTurn = 0.1;
+constexpr double kNearRatio = 0.05;
+
+std::optional<GrossStart> start_by_turns(const std::vector<Recording>& recordings,
+                                         const Robot& robot) {
+  constexpr std::size_t kFewest = 10;
+  constexpr double kTurning = 1.0;  // rad, in all
+  const std::vector<Turned> turns = turns_of(recordings, robot);
+  double most = 0.0;
+  for (const Turned& one : turns) most += std::abs(one.by[0]);
+  if (turns.size() < kFewest || most < kTurning) return std::nullopt;
+  const bool two = recordings.front().drive.wheels.empty();
+  std::vector<int> columns{0};
+  if (two) columns.push_back(1);
+  const bool gyro =
+      std::any_of(turns.begin(), turns.end(), [](const Turned& one) { return one.by[2] > 0.0; });
+  if (gyro) columns.push_back(2);
+  const Eigen::VectorXd line = fitted_line(turns, columns);
+  if (!(line[0] > 0.0)) return std::nullopt;
+  GrossStart start{line[0] - 1.0};
+  if (two) start.difference = line[1] / line[0] * robot.wheelbase;
+  if (!(std::abs(start.difference) < 2.0)) return std::nullopt;  // a wheel would run backwards
+  if (std::abs(line[0] - 1.0) < kNearTurn && std::abs(start.difference) < kNearRatio) return {};
+  return start;
+}
+
+// ----------------------------------------
+// Chords and returns.
+
+/// Where something tells of the robot's place.
+struct Mark {
+  std::size_t step = 0;  ///< so many steps have been driven
+  Vector2 offset = Vector2::Zero();
+  std::string landmark = {};
+  std::optional<Vector2> known = {};
+};
+
+struct Chord {
+  std::size_t from = 0, to = 0;  ///< marks
+  double length = 0.0;           ///< m, as known; of a return the path as driven
+};
+
+/// A session's rows, merged from mark to mark into what hardly turns.
+struct Course {
+  std::vector<BodyMotion> steps;
+  std::vector<Mark> marks;
+  std::vector<Chord> chords;
+  std::vector<Chord> returns;
+};
+
+struct TimedMark {
+  double t = 0.0;
+  Mark mark;
+};
+
+std::vector<TimedMark> marks_of(const Recording& recording, const Noise& noise) {
+  std::map<std::string, Vector2> survey;
+  for (const SurveyPoint& one : recording.survey) survey[one.landmark] = {one.x, one.y};
+  std::vector<TimedMark> marks;
+  for (const Sighting& one : recording.sightings) {
+    if (!one.locates()) continue;
+    Mark mark;
+    mark.offset = landmark_offset(one, noise).offset_robot;
+    mark.landmark = one.landmark;
+    if (const auto known = survey.find(one.landmark); known != survey.end()) {
+      mark.known = known->second;
+    }
+    marks.push_back({one.t, mark});
+  }
+  for (const Fix& one : recording.fixes) marks.push_back({one.t, {.known = Vector2(one.x, one.y)}});
+  for (const TruthRow& one : recording.truth) {
+    marks.push_back({one.t, {.known = Vector2(one.x, one.y)}});
+  }
+  std::stable_sort(marks.begin(), marks.end(),
+                   [](const TimedMark& a, const TimedMark& b) { return a.t < b.t; });
+  return marks;
+}
+
+/// A few hundred stops at most, evenly in time, each with a few of its marks.
+std::vector<TimedMark> thinned(const std::vector<TimedMark>& marks) {
+  constexpr double kStops = 200.0;
+  constexpr std::size_t kOfAStop = 3;
+  if (marks.empty()) return marks;
+  const double apart = (marks.back().t - marks.front().t) / kStops;
+  std::vector<TimedMark> kept;
+  std::size_t at_stop = 0;
+  for (const TimedMark& one : marks) {
+    const bool same = !kept.empty() && one.t == kept.back().t;
+    if (!kept.empty() && !same && one.t - kept.back().t < apart) continue;
+    at_stop = same ? at_stop + 1 : 1;
+    if (at_stop <= kOfAStop) kept.push_back(one);
+  }
+  return kept;
+}
+
+void add_steps(const Drive& drive, double from, double to, const Robot& robot,
+               std::vector<BodyMotion>& steps) {
+  constexpr double kStraight = 0.05;  // rad
+  BodyMotion sum;
+  bool any = false;
+  for (const DriveRow& row : rows_between(drive, from, to)) {
+    const BodyMotion body = row.part * body_motion(drive, row.row, robot);
+    sum = {sum.forward + body.forward, sum.sideways + body.sideways, sum.turn + body.turn};
+    any = true;
+    if (std::abs(sum.turn) < kStraight) continue;
+    steps.push_back(std::exchange(sum, {}));
+    any = false;
+  }
+  if (any) steps.push_back(sum);
+}
+
+void find_chords(Course& course) {
+  constexpr std::size_t kFurthest = 4;  // of the places known, one after the other
+  std::vector<std::size_t> known;
+  for (std::size_t k = 0; k < course.marks.size(); ++k) {
+    if (course.marks[k].known) known.push_back(k);
+  }
+  for (std::size_t a = 0; a < known.size(); ++a) {
+    for (std::size_t b = a + 1; b < known.size() && b <= a + kFurthest; ++b) {
+      const double length = (*course.marks[known[a]].known - *course.marks[known[b]].known).norm();
+      if (length > kDefaultMinDrive) course.chords.push_back({known[a], known[b], length});
+    }
+  }
+}
+
+void find_returns(Course& course) {
+  constexpr std::size_t kMost = 60;
+  std::vector<double> path{0.0};
+  for (const BodyMotion& one : course.steps) {
+    path.push_back(path.back() + std::hypot(one.forward, one.sideways));
+  }
+  std::map<std::string, std::size_t> last;
+  for (std::size_t k = 0; k < course.marks.size(); ++k) {
+    const Mark& mark = course.marks[k];
+    if (mark.landmark.empty()) continue;
+    if (const auto before = last.find(mark.landmark); before != last.end()) {
+      const double driven = path[mark.step] - path[course.marks[before->second].step];
+      if (driven > kDefaultMinDrive) course.returns.push_back({before->second, k, driven});
+    }
+    last[mark.landmark] = k;
+  }
+  std::stable_sort(course.returns.begin(), course.returns.end(),
+                   [](const Chord& a, const Chord& b) { return a.length < b.length; });
+  if (course.returns.size() > kMost) course.returns.resize(kMost);
+}
+
+Course course_of(const Recording& recording, const Robot& robot) {
+  constexpr std::size_t kMostSteps = 1500;
+  Course course;
+  const Drive& drive = recording.drive;
+  double from = drive.start();
+  for (TimedMark& one : thinned(marks_of(recording, {}))) {
+    if (one.t < drive.start() || one.t > drive.t.back()) continue;
+    add_steps(drive, from, one.t, robot, course.steps);
+    if (course.steps.size() > kMostSteps) break;
+    from = one.t;
+    one.mark.step = course.steps.size();
+    course.marks.push_back(std::move(one.mark));
+  }
+  find_chords(course);
+  find_returns(course);
+  return course;
+}
+
+/// The robot's poses after each step with these constants.
+std::vector<Pose> poses_with(const GrossStart& tried, const std::vector<BodyMotion>& steps,
+                             double wheelbase) {
+  std::vector<Pose> poses(1);
+  poses.reserve(steps.size() + 1);
+  for (const BodyMotion& one : steps) {
+    const double d = tried.difference;
+    const BodyMotion body{one.forward + 0.25 * d * wheelbase * one.turn, one.sideways,
+                          (1.0 + tried.turn) * (one.turn + d * one.forward / wheelbase)};
+    const Pose& at = poses.back();
+    const Vector2 way =
+        rotation(at.heading + 0.5 * body.turn) * Vector2(body.forward, body.sideways);
+    poses.push_back({at.x + way.x(), at.y + way.y(), at.heading + body.turn});
+  }
+  return poses;
+}
+
+Vector2 seen_from(const Pose& pose, const Mark& mark) {
+  return pose.position() + rotation(pose.heading) * mark.offset;
+}
+
+class Disagreement {
+ public:
+  Disagreement(const std::vector<Recording>& recordings, const Robot& robot)
+      : wheelbase_(robot.wheelbase) {
+    constexpr std::size_t kFewestChords = 6;
+    constexpr std::size_t kFewestReturns = 3;
+    std::size_t chords = 0;
+    std::size_t returns = 0;
+    for (const Recording& one : recordings) {
+      courses_.push_back(course_of(one, robot));
+      chords += courses_.back().chords.size();
+      returns += courses_.back().returns.size();
+    }
+    by_chords_ = chords >= kFewestChords;
+    tells_ = by_chords_ || returns >= kFewestReturns;
+  }
+
+  /// Whether there is anything to disagree with.
+  [[nodiscard]] bool tells() const { return tells_; }
+
+  /// From 0 to about 1.
+  [[nodiscard]] double of(const GrossStart& tried) const {
+    return by_chords_ ? of_chords(tried) : of_returns(tried);
+  }
+
+ private:
+  [[nodiscard]] double of_chords(const GrossStart& tried) const {
+    std::vector<double> ratios;
+    for (const Course& course : courses_) {
+      const std::vector<Pose> poses = poses_with(tried, course.steps, wheelbase_);
+      for (const Chord& one : course.chords) {
+        const Mark& from = course.marks[one.from];
+        const Mark& to = course.marks[one.to];
+        const Vector2 a = seen_from(poses[from.step], from);
+        ratios.push_back((seen_from(poses[to.step], to) - a).norm() / one.length);
+      }
+    }
+    const double usual = median(ratios);
+    if (!(usual > 0.0)) return 1.0;
+    double sum = 0.0;
+    for (const double one : ratios) sum += std::min(1.0, std::abs(one / usual - 1.0));
+    return sum / static_cast<double>(ratios.size());
+  }
+
+  [[nodiscard]] double of_returns(const GrossStart& tried) const {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const Course& course : courses_) {
+      const std::vector<Pose> poses = poses_with(tried, course.steps, wheelbase_);
+      for (const Chord& one : course.returns) {
+        const Mark& from = course.marks[one.from];
+        const Mark& to = course.marks[one.to];
+        double away = 0.0;
+        for (std::size_t k = from.step; k <= to.step; ++k) {
+          away = std::max(away, (poses[k].position() - poses[from.step].position()).norm());
+        }
+        const double missed =
+            (seen_from(poses[to.step], to) - seen_from(poses[from.step], from)).norm();
+        sum += away > 0.0 ? std::min(1.0, missed / away) : 1.0;
+        ++count;
+      }
+    }
+    return sum / static_cast<double>(count);
+  }
+
+  double wheelbase_ = 0.0;
+  std::vector<Course> courses_;
+  bool by_chords_ = false;
+  bool tells_ = false;
+};
+
+struct Rated {
+  double log_turn = 0.0;   ///< of turning over what is stated
+  double log_ratio = 0.0;  ///< of right wheel over left
+  double disagreement = 0.0;
+
+  [[nodiscard]] GrossStart start() const {
+    return {std::expm1(log_turn), 2.0 * std::tanh(0.5 * log_ratio)};
+  }
+};
+
+constexpr double kTurnStep = 0.04;  // of the grid, in log_turn
+constexpr double kRatioStep = 0.03;
+
+/// The grid, best first.
+std::vector<Rated> rated_grid(const Disagreement& disagreement, bool two_wheels) {
+  constexpr int kTurns = 42;  // either way: a factor of 5.4
+  constexpr int kRatios = 54;
+  std::vector<Rated> grid;
+  for (int a = -kTurns; a <= kTurns; ++a) {
+    for (int b = two_wheels ? -kRatios : 0; b <= (two_wheels ? kRatios : 0); ++b) {
+      Rated one{kTurnStep * a, kRatioStep * b};
+      one.disagreement = disagreement.of(one.start());
+      grid.push_back(one);
+    }
+  }
+  std::stable_sort(grid.begin(), grid.end(),
+                   [](const Rated& a, const Rated& b) { return a.disagreement < b.disagreement; });
+  return grid;
+}
+
+/// Downhill between the points of the grid, by ever shorter steps.
+Rated descended(const Disagreement& disagreement, Rated at, bool two_wheels) {
+  constexpr int kHalvings = 5;
+  double share = 0.5;
+  for (int round = 0; round < kHalvings; ++round, share *= 0.5) {
+    const Rated before = at;
+    for (const double sign : {1.0, -1.0}) {
+      for (const bool ratio : {false, true}) {
+        if (ratio && !two_wheels) continue;
+        Rated next = before;
+        (ratio ? next.log_ratio : next.log_turn) += sign * share * (ratio ? kRatioStep : kTurnStep);
+        next.disagreement = disagreement.of(next.start());
+        if (next.disagreement < at.disagreement) at = next;
+      }
+    }
+  }
+  return at;
+}
+
+/// The best of their neighbourhoods.
+std::vector<GrossStart> starts_by_places(const std::vector<Recording>& recordings,
+                                         const Robot& robot) {
+  constexpr double kNear = 0.15;  // of a logarithm
+  constexpr double kMuchBetter = 0.6;
+  const Disagreement disagreement(recordings, robot);
+  if (!disagreement.tells()) return {};
+  std::vector<Rated> kept;
+  const bool two_wheels = recordings.front().drive.wheels.empty();
+  const double as_stated = disagreement.of({});
+  for (const Rated& one : rated_grid(disagreement, two_wheels)) {
+    const bool near = std::any_of(kept.begin(), kept.end(), [&one](const Rated& other) {
+      return std::abs(one.log_turn - other.log_turn) < kNear &&
+             std::abs(one.log_ratio - other.log_ratio) < kNear;
+    });
+    if (near) continue;
+    if (one.disagreement > kMuchBetter * as_stated) break;
+    if (std::abs(one.log_turn) < kNearTurn && std::abs(one.log_ratio) < kNearRatio) break;
+    kept.push_back(one);
+    if (kept.size() == kMostStarts) break;
+  }
+  std::vector<GrossStart> starts;
+  for (const Rated& one : kept) {
+    starts.push_back(descended(disagreement, one, two_wheels).start());
+  }
+  return starts;
+}
+
+}  // namespace
+
+std::vector<GrossStart> gross_starts(const std::vector<Recording>& recordings, const Robot& robot) {
+  if (recordings.empty()) return {};
+  std::vector<GrossStart> starts;
+  if (const std::optional<GrossStart> by_turns = start_by_turns(recordings, robot)) {
+    starts.push_back(*by_turns);
+  }
+  for (const GrossStart& one : starts_by_places(recordings, robot)) starts.push_back(one);
+  return starts;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/effect_strength.hpp"
+
+#include "fit/fit_state.hpp"
+#include "linalg/dense.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace trussmap {
+
+double wald(const ModelFit& of, std::size_t effect) {
+  const FitState& fit = *of.state;
+  const std::vector<int> unknown = unknown_coefficients(fit.columns.border);
+  std::vector<Eigen::Index> places;
+  for (std::size_t k = 0; k < unknown.size(); ++k) {
+    const Coefficient& one = fit.columns.coefficients[idx(unknown[k])];
+    if (one.effect == effect) places.push_back(static_cast<Eigen::Index>(k));
+  }
+  if (places.empty()) return 0.0;
+  const Eigen::MatrixXd C = fit.adjustment.coefficient_covariance(places, places);
+  const Eigen::VectorXd a = fit.adjustment.coefficients(places);
+  const double scatter = std::min(1.0, of.chi2 / std::max(1, of.dof));
+  return a.dot(DenseLdlt(C).solve(a)) / scatter;
+}
+
+double chi2_of_all(const ModelFit& fit) {
+  return fit.chi2 + fit.options.gate.value_or(0.0) * static_cast<double>(fit.left_out.size());
+}
+
+}  // namespace trussmap

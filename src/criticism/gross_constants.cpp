@@ -1,0 +1,337 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "criticism/gross_constants.hpp"
+
+#include "calibration/wheel_calibration.hpp"
+#include "criticism/candidates.hpp"
+#include "criticism/effect_strength.hpp"
+#include "criticism/look_alikes.hpp"
+#include "criticism/refits.hpp"
+#include "effects/catalogue_record.hpp"
+#include "effects/channel_physics.hpp"
+#include "fit/fit_state.hpp"
+#include "statistics/distributions.hpp"
+#include "statistics/median.hpp"
+#include "trussmap/error.hpp"
+#include "trussmap/held_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+constexpr double kMisfit = 1e-6;       // p of chi^2, below which they are asked for
+constexpr double kFarTooLarge = 10.0;  // chi^2/dof
+constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
+constexpr double kGross = 0.05;        // of a factor
+
+/// Whether its g is a factor less 1.
+bool is_factor(Channel channel) {
+  return channel == Channel::travel || channel == Channel::turn || channel == Channel::difference ||
+         channel == Channel::sideways || channel == Channel::wheels;
+}
+
+/// Those that the recordings can have, and the model lacks; without coefficients.
+std::vector<Effect> constants_for(const FitState& fit) {
+  std::vector<Effect> result;
+  const ScoreTest tests(fit);
+  for (const Candidate& one : candidates_for(fit, tests.context())) {
+    const CatalogueRecord* record = find_record(one.effect.name);
+    if (one.form != Form::catalogue || record == nullptr || !record->robot_constant) continue;
+    const bool there = std::any_of(
+        fit.model.effects.begin(), fit.model.effects.end(), [&one](const Effect& other) {
+          return other.channel == one.effect.channel && other.shape == one.effect.shape;
+        });
+    // A gyro's bias, where there is one, is what drifts.
+    const bool twice = one.effect.channel == Channel::drift &&
+                       std::any_of(fit.recordings.begin(), fit.recordings.end(),
+                                   [](const Recording& rec) { return rec.drive.has_gyro(); });
+    if (!there && !twice) result.push_back(one.effect);
+  }
+  return result;
+}
+
+std::optional<ModelFit> better_of(std::optional<ModelFit> one, std::optional<ModelFit> other) {
+  if (!one || (other && chi2_of_all(*other) < chi2_of_all(*one))) return other;
+  return one;
+}
+
+bool is_far_off(const std::optional<ModelFit>& fit) {
+  return !fit || fit->chi2 > kFarTooLarge * std::max(1, fit->dof);
+}
+
+/// From a start of its own.
+std::optional<ModelFit> fitted_afresh(const std::vector<Recording>& recordings,
+                                      const ModelFit& given, const std::vector<Effect>& constants) {
+  Model model = given.model;
+  model.effects.insert(model.effects.end(), constants.begin(), constants.end());
+  try {
+    return fit_model(recordings, model, given.options);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<ModelFit> fitted_near(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                    const std::vector<Effect>& constants) {
+  try {
+    return refit_with(recordings, fit, constants);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
+}
+
+/// g of travel, of turning and of the wheels' difference, as a calibration's effects have them.
+struct DriveFactors {
+  double travel = 0.0, turn = 0.0, difference = 0.0;
+};
+
+DriveFactors factors_of(const Model& calibrated) {
+  DriveFactors result;
+  double radii = 0.0;
+  int wheels = 0;
+  for (const Effect& one : calibrated.effects) {
+    const double g = one.coefficients.empty() ? 0.0 : one.coefficients.front();
+    if (one.channel == Channel::turn) result.turn += g;
+    if (one.channel == Channel::difference) result.difference += g;
+    if (one.channel == Channel::wheels) result.travel += g;
+    if (wheel_of(one.channel)) {
+      radii += g;
+      ++wheels;
+    }
+  }
+  if (wheels > 0) result.travel += radii / wheels;
+  result.turn += result.travel;
+  return result;
+}
+
+/// The constants as a calibration of the drive has them; nothing where it finds none.
+std::optional<std::vector<Effect>> calibrated(const std::vector<Recording>& recordings,
+                                              const ModelFit& given,
+                                              std::vector<Effect> constants) {
+  WheelCalibrationOptions options;
+  options.problem = fitter_options(given.options).problem;
+  options.noise = false;
+  try {
+    const WheelCalibration found = calibrate_wheels(recordings, given.model, options);
+    const DriveFactors factors = factors_of(found.model);
+    for (Effect& one : constants) {
+      one.coefficients.assign(one.shape.size(), 0.0);
+      if (one.channel == Channel::travel) one.coefficients = {factors.travel};
+      if (one.channel == Channel::turn) one.coefficients = {factors.turn};
+      if (one.channel == Channel::difference) one.coefficients = {factors.difference};
+    }
+    return constants;
+  } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {  // steered to where a wheel has no way ahead
+    return std::nullopt;
+  }
+}
+
+/// All of them at once.
+std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const ModelFit& given,
+                                 const std::vector<Effect>& constants) {
+  std::optional<ModelFit> best = fitted_near(recordings, given, constants);
+  if (!is_far_off(best)) return best;
+  if (const auto from = calibrated(recordings, given, constants)) {
+    best = better_of(best, fitted_afresh(recordings, given, *from));
+  }
+  if (is_far_off(best)) best = better_of(best, fitted_afresh(recordings, given, constants));
+  return best;
+}
+
+/// The same fit with other effects from `first` on, their coefficients as found.
+std::optional<ModelFit> with_others(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                    std::vector<Effect> effects) {
+  Model model = fit.model;
+  model.effects = std::move(effects);
+  try {
+    return refit(recordings, model, fit);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
+}
+
+bool is_fitted(const ModelFit& fit, std::size_t effect) {
+  return fit.effects[effect].not_fitted.empty();
+}
+
+double noise_of(const ModelFit& fit) {
+  return std::max(1.0, fit.chi2 / std::max(1, fit.dof));
+}
+
+std::optional<ModelFit> without(const std::vector<Recording>& recordings, const ModelFit& fit,
+                                std::size_t place) {
+  std::vector<Effect> effects = fit.model.effects;
+  effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(place));
+  return with_others(recordings, fit, std::move(effects));
+}
+
+/// How surely it is there by its standard error: 0 where it was not fitted.
+double strength_of(const ModelFit& fit, std::size_t place) {
+  return is_fitted(fit, place) ? wald(fit, place) / noise_of(fit) : 0.0;
+}
+
+/// Without those that are weak by their standard errors, the weakest first.
+std::optional<ModelFit> strong_ones(const std::vector<Recording>& recordings, ModelFit fit,
+                                    std::size_t first) {
+  while (fit.model.effects.size() > first) {
+    std::size_t weakest = first;
+    for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+      if (strength_of(fit, k) < strength_of(fit, weakest)) weakest = k;
+    }
+    if (strength_of(fit, weakest) >= kWorthKeeping) break;
+    std::optional<ModelFit> next = without(recordings, fit, weakest);
+    if (!next) return std::nullopt;
+    fit = *std::move(next);
+  }
+  return fit;
+}
+
+bool is_gross(const Effect& one) {
+  return is_factor(one.channel) && std::abs(one.coefficients.front()) >= kGross;
+}
+
+/// Without those that a fit without them does hardly worse than: a standard error is of the plane
+/// about the fit. Without what is gross a fit would be lost.
+ModelFit sure_ones(const std::vector<Recording>& recordings, ModelFit fit, std::size_t first) {
+  for (std::size_t k = fit.model.effects.size(); k-- > first;) {
+    if (is_gross(fit.model.effects[k])) continue;
+    std::optional<ModelFit> next = without(recordings, fit, k);
+    if (!next || chi2_of_all(*next) - chi2_of_all(fit) >= kWorthKeeping * noise_of(fit)) continue;
+    fit = *std::move(next);
+  }
+  return fit;
+}
+
+bool is_motion(Channel channel) {
+  return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
+}
+
+/// Larger wheels make all that is driven larger alike: one constant instead of two or three.
+ModelFit with_wheel_scale(const std::vector<Recording>& recordings, const ModelFit& fit,
+                          std::size_t first) {
+  const CatalogueRecord* scale = find_record("wheel scale");
+  std::vector<Effect> effects(fit.model.effects.begin(),
+                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
+  std::vector<double> factors;
+  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+    const Effect& one = fit.model.effects[k];
+    if (is_motion(one.channel)) {
+      factors.push_back(one.coefficients.front());
+    } else {
+      effects.push_back(one);
+    }
+  }
+  if (factors.size() < 2 || scale == nullptr) return fit;
+  effects.push_back(catalogue_effect(scale->entry));
+  effects.back().coefficients = {median(factors)};
+  const std::optional<ModelFit> one = with_others(recordings, fit, std::move(effects));
+  if (!one || chi2_of_all(*one) - chi2_of_all(fit) > kWorthKeeping * noise_of(fit)) return fit;
+  return *one;
+}
+
+ModelFit surest_first(const std::vector<Recording>& recordings, const ModelFit& fit,
+                      std::size_t first) {
+  std::vector<std::pair<double, Effect>> rated;
+  for (std::size_t k = first; k < fit.model.effects.size(); ++k) {
+    rated.emplace_back(strength_of(fit, k), fit.model.effects[k]);
+  }
+  std::stable_sort(rated.begin(), rated.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Effect> effects(fit.model.effects.begin(),
+                              fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first));
+  for (auto& [strength, effect] : rated) effects.push_back(std::move(effect));
+  return with_others(recordings, fit, std::move(effects)).value_or(fit);
+}
+
+bool has_gross(const ModelFit& fit, std::size_t first) {
+  return std::any_of(fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first),
+                     fit.model.effects.end(), [](const Effect& one) { return is_gross(one); });
+}
+
+double per_dof(const ModelFit& fit) {
+  return chi2_of_all(fit) / std::max(1, fit.dof);
+}
+
+}  // namespace
+
+std::optional<GrossConstants> gross_constants(const std::vector<Recording>& recordings,
+                                              const ModelFit& given) {
+  if (given.p_value > kMisfit) return std::nullopt;
+  const std::vector<Effect> constants = constants_for(*given.state);
+  if (constants.empty()) return std::nullopt;
+  const std::size_t first = given.model.effects.size();
+  const std::optional<ModelFit> all = with_all(recordings, given, constants);
+  if (!all || !has_gross(*all, first)) return std::nullopt;
+  const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
+  if (!strong) return std::nullopt;
+  const ModelFit sure = sure_ones(recordings, *strong, first);
+  if (!has_gross(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
+  return GrossConstants{surest_first(recordings, with_wheel_scale(recordings, sure, first), first),
+                        first};
+}
+
+namespace {
+
+/// What else could leave its trace, at a fit that has it.
+std::vector<LookAlike> look_alikes_at(const ModelFit& fit, std::size_t place) {
+  const FitState& state = *fit.state;
+  const Effect& effect = fit.model.effects[place];
+  const ScoreTest tests = ScoreTest(state).lacking(place, effect);
+  std::vector<Tested> asked(1);
+  asked.front().candidate.effect = effect;
+  for (const Candidate& one : candidates_for(state, tests.context())) {
+    const bool other = one.effect.name != effect.name && one.family.empty();
+    if (!other || tests.is_present(one.effect)) continue;
+    asked.emplace_back();
+    asked.back().candidate = one;
+  }
+  return look_alikes_of(0, asked, {}, tests, state.adjustment.dof);
+}
+
+Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit,
+                   std::size_t place) {
+  const Effect& effect = fit.model.effects[place];
+  Finding result;
+  result.effect = effect;
+  result.dof = static_cast<int>(effect.shape.size());
+  std::optional<ModelFit> lacking;
+  if (!is_gross(effect)) lacking = without(recordings, fit, place);
+  const double scatter = noise_of(fit);
+  result.score =
+      lacking ? std::max(0.0, chi2_of_all(*lacking) - chi2_of_all(fit)) : wald(fit, place);
+  result.p_value = result.p_adjusted = chi2_p_value(result.score / scatter, result.dof);
+  result.evidence = result.score / scatter;
+  result.status = Status::missing;
+  result.joint = effect.coefficients;
+  for (const double sd : fit.effects[place].sd) {
+    result.sd.push_back(sd * std::sqrt(scatter));
+    result.minimal_detectable.push_back(std::sqrt(kDetectableScore) * result.sd.back());
+  }
+  result.joint_sd = result.sd;
+  result.look_alikes = look_alikes_at(fit, place);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
+                                 const GrossConstants& constants, const LegOptions& legs) {
+  const ModelFit& fit = constants.fit;
+  HeldOutMetrics predicted;
+  try {
+    predicted = predict_held_out(recordings, fit, legs);
+  } catch (const SolveError&) {  // what is left without those legs does not tell them
+  }
+  std::vector<Finding> result;
+  for (std::size_t k = constants.first; k < fit.model.effects.size(); ++k) {
+    result.push_back(finding_at(recordings, fit, k));
+    result.back().held_out = predicted;
+  }
+  return result;
+}
+
+}  // namespace trussmap

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Constants before noise. A drive whose scale, track or ratio of wheels is wrong by much leaves
+// errors that any noise can be made large enough for, and a map so far from the right one that no
+// score test about it means anything. So the numbers that every robot has (CatalogueRecord,
+// robot_constant) are fitted first, all at once, with the noise as the model states it:
+//
+//   from the fit as given, and from a start of their own
+//   where that leaves far too much, from where a calibration finds the drive's own constants
+//
+// Those that the data do not surely show, by the scatter that is left, go again. They are kept
+// where they explain most of the misfit and one of the drive's factors is off by 5 % and more;
+// smaller ones are left to the tests of all effects.
+#pragma once
+
+#include "trussmap/diagnose.hpp"
+#include "trussmap/fit_model.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace trussmap {
+
+/// The given model with gross constants.
+struct GrossConstants {
+  ModelFit fit;           ///< they are its last effects, the surest first
+  std::size_t first = 0;  ///< the place of the first of them
+};
+
+/// Nothing where there are none. `given`: the model's fit of these recordings under stated noise.
+[[nodiscard]] std::optional<GrossConstants> gross_constants(
+    const std::vector<Recording>& recordings, const ModelFit& given);
+
+/// Each as a finding that is missing, with its fitted size and what else could leave its trace.
+[[nodiscard]] std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
+                                               const GrossConstants& constants,
+                                               const LegOptions& legs);
+
+}  // namespace trussmap
