@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The trussmap authors
 # SPDX-License-Identifier: MIT
 #
-# The reference of the commands, from their own --help.
+# The options of the commands, from their own --help.
 import re
 import subprocess
 
@@ -19,9 +19,9 @@ def names_of(text):
 
 def write(stage, command):
     overall = help_of(command)
-    text = ("# Commands\n\nWhat every command's `--help` says. Files and columns are in [formats](formats.md), what "
+    text = ("# Options\n\nWhat every command's `--help` says; [commands](commands.md) says what each is for. Files and columns are in [formats](formats.md), what "
             "`--json` writes in [JSON keys](json.md).\n\n"
             f"```text\n{overall.strip()}\n```\n")
     for name in names_of(overall):
         text += f"\n## {name}\n\n```text\n{help_of(command, name).strip()}\n```\n"
-    stage.write("commands", text)
+    stage.write("options", text)

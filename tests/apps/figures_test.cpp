@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// maps/figures: each of its commands makes the files beside it again.
+// maps/figures, and the README's pictures: commands make them again.
 #include "scratch_folder.hpp"
 
 #include <cmath>
@@ -89,6 +89,24 @@ TEST(Figures, AreWhatTheirCommandsMake) {
   }
   EXPECT_EQ(told, there);
   EXPECT_GE(told.size(), 4U);
+}
+
+/// By the commands that docs/exploration.md and docs/criticism.md show.
+TEST(Figures, OfTheReadmeAreWhatCommandsMake) {
+  const ScratchFolder scratch;
+  const fs::path top(TRUSSMAP_SOURCE_DIR);
+  const fs::path riddle = top / "maps" / "riddle";
+  const fs::path map = scratch.path() / "exploring.svg";
+  const fs::path charts = scratch.path() / "charts";
+  const Ran explored = run_trussmap(
+      "explore --mesh 4x3 --no-compass --wheels 0.01 --tours 1 --seed 4 --svg " + map.string());
+  EXPECT_EQ(explored.status, 0) << explored.output;
+  const Ran diagnosed =
+      run_trussmap("diagnose " + riddle.string() + " --model " + (riddle / "model.toml").string() +
+                   " --plots " + charts.string());
+  EXPECT_EQ(diagnosed.status, 0) << diagnosed.output;
+  expect_same(top / "docs" / "exploring.svg", map);
+  expect_same(top / "docs" / "compass-error.svg", charts / "trend-1.svg");
 }
 
 TEST(Figures, AreReadAsWordsAndNumbers) {

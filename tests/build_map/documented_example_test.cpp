@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// README's example of a map from a recording: compiled here, run, and the same to the letter.
+// The example of docs/maps.md: compiled here, run, and the same to the letter.
 #include "policy/source_files.hpp"
 #include "scratch_folder.hpp"
 #include "simulation/tours.hpp"
@@ -15,8 +15,8 @@
 
 #include <gtest/gtest.h>
 
-#define main readme_example  // NOLINT
-// README: begin
+#define main documented_example  // NOLINT
+// page: begin
 #include <trussmap/build_map.hpp>
 #include <trussmap/model_file.hpp>
 #include <trussmap/recording_files.hpp>
@@ -27,24 +27,25 @@ int main() {
                                          {.method = trussmap::Method::adjustment});
   return built.map.landmarks() > 0 ? 0 : 1;
 }
-// README: end
+// page: end
 #undef main
 
-namespace trussmap::readme_example_test {
+namespace trussmap::documented_example_test {
 namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ReadmeExample, IsInTheReadme) {
-  const std::string here = testing::text_of("tests/build_map/readme_example_test.cpp");
-  const std::string begin = "// README: begin\n";
+TEST(DocumentedExample, IsOnItsPage) {
+  const std::string here = testing::text_of("tests/build_map/documented_example_test.cpp");
+  const std::string begin = "// page: begin\n";
   const std::size_t from = here.find(begin) + begin.size();
-  const std::string example = here.substr(from, here.find("// README: end\n") - from);
-  EXPECT_NE(testing::text_of("README.md").find("```cpp\n" + example + "```\n"), std::string::npos);
+  const std::string example = here.substr(from, here.find("// page: end\n") - from);
+  EXPECT_NE(testing::text_of("docs/maps.md").find("```cpp\n" + example + "```\n"),
+            std::string::npos);
 }
 
 /// In the folder where the test stands, which is put back.
-TEST(ReadmeExample, MapsARecording) {
+TEST(DocumentedExample, MapsARecording) {
   const testing::ScratchFolder scratch;
   const Mesh mesh = even_mesh({3, 3}, 5.0);
   std::mt19937_64 random(1);
@@ -53,10 +54,10 @@ TEST(ReadmeExample, MapsARecording) {
   write_recording(scratch.path() / "rec", driven, "", {{"model.toml", format_model(Model{})}});
   const fs::path before = fs::current_path();
   fs::current_path(scratch.path());
-  const int status = readme_example();
+  const int status = documented_example();
   fs::current_path(before);
   EXPECT_EQ(status, 0);
 }
 
 }  // namespace
-}  // namespace trussmap::readme_example_test
+}  // namespace trussmap::documented_example_test
