@@ -361,7 +361,7 @@ DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const Mo
   }
   if (result.verdict != Diagnosis::Verdict::missing) result.with_missing = result.held_out;
   result.held_out = predict_held_out(recordings, given, options.legs);
-  std::vector<Finding> first = findings_of(recordings, constants, options.legs);
+  std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
   result.verdict = Diagnosis::Verdict::missing;
   result.objection = Objection::none;
   result.missing = first.front().effect.name;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "criticism/gross_constants.hpp"
 
+#include "calibration/measured_distance.hpp"
 #include "calibration/wheel_calibration.hpp"
 #include "criticism/candidates.hpp"
 #include "criticism/effect_strength.hpp"
@@ -32,8 +33,16 @@ bool is_factor(Channel channel) {
          channel == Channel::sideways || channel == Channel::wheels;
 }
 
+/// Without a measured distance a smaller map has smaller errors.
+bool is_scale(Channel channel) {
+  return channel == Channel::travel || channel == Channel::sideways;
+}
+
 /// Those that the recordings can have, and the model lacks; without coefficients.
-std::vector<Effect> constants_for(const FitState& fit) {
+std::vector<Effect> constants_for(const std::vector<Recording>& recordings, const ModelFit& given) {
+  const FitState& fit = *given.state;
+  const bool scale =
+      measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
   std::vector<Effect> result;
   const ScoreTest tests(fit);
   for (const Candidate& one : candidates_for(fit, tests.context())) {
@@ -47,6 +56,7 @@ std::vector<Effect> constants_for(const FitState& fit) {
     const bool twice = one.effect.channel == Channel::drift &&
                        std::any_of(fit.recordings.begin(), fit.recordings.end(),
                                    [](const Recording& rec) { return rec.drive.has_gyro(); });
+    if (!scale && is_scale(one.effect.channel)) continue;
     if (!there && !twice) result.push_back(one.effect);
   }
   return result;
@@ -247,7 +257,12 @@ ModelFit surest_first(const std::vector<Recording>& recordings, const ModelFit& 
   return with_others(recordings, fit, std::move(effects)).value_or(fit);
 }
 
-bool has_gross(const ModelFit& fit, std::size_t first) {
+/// Gross, or all that so few measurements can tell of.
+bool matters(const ModelFit& fit, std::size_t first) {
+  constexpr int kFew = 10;        // dof
+  constexpr double kFits = 0.05;  // p
+  if (fit.model.effects.size() == first) return false;
+  if (fit.dof < kFew && fit.p_value > kFits) return true;
   return std::any_of(fit.model.effects.begin() + static_cast<std::ptrdiff_t>(first),
                      fit.model.effects.end(), [](const Effect& one) { return is_gross(one); });
 }
@@ -261,15 +276,15 @@ double per_dof(const ModelFit& fit) {
 std::optional<GrossConstants> gross_constants(const std::vector<Recording>& recordings,
                                               const ModelFit& given) {
   if (given.p_value > kMisfit) return std::nullopt;
-  const std::vector<Effect> constants = constants_for(*given.state);
+  const std::vector<Effect> constants = constants_for(recordings, given);
   if (constants.empty()) return std::nullopt;
   const std::size_t first = given.model.effects.size();
   const std::optional<ModelFit> all = with_all(recordings, given, constants);
-  if (!all || !has_gross(*all, first)) return std::nullopt;
+  if (!all || !matters(*all, first)) return std::nullopt;
   const std::optional<ModelFit> strong = strong_ones(recordings, *all, first);
   if (!strong) return std::nullopt;
   const ModelFit sure = sure_ones(recordings, *strong, first);
-  if (!has_gross(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
+  if (!matters(sure, first) || per_dof(sure) > kMostLeft * per_dof(given)) return std::nullopt;
   return GrossConstants{surest_first(recordings, with_wheel_scale(recordings, sure, first), first),
                         first};
 }
@@ -292,8 +307,9 @@ std::vector<LookAlike> look_alikes_at(const ModelFit& fit, std::size_t place) {
   return look_alikes_of(0, asked, {}, tests, state.adjustment.dof);
 }
 
-Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit,
-                   std::size_t place) {
+/// `most`: the chi^2 that all constants together take away.
+Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit, std::size_t place,
+                   double most) {
   const Effect& effect = fit.model.effects[place];
   Finding result;
   result.effect = effect;
@@ -301,8 +317,8 @@ Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit
   std::optional<ModelFit> lacking;
   if (!is_gross(effect)) lacking = without(recordings, fit, place);
   const double scatter = noise_of(fit);
-  result.score =
-      lacking ? std::max(0.0, chi2_of_all(*lacking) - chi2_of_all(fit)) : wald(fit, place);
+  const double score = lacking ? chi2_of_all(*lacking) - chi2_of_all(fit) : wald(fit, place);
+  result.score = std::clamp(score, 0.0, most);
   result.p_value = result.p_adjusted = chi2_p_value(result.score / scatter, result.dof);
   result.evidence = result.score / scatter;
   result.status = Status::missing;
@@ -318,7 +334,7 @@ Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit
 
 }  // namespace
 
-std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
+std::vector<Finding> findings_of(const std::vector<Recording>& recordings, const ModelFit& given,
                                  const GrossConstants& constants, const LegOptions& legs) {
   const ModelFit& fit = constants.fit;
   HeldOutMetrics predicted;
@@ -326,9 +342,10 @@ std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
     predicted = predict_held_out(recordings, fit, legs);
   } catch (const SolveError&) {  // what is left without those legs does not tell them
   }
+  const double most = std::max(0.0, given.chi2 - fit.chi2);
   std::vector<Finding> result;
   for (std::size_t k = constants.first; k < fit.model.effects.size(); ++k) {
-    result.push_back(finding_at(recordings, fit, k));
+    result.push_back(finding_at(recordings, fit, k, most));
     result.back().held_out = predicted;
   }
   return result;

@@ -34,7 +34,9 @@ struct GrossConstants {
     const std::vector<Recording>& recordings, const ModelFit& given);
 
 /// Each as a finding that is missing, with its fitted size and what else could leave its trace.
+/// `given`: the fit without them, under the same noise.
 [[nodiscard]] std::vector<Finding> findings_of(const std::vector<Recording>& recordings,
+                                               const ModelFit& given,
                                                const GrossConstants& constants,
                                                const LegOptions& legs);
 

@@ -5,6 +5,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/wording.hpp"
 #include "wording/channel_words.hpp"
+#include "wording/everyday_factors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -149,6 +150,22 @@ bool is_plain_factor(const Effect& effect) {
   return effect.is_constant() && !effect.per_session;
 }
 
+/// What a constant comes to in the owner's figures, with how much a little of its coefficient adds.
+struct Share {
+  double larger = 0.0;  ///< by this share
+  double slope = 1.0;
+};
+
+Share wheelbase_share(double turn) {
+  const double ratio = 1.0 / (1.0 + turn);
+  return {ratio - 1.0, ratio * ratio};
+}
+
+Share right_wheel_share(double difference) {
+  const double left = 1.0 - 0.5 * difference;
+  return {difference / left, 1.0 / (left * left)};
+}
+
 }  // namespace
 
 std::string two_digits(double value) {
@@ -161,13 +178,18 @@ std::string size_in_words(const Effect& effect, double least, double most) {
   const double other = extreme == least ? most : least;
   const bool both = extreme * other < 0.0 && std::abs(other) > 0.3 * std::abs(extreme);
   if (is_plain_factor(effect) && channel == Channel::turn) {
-    const double larger = 1.0 / (1.0 + extreme) - 1.0;
+    const double larger = wheelbase_share(extreme).larger;
     return fmt::format("the wheelbase is {} % {} than nominal",
                        two_digits(100.0 * std::abs(larger)), larger < 0.0 ? "smaller" : "larger");
   }
   const Scale scale = scale_of(channel);
   const ChannelPhrase& phrase = record_of(channel).phrase;
   std::string subject(phrase.subject);
+  if (is_plain_factor(effect) && channel == Channel::difference) {
+    const double larger = right_wheel_share(extreme).larger;
+    return fmt::format("{} {}{} {}", subject, two_digits(scale.factor * std::abs(larger)),
+                       scale.unit, larger < 0.0 ? phrase.less : phrase.more);
+  }
   const bool event = channel == Channel::advance || channel == Channel::rotate;
   if (effect.shape.size() == 1) {
     subject = with_event_named(std::move(subject), effect.shape.front());
@@ -194,13 +216,19 @@ std::string in_words(const Effect& effect, const std::vector<double>& sd) {
   if (effect.coefficients.empty()) return effect.name + ": not fitted";
   if (is_plain_factor(effect)) {
     const double value = effect.coefficients[0];
+    const std::string hint = everyday_factor_in_words(channel, value, sd[0]);
     if (channel == Channel::turn) {
-      const double larger = 1.0 / (1.0 + value) - 1.0;
-      return fmt::format("the wheelbase is {} {} than nominal",
-                         with_error(100.0 * std::abs(larger), 100.0 * sd[0], " %"),
-                         larger < 0.0 ? "smaller" : "larger");
+      const Share share = wheelbase_share(value);
+      return fmt::format(
+          "the wheelbase is {} {} than nominal{}",
+          with_error(100.0 * std::abs(share.larger), 100.0 * share.slope * sd[0], " %"),
+          share.larger < 0.0 ? "smaller" : "larger", hint);
     }
-    return sentence(channel, value, sd[0]);
+    if (channel == Channel::difference) {
+      const Share share = right_wheel_share(value);
+      return sentence(channel, share.larger, share.slope * sd[0]);
+    }
+    return sentence(channel, value, sd[0]) + hint;
   }
   if (const auto round = round_of(effect); round && !effect.per_session) {
     const double size = std::hypot(effect.coefficients[0], effect.coefficients[1]);

@@ -75,6 +75,26 @@ TEST(EffectWords, AWaveGoesRoundWithWhatIsInIt) {
   EXPECT_EQ(in_words(iron, {0.001, 0.001}).find("goes round"), std::string::npos);
 }
 
+TEST(EffectWords, AGrossConstantIsSaidInTheOwnersFigures) {
+  // A quarter of the wheels' turns is missing: B is 4/3 of what is stated, dB = B^2 dg.
+  EXPECT_EQ(in_words(catalogue_effect("wheelbase", {-0.25}), {0.0045}),
+            "the wheelbase is 33.33 +- 0.80 % larger than nominal");
+  // Right over left is (1 + g/2)/(1 - g/2): 5/3 of g = 1/2.
+  EXPECT_EQ(in_words(catalogue_effect("wheel diameter ratio", {0.5}), {0.009}),
+            "the right wheel is 66.7 +- 1.6 % larger than the left");
+}
+
+TEST(EffectWords, AFactorOfEverydayIsSaidToBeOne) {
+  EXPECT_TRUE(in_words(catalogue_effect("travel scale", {1.004}), {0.001})
+                  .ends_with("(twice: a radius taken for a diameter, or a gear?)"));
+  EXPECT_TRUE(in_words(catalogue_effect("wheel scale", {-0.501}), {0.001})
+                  .ends_with("(half: a diameter taken for a radius, or a gear?)"));
+  EXPECT_TRUE(in_words(catalogue_effect("wheelbase", {-0.5}), {0.001})
+                  .ends_with("the distance from the middle to a wheel?)"));
+  EXPECT_TRUE(in_words(catalogue_effect("travel scale", {0.9}), {0.001}).ends_with("say"));
+  EXPECT_TRUE(in_words(catalogue_effect("travel scale", {0.95}), {0.2}).ends_with("say"));
+}
+
 TEST(EffectWords, ALoadIsInKilograms) {
   const Effect load{"load on both wheels (payload_kg)", Channel::wheels, {"payload_kg"}, {0.002}};
   EXPECT_TRUE(in_words(load, {0.0001}).ends_with(" per kg of payload")) << in_words(load, {0.0001});

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Drives whose constants are wrong by a factor: where a calibration starts from, and what it finds.
+#include "calibration/gross_starts.hpp"
+
+#include "calibration/wheel_calibration.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/simulated_recording.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap::gross_starts_test {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+struct Equipment {
+  bool compass = false;
+  bool gyro = false;
+  bool survey = true;
+};
+
+SimulatedRecording driven(const std::string& constant, double g, const Equipment& equipment) {
+  SimulationSettings settings;
+  settings.mesh = "4x4";
+  settings.tours = 2;
+  settings.seed = kSeed;
+  settings.no_compass = !equipment.compass;
+  settings.gyro = equipment.gyro;
+  settings.no_survey = !equipment.survey;
+  return simulate(settings, {catalogue_effect(constant, {g})});
+}
+
+std::vector<GrossStart> starts_of(const SimulatedRecording& simulated) {
+  return gross_starts({simulated.drive.recording}, simulated.model.robot);
+}
+
+TEST(GrossStarts, AreNoneWhereTheStatedConstantsAreAsGood) {
+  for (const Equipment& equipment :
+       {Equipment{}, Equipment{true}, Equipment{false, true}, Equipment{false, false, false}}) {
+    EXPECT_TRUE(starts_of(driven("wheelbase", 0.01, equipment)).empty())
+        << equipment.compass << equipment.gyro << equipment.survey;
+  }
+}
+
+TEST(GrossStarts, LieNearTheTruthWithAnyEquipment) {
+  for (const Equipment& equipment :
+       {Equipment{}, Equipment{true}, Equipment{false, true}, Equipment{false, false, false}}) {
+    for (const double turn : {-0.7, -0.5, 1.0}) {
+      const std::vector<GrossStart> starts = starts_of(driven("wheelbase", turn, equipment));
+      ASSERT_FALSE(starts.empty()) << turn;
+      EXPECT_NEAR((1.0 + starts.front().turn) / (1.0 + turn), 1.0, 0.03) << turn;
+      EXPECT_NEAR(starts.front().difference, 0.0, 0.02) << turn;
+    }
+  }
+}
+
+TEST(GrossStarts, TellOneWheelOfAnotherSize) {
+  for (const Equipment& equipment : {Equipment{}, Equipment{true}, Equipment{false, true}}) {
+    for (const double difference : {0.667, -0.4}) {
+      const std::vector<GrossStart> starts =
+          starts_of(driven("wheel diameter ratio", difference, equipment));
+      ASSERT_FALSE(starts.empty()) << difference;
+      EXPECT_NEAR(starts.front().turn, 0.0, 0.03) << difference;
+      EXPECT_NEAR(starts.front().difference, difference, 0.02) << difference;
+    }
+  }
+}
+
+/// Calibrated without a compass, whose readings would lead any start.
+WheelCalibration calibrated(const std::string& constant, double g) {
+  const SimulatedRecording one = driven(constant, g, {});
+  return calibrate_wheels({one.drive.recording}, one.model, CalibrationOptions());
+}
+
+TEST(GrossCalibration, FindsATrackWrongByAFactor) {
+  for (const double g : {-0.7, -0.5, -0.2, 0.25}) {
+    const WheelCalibration found = calibrated("wheelbase", g);
+    ASSERT_TRUE(found.wheelbase_ratio) << g;
+    EXPECT_NEAR(found.wheelbase_ratio->value, 1.0 / (1.0 + g), 4.0 * found.wheelbase_ratio->sd);
+    EXPECT_LT(found.wheelbase_ratio->sd, 0.004 / (1.0 + g)) << g;
+  }
+}
+
+TEST(GrossCalibration, FindsOneWheelTwiceAsLarge) {
+  const double twice = 2.0 / 3.0;
+  const WheelCalibration found = calibrated("wheel diameter ratio", twice);
+  ASSERT_TRUE(found.diameter_ratio);
+  EXPECT_NEAR(found.diameter_ratio->value, 2.0, 4.0 * found.diameter_ratio->sd);
+  EXPECT_LT(found.diameter_ratio->sd, 0.002);
+}
+
+}  // namespace
+}  // namespace trussmap::gross_starts_test

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+//
+// Constants that are wrong by much: named for what they are, sized by a fit, and no noise instead.
+#include "criticism/gross_constants.hpp"
+
+#include "shared_data.hpp"
+#include "trussmap/catalogue.hpp"
+#include "trussmap/discover.hpp"
+#include "trussmap/model_file.hpp"
+#include "trussmap/prepared_recordings.hpp"
+#include "trussmap/recording_files.hpp"
+#include "trussmap/simulated_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace trussmap::gross_constants_test {
+namespace {
+
+SimulationSettings small_world(std::uint64_t seed) {
+  SimulationSettings settings;
+  settings.mesh = "4x4";
+  settings.tours = 2;
+  settings.seed = seed;
+  settings.no_compass = true;
+  return settings;
+}
+
+ModelFit given(const SimulatedRecording& one) {
+  return fit_model({one.drive.recording}, one.model);
+}
+
+std::vector<std::string> names_in(const GrossConstants& constants) {
+  std::vector<std::string> names;
+  const std::vector<Effect>& effects = constants.fit.model.effects;
+  for (std::size_t k = constants.first; k < effects.size(); ++k) names.push_back(effects[k].name);
+  return names;
+}
+
+TEST(GrossConstants, AreNoneWhereNothingIsMissing) {
+  const SimulatedRecording one = simulate(small_world(4), {});
+  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+}
+
+TEST(GrossConstants, AreNoneWhereAnErrorIsSmall) {
+  const SimulatedRecording one = simulate(small_world(4), {catalogue_effect("wheelbase", {0.02})});
+  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+}
+
+TEST(GrossConstants, AreTheRightOnesWithTheRightSizes) {
+  for (const auto& [name, g] :
+       {std::pair{"wheelbase", -0.2}, std::pair{"travel scale", 1.0},
+        std::pair{"wheel scale", 0.25}, std::pair{"wheel diameter ratio", 0.1}}) {
+    const SimulatedRecording one = simulate(small_world(5), {catalogue_effect(name, {g})});
+    const auto found = gross_constants({one.drive.recording}, given(one));
+    ASSERT_TRUE(found) << name;
+    EXPECT_EQ(names_in(*found), std::vector<std::string>{name});
+    const EffectEstimate& size = found->fit.effects.back();
+    EXPECT_NEAR(size.effect.coefficients.at(0), g, 4.0 * size.sd.at(0)) << name;
+    EXPECT_GT(found->fit.p_value, 1e-4) << name;
+  }
+}
+
+TEST(GrossConstants, AskForNoScaleThatNothingMeasures) {
+  SimulationSettings settings = small_world(5);
+  settings.no_survey = true;
+  const SimulatedRecording one = simulate(settings, {catalogue_effect("wheelbase", {-0.5})});
+  const auto found = gross_constants({one.drive.recording}, given(one));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(names_in(*found), std::vector<std::string>{"wheelbase"});
+}
+
+TEST(GrossConstants, ALoadThatLastsForALegIsNoConstant) {
+  // Each leg's travel off by 4 % at random: a mean of them is no scale.
+  SimulationSettings settings = small_world(6);
+  settings.covariates = {"slack"};
+  const SimulatedRecording one =
+      simulate(settings, {Effect{"slack", Channel::travel, {"slack-0.5"}, {0.08}}});
+  EXPECT_FALSE(gross_constants({one.drive.recording}, given(one)));
+}
+
+TEST(GrossConstants, LeadADiagnosisWithTheirFittedSizes) {
+  const SimulatedRecording one = simulate(small_world(7), {catalogue_effect("wheelbase", {-0.2})});
+  const Diagnosis result = diagnose({one.drive.recording}, one.model);
+  EXPECT_EQ(result.verdict, Diagnosis::Verdict::missing);
+  EXPECT_EQ(result.missing, "wheelbase");
+  ASSERT_EQ(found_by(result).size(), 1U);
+  const Finding& first = result.findings.front();
+  EXPECT_NEAR(first.effect.coefficients.at(0), -0.2, 4.0 * first.sd.at(0));
+  EXPECT_LE(first.score, result.chi2);
+  EXPECT_LT(result.with_missing.arrival_rms, 0.1 * result.held_out.arrival_rms);
+  EXPECT_TRUE(result.events.empty());
+}
+
+TEST(GrossConstants, ADiscoveryBeginsWithThem) {
+  const SimulatedRecording one = simulate(
+      small_world(8),
+      {catalogue_effect("wheelbase", {-0.2}), catalogue_effect("wheel diameter ratio", {0.02})});
+  const Discovery result = discover({one.drive.recording}, one.model);
+  EXPECT_TRUE(result.consistent);
+  ASSERT_EQ(result.found.model.effects.size(), 2U);
+  for (const EffectEstimate& found : result.found.effects) {
+    const double g = found.effect.name == "wheelbase" ? -0.2 : 0.02;
+    EXPECT_NEAR(found.effect.coefficients.at(0), g, 4.0 * found.sd.at(0)) << found.effect.name;
+  }
+  EXPECT_EQ(result.steps.size(), 3U);
+  EXPECT_EQ(result.first.verdict, Diagnosis::Verdict::missing);
+}
+
+/// The model found starts every later fit where it belongs.
+TEST(GrossConstants, AModelThatHasThemIsFittedFromThere) {
+  const SimulatedRecording one = simulate(small_world(9), {catalogue_effect("wheelbase", {-0.2})});
+  Model model = one.model;
+  model.effects = {catalogue_effect("wheelbase", {-0.2})};
+  FitOptions as_given;
+  as_given.fit_effects = false;
+  EXPECT_GT(fit_model({one.drive.recording}, model, as_given).p_value, 1e-4);
+}
+
+struct Report {
+  const char* folder;
+  const char* missing;
+  double g;  ///< as its owner found out
+};
+
+TEST(Reports, AreToldTheConstantThatIsWrong) {
+  TRUSSMAP_NEEDS_SHARED("data/reports");
+  for (const Report& report :
+       {Report{"half-travel", "travel scale", 1.0}, Report{"half-turns", "wheelbase", 1.0},
+        Report{"turns-1.4", "wheelbase", 1.0 / 1.4 - 1.0},
+        Report{"four-marks-scale", "travel scale", 1.0 / 0.7 - 1.0},
+        Report{"dead-wheels", "wheelbase", 12.0 / 13.625 - 1.0},
+        Report{"ten-spins", "wheelbase", 0.0061}}) {
+    const std::filesystem::path folder = testing::shared("data/reports") / report.folder;
+    const Model model = read_model(folder / "model.toml");
+    const FitOptions fit = gated_fit();
+    const PreparedRecordings ready = prepare_recordings({read_recording(folder)}, model, fit);
+    DiagnoseOptions options;
+    options.fit = fit;
+    const Diagnosis result = diagnose(ready.recordings, model, options);
+    EXPECT_EQ(result.missing, report.missing) << report.folder;
+    if (result.findings.empty()) continue;
+    const Finding& first = result.findings.front();
+    EXPECT_NEAR(first.effect.coefficients.at(0), report.g, 4.0 * first.sd.at(0)) << report.folder;
+    EXPECT_LT(first.sd.at(0), 0.03) << report.folder;
+  }
+}
+
+}  // namespace
+}  // namespace trussmap::gross_constants_test
