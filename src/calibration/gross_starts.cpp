@@ -457,8 +457,15 @@ std::vector<GrossStart> starts_by_places(const std::vector<Recording>& recording
 
 }  // namespace
 
-std::vector<GrossStart> gross_starts(const std::vector<Recording>& recordings, const Robot& robot) {
-  if (recordings.empty()) return {};
+std::vector<GrossStart> gross_starts(const std::vector<Recording>& all, const Robot& robot,
+                                     const ProblemOptions& options) {
+  if (all.empty()) return {};
+  std::vector<Recording> recordings = all;
+  for (Recording& one : recordings) {
+    if (!options.survey) one.survey.clear();
+    if (!options.truth) one.truth.clear();
+    if (!options.fixes) one.fixes.clear();
+  }
   std::vector<GrossStart> starts;
   if (const std::optional<GrossStart> by_turns = start_by_turns(recordings, robot)) {
     starts.push_back(*by_turns);

@@ -16,6 +16,7 @@
 // right wheel over left (1/5 to 5).
 #pragma once
 
+#include "estimation/recording_problem.hpp"
 #include "trussmap/recording.hpp"
 #include "trussmap/robot.hpp"
 
@@ -30,8 +31,9 @@ struct GrossStart {
 };
 
 /// The most promising first, a handful at most; none where the stated constants are as good. The
-/// drives' wheels are taken in (with_wheels).
+/// drives' wheels are taken in (with_wheels). `options`: what of the recordings is used.
 [[nodiscard]] std::vector<GrossStart> gross_starts(const std::vector<Recording>& recordings,
-                                                   const Robot& robot);
+                                                   const Robot& robot,
+                                                   const ProblemOptions& options = {});
 
 }  // namespace trussmap

@@ -280,7 +280,7 @@ WheelCalibration calibrated(const std::vector<Recording>& recordings, const Mode
                             const WheelCalibrationOptions& options) {
   const std::vector<double> stated = in_force(model);
   std::vector<std::vector<double>> starts;
-  for (const GrossStart& one : gross_starts(recordings, model.robot)) {
+  for (const GrossStart& one : gross_starts(recordings, model.robot, options.problem)) {
     starts.push_back(at_start(stated, one, model.robot));
   }
   if (!starts.empty()) {

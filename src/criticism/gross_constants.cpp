@@ -57,6 +57,7 @@ std::vector<Effect> constants_for(const std::vector<Recording>& recordings, cons
                        std::any_of(fit.recordings.begin(), fit.recordings.end(),
                                    [](const Recording& rec) { return rec.drive.has_gyro(); });
     if (!scale && is_scale(one.effect.channel)) continue;
+    if (is_laid_out(one.effect.channel)) continue;  // these need a fit that is near already
     if (!there && !twice) result.push_back(one.effect);
   }
   return result;
@@ -80,6 +81,8 @@ std::optional<ModelFit> fitted_afresh(const std::vector<Recording>& recordings,
     return fit_model(recordings, model, given.options);
   } catch (const SolveError&) {
     return std::nullopt;
+  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
+    return std::nullopt;
   }
 }
 
@@ -88,6 +91,8 @@ std::optional<ModelFit> fitted_near(const std::vector<Recording>& recordings, co
   try {
     return refit_with(recordings, fit, constants);
   } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
     return std::nullopt;
   }
 }
@@ -116,7 +121,7 @@ DriveFactors factors_of(const Model& calibrated) {
   return result;
 }
 
-/// The constants as a calibration of the drive has them; nothing where it finds none.
+/// The constants as a calibration of the drive has them; nothing where none of them is gross.
 std::optional<std::vector<Effect>> calibrated(const std::vector<Recording>& recordings,
                                               const ModelFit& given,
                                               std::vector<Effect> constants) {
@@ -126,6 +131,10 @@ std::optional<std::vector<Effect>> calibrated(const std::vector<Recording>& reco
   try {
     const WheelCalibration found = calibrate_wheels(recordings, given.model, options);
     const DriveFactors factors = factors_of(found.model);
+    if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
+        kGross) {
+      return std::nullopt;
+    }
     for (Effect& one : constants) {
       one.coefficients.assign(one.shape.size(), 0.0);
       if (one.channel == Channel::travel) one.coefficients = {factors.travel};
@@ -148,7 +157,6 @@ std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const
   if (const auto from = calibrated(recordings, given, constants)) {
     best = better_of(best, fitted_afresh(recordings, given, *from));
   }
-  if (is_far_off(best)) best = better_of(best, fitted_afresh(recordings, given, constants));
   return best;
 }
 
@@ -160,6 +168,8 @@ std::optional<ModelFit> with_others(const std::vector<Recording>& recordings, co
   try {
     return refit(recordings, model, fit);
   } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
     return std::nullopt;
   }
 }

@@ -8,6 +8,7 @@
 #include "trussmap/catalogue.hpp"
 #include "trussmap/simulated_recording.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -49,7 +50,7 @@ TEST(GrossStarts, AreNoneWhereTheStatedConstantsAreAsGood) {
   }
 }
 
-TEST(GrossStarts, LieNearTheTruthWithAnyEquipment) {
+TEST(SlowGrossStarts, LieNearTheTruthWithAnyEquipment) {
   for (const Equipment& equipment :
        {Equipment{}, Equipment{true}, Equipment{false, true}, Equipment{false, false, false}}) {
     for (const double turn : {-0.7, -0.5, 1.0}) {
@@ -61,14 +62,17 @@ TEST(GrossStarts, LieNearTheTruthWithAnyEquipment) {
   }
 }
 
-TEST(GrossStarts, TellOneWheelOfAnotherSize) {
+TEST(SlowGrossStarts, TellOneWheelOfAnotherSize) {
   for (const Equipment& equipment : {Equipment{}, Equipment{true}, Equipment{false, true}}) {
     for (const double difference : {0.667, -0.4}) {
       const std::vector<GrossStart> starts =
           starts_of(driven("wheel diameter ratio", difference, equipment));
-      ASSERT_FALSE(starts.empty()) << difference;
-      EXPECT_NEAR(starts.front().turn, 0.0, 0.03) << difference;
-      EXPECT_NEAR(starts.front().difference, difference, 0.02) << difference;
+      EXPECT_TRUE(std::any_of(starts.begin(), starts.end(),
+                              [&](const GrossStart& start) {
+                                return std::abs(start.turn) < 0.03 &&
+                                       std::abs(start.difference - difference) < 0.02;
+                              }))
+          << difference << equipment.compass << equipment.gyro;
     }
   }
 }
@@ -79,7 +83,7 @@ WheelCalibration calibrated(const std::string& constant, double g) {
   return calibrate_wheels({one.drive.recording}, one.model, CalibrationOptions());
 }
 
-TEST(GrossCalibration, FindsATrackWrongByAFactor) {
+TEST(SlowGrossCalibration, FindsATrackWrongByAFactor) {
   for (const double g : {-0.7, -0.5, -0.2, 0.25}) {
     const WheelCalibration found = calibrated("wheelbase", g);
     ASSERT_TRUE(found.wheelbase_ratio) << g;
@@ -88,7 +92,7 @@ TEST(GrossCalibration, FindsATrackWrongByAFactor) {
   }
 }
 
-TEST(GrossCalibration, FindsOneWheelTwiceAsLarge) {
+TEST(SlowGrossCalibration, FindsOneWheelTwiceAsLarge) {
   const double twice = 2.0 / 3.0;
   const WheelCalibration found = calibrated("wheel diameter ratio", twice);
   ASSERT_TRUE(found.diameter_ratio);
