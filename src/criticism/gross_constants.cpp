@@ -18,6 +18,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -72,29 +75,26 @@ bool is_far_off(const std::optional<ModelFit>& fit) {
   return !fit || fit->chi2 > kFarTooLarge * std::max(1, fit->dof);
 }
 
+/// Nothing where that cannot be fitted, or leaves nothing to fit.
+template <class Result>
+std::optional<Result> if_possible(const std::function<Result()>& fit) {
+  try {
+    return fit();
+  } catch (const SolveError&) {
+    return std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {  // steered to where a wheel has no way ahead
+    return std::nullopt;
+  }
+}
+
 /// From a start of its own.
 std::optional<ModelFit> fitted_afresh(const std::vector<Recording>& recordings,
                                       const ModelFit& given, const std::vector<Effect>& constants) {
   Model model = given.model;
   model.effects.insert(model.effects.end(), constants.begin(), constants.end());
-  try {
-    return fit_model(recordings, model, given.options);
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
-    return std::nullopt;
-  }
-}
-
-std::optional<ModelFit> fitted_near(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                    const std::vector<Effect>& constants) {
-  try {
-    return refit_with(recordings, fit, constants);
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
-    return std::nullopt;
-  }
+  return if_possible<ModelFit>([&] { return fit_model(recordings, model, given.options); });
 }
 
 /// g of travel, of turning and of the wheels' difference, as a calibration's effects have them.
@@ -128,31 +128,28 @@ std::optional<std::vector<Effect>> calibrated(const std::vector<Recording>& reco
   WheelCalibrationOptions options;
   options.problem = fitter_options(given.options).problem;
   options.noise = false;
-  try {
-    const WheelCalibration found = calibrate_wheels(recordings, given.model, options);
-    const DriveFactors factors = factors_of(found.model);
-    if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
-        kGross) {
-      return std::nullopt;
-    }
-    for (Effect& one : constants) {
-      one.coefficients.assign(one.shape.size(), 0.0);
-      if (one.channel == Channel::travel) one.coefficients = {factors.travel};
-      if (one.channel == Channel::turn) one.coefficients = {factors.turn};
-      if (one.channel == Channel::difference) one.coefficients = {factors.difference};
-    }
-    return constants;
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const std::invalid_argument&) {  // steered to where a wheel has no way ahead
+  const auto found = if_possible<WheelCalibration>(
+      [&] { return calibrate_wheels(recordings, given.model, options); });
+  if (!found) return std::nullopt;
+  const DriveFactors factors = factors_of(found->model);
+  if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
+      kGross) {
     return std::nullopt;
   }
+  for (Effect& one : constants) {
+    one.coefficients.assign(one.shape.size(), 0.0);
+    if (one.channel == Channel::travel) one.coefficients = {factors.travel};
+    if (one.channel == Channel::turn) one.coefficients = {factors.turn};
+    if (one.channel == Channel::difference) one.coefficients = {factors.difference};
+  }
+  return constants;
 }
 
 /// All of them at once.
 std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const ModelFit& given,
                                  const std::vector<Effect>& constants) {
-  std::optional<ModelFit> best = fitted_near(recordings, given, constants);
+  std::optional<ModelFit> best =
+      if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); });
   if (!is_far_off(best)) return best;
   if (const auto from = calibrated(recordings, given, constants)) {
     best = better_of(best, fitted_afresh(recordings, given, *from));
@@ -165,13 +162,7 @@ std::optional<ModelFit> with_others(const std::vector<Recording>& recordings, co
                                     std::vector<Effect> effects) {
   Model model = fit.model;
   model.effects = std::move(effects);
-  try {
-    return refit(recordings, model, fit);
-  } catch (const SolveError&) {
-    return std::nullopt;
-  } catch (const InputError&) {  // a delay that moves all sightings out of the drive
-    return std::nullopt;
-  }
+  return if_possible<ModelFit>([&] { return refit(recordings, model, fit); });
 }
 
 bool is_fitted(const ModelFit& fit, std::size_t effect) {
