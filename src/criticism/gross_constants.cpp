@@ -121,16 +121,17 @@ DriveFactors factors_of(const Model& calibrated) {
   return result;
 }
 
-/// The constants as a calibration of the drive has them; nothing where none of them is gross.
-std::optional<std::vector<Effect>> calibrated(const std::vector<Recording>& recordings,
-                                              const ModelFit& given,
-                                              std::vector<Effect> constants) {
+/// The constants as a calibration of the drive has them, where it leads anywhere, as a start;
+/// nothing where none of them is gross.
+std::optional<std::vector<Effect>> start_of_constants(const std::vector<Recording>& recordings,
+                                                      const ModelFit& given,
+                                                      std::vector<Effect> constants) {
   WheelCalibrationOptions options;
   options.problem = fitter_options(given.options).problem;
   options.noise = false;
   const auto found = if_possible<WheelCalibration>(
       [&] { return calibrate_wheels(recordings, given.model, options); });
-  if (!found) return std::nullopt;
+  if (!found) return constants;
   const DriveFactors factors = factors_of(found->model);
   if (std::max({std::abs(factors.travel), std::abs(factors.turn), std::abs(factors.difference)}) <
       kGross) {
@@ -151,7 +152,7 @@ std::optional<ModelFit> with_all(const std::vector<Recording>& recordings, const
   std::optional<ModelFit> best =
       if_possible<ModelFit>([&] { return refit_with(recordings, given, constants); });
   if (!is_far_off(best)) return best;
-  if (const auto from = calibrated(recordings, given, constants)) {
+  if (const auto from = start_of_constants(recordings, given, constants)) {
     best = better_of(best, fitted_afresh(recordings, given, *from));
   }
   return best;
