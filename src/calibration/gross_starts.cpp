@@ -449,6 +449,7 @@ std::vector<GrossStart> starts_by_places(const std::vector<Recording>& recording
     if (kept.size() == kMostStarts) break;
   }
   std::vector<GrossStart> starts;
+  starts.reserve(kept.size());
   for (const Rated& one : kept) {
     starts.push_back(descended(disagreement, one, two_wheels).start());
   }

@@ -359,7 +359,9 @@ DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const Mo
     if (!(noise == fit.model.noise)) given = refit_under(recordings, fit, noise);
     result.under = std::make_shared<const FitWithNoise>(FitWithNoise{given, result.under->noise});
   }
-  if (result.verdict != Diagnosis::Verdict::missing) result.with_missing = result.held_out;
+  if (result.verdict != Diagnosis::Verdict::missing) {
+    result.with_missing = metrics_of(result.held_out);
+  }
   result.held_out = predict_held_out(recordings, given, options.legs);
   std::vector<Finding> first = findings_of(recordings, given, constants, options.legs);
   result.verdict = Diagnosis::Verdict::missing;

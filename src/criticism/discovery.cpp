@@ -227,7 +227,7 @@ class Discoverer {
       step.added = result_.found.model.effects.back();
       step.predicted_decrease = before - result_.found.chi2;
       step.held_out = predict_held_out(recordings_, result_.found, options_.diagnosis.legs);
-      step.predicted = step.held_out;
+      step.predicted = static_cast<const HeldOutMetrics&>(step.held_out);
       step.reckoned_10 = shown(present_horizons().after_10);
       step.reckoned_30 = shown(present_horizons().after_30);
       step.look_alikes = result_.last.findings[place].look_alikes;

@@ -341,7 +341,8 @@ std::vector<Finding> findings_of(const std::vector<Recording>& recordings, const
   const ModelFit& fit = constants.fit;
   HeldOutMetrics predicted;
   try {
-    predicted = predict_held_out(recordings, fit, legs);
+    const HeldOut held_out = predict_held_out(recordings, fit, legs);
+    predicted = static_cast<const HeldOutMetrics&>(held_out);
   } catch (const SolveError&) {  // what is left without those legs does not tell them
   }
   const double most = std::max(0.0, given.chi2 - fit.chi2);
