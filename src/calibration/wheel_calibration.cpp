@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -237,10 +236,6 @@ bool led_nearby(const WheelCalibration& found, double start) {
   return true;
 }
 
-}  // namespace
-
-namespace {
-
 /// The stated constants with those of a start in their place.
 std::vector<double> at_start(std::vector<double> g, const GrossStart& start, const Robot& robot) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
@@ -251,23 +246,26 @@ std::vector<double> at_start(std::vector<double> g, const GrossStart& start, con
   return g;
 }
 
-/// Of the starts the one that leads to the least chi^2 under the stated noise; the first that leads
-/// to a possible one is good enough.
-std::optional<std::vector<double>> leading_start(const std::vector<std::vector<double>>& starts,
-                                                 const std::vector<Recording>& recordings,
-                                                 const Model& model,
-                                                 WheelCalibrationOptions options) {
+/// A start, and what it leads to under the stated noise.
+struct Led {
+  std::vector<double> start;
+  WheelCalibration found;
+};
+
+/// Of the starts the one that leads to the least chi^2; the first that leads to a possible one is
+/// good enough.
+std::optional<Led> leading(const std::vector<std::vector<double>>& starts,
+                           const std::vector<Recording>& recordings, const Model& model,
+                           WheelCalibrationOptions options) {
   constexpr double kPossible = 10.0;  // chi^2/dof
   options.noise = false;
-  std::optional<std::vector<double>> best;
-  double least = std::numeric_limits<double>::infinity();
+  std::optional<Led> best;
   for (const std::vector<double>& start : starts) {
     try {
-      const WheelCalibration found = calibrated_from(start, recordings, model, options);
-      if (!found.settled || found.chi2 >= least) continue;
-      least = found.chi2;
-      best = start;
-      if (found.chi2 < kPossible * std::max(1, found.dof)) break;
+      WheelCalibration found = calibrated_from(start, recordings, model, options);
+      if (!found.settled || (best && found.chi2 >= best->found.chi2)) continue;
+      best = Led{start, std::move(found)};
+      if (best->found.chi2 < kPossible * std::max(1, best->found.dof)) break;
     } catch (const SolveError&) {
       continue;
     }
@@ -283,13 +281,13 @@ WheelCalibration calibrated(const std::vector<Recording>& recordings, const Mode
   for (const GrossStart& one : gross_starts(recordings, model.robot, options.problem)) {
     starts.push_back(at_start(stated, one, model.robot));
   }
+  std::optional<Led> led;
   if (!starts.empty()) {
     starts.push_back(stated);
-    if (const auto start = leading_start(starts, recordings, model, options)) {
-      return calibrated_from(*start, recordings, model, options);
-    }
+    led = leading(starts, recordings, model, options);
   }
-  return calibrated_from(stated, recordings, model, options);
+  if (led && !options.noise) return std::move(led->found);
+  return calibrated_from(led ? led->start : stated, recordings, model, options);
 }
 
 }  // namespace

@@ -400,4 +400,8 @@ std::vector<Candidate> candidates_for(const FitState& fit, const ShapeContext& c
   return each_once(std::move(all));
 }
 
+const CatalogueRecord* record_of(const Candidate& candidate) {
+  return candidate.form == Form::catalogue ? find_record(candidate.effect.name) : nullptr;
+}
+
 }  // namespace trussmap

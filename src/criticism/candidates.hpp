@@ -16,6 +16,7 @@
 #pragma once
 
 #include "criticism/score_test.hpp"
+#include "effects/catalogue_record.hpp"
 
 #include <string>
 #include <vector>
@@ -59,6 +60,9 @@ struct Candidate {
 /// compass) is not among them.
 [[nodiscard]] std::vector<Candidate> candidates_for(const FitState& fit,
                                                     const ShapeContext& context);
+
+/// What the catalogue knows of it; nullptr of a free form.
+[[nodiscard]] const CatalogueRecord* record_of(const Candidate& candidate);
 
 /// The same candidate with other parameters, its name and shapes made anew. They are numbers of few
 /// digits: a search cannot tell finer ones apart.

@@ -31,10 +31,6 @@ constexpr double kNegligible = 0.002;  // the same
 constexpr double kFitsAnyway = 0.05;   // p
 constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of chi^2
 
-HeldOutMetrics metrics_of(const HeldOutMetrics& metrics) {
-  return metrics;
-}
-
 /// Reports what a search has found.
 class Diagnostician {
  public:

@@ -3,13 +3,13 @@
 #include "criticism/diagnosis.hpp"
 #include "criticism/effect_strength.hpp"
 #include "criticism/place_uncertainty.hpp"
-#include "effects/catalogue_record.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
 #include "trussmap/discover.hpp"
 #include "trussmap/error.hpp"
 #include "validation/arrival_rise.hpp"
 #include "validation/dead_reckoned_horizons.hpp"
+#include "validation/held_out_legs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +35,8 @@ std::optional<double> shown(const HorizonError& error) {
 
 /// The systematic errors that nearly every robot has.
 bool is_common_motion(const Candidate& one) {
-  const CatalogueRecord* record = find_record(one.effect.name);
-  return one.form == Form::catalogue && record != nullptr && record->common_motion;
+  const CatalogueRecord* record = record_of(one);
+  return record != nullptr && record->common_motion;
 }
 
 /// The winner and those of its look-alikes that explain nearly as much, by their place among the
@@ -227,7 +227,7 @@ class Discoverer {
       step.added = result_.found.model.effects.back();
       step.predicted_decrease = before - result_.found.chi2;
       step.held_out = predict_held_out(recordings_, result_.found, options_.diagnosis.legs);
-      step.predicted = static_cast<const HeldOutMetrics&>(step.held_out);
+      step.predicted = metrics_of(step.held_out);
       step.reckoned_10 = shown(present_horizons().after_10);
       step.reckoned_30 = shown(present_horizons().after_30);
       step.look_alikes = result_.last.findings[place].look_alikes;

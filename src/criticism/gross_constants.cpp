@@ -8,13 +8,14 @@
 #include "criticism/effect_strength.hpp"
 #include "criticism/look_alikes.hpp"
 #include "criticism/refits.hpp"
-#include "effects/catalogue_record.hpp"
 #include "effects/channel_physics.hpp"
 #include "fit/fit_state.hpp"
+#include "odometry/wheels_and_gyro.hpp"
 #include "statistics/distributions.hpp"
 #include "statistics/median.hpp"
 #include "trussmap/error.hpp"
 #include "trussmap/held_out.hpp"
+#include "validation/held_out_legs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,13 @@ constexpr double kFarTooLarge = 10.0;  // chi^2/dof
 constexpr double kMostLeft = 0.5;      // of chi^2/dof, beside them
 constexpr double kGross = 0.05;        // of a factor
 
+bool is_motion(Channel channel) {
+  return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
+}
+
 /// Whether its g is a factor less 1.
 bool is_factor(Channel channel) {
-  return channel == Channel::travel || channel == Channel::turn || channel == Channel::difference ||
-         channel == Channel::sideways || channel == Channel::wheels;
+  return is_motion(channel) || channel == Channel::difference || channel == Channel::wheels;
 }
 
 /// Without a measured distance a smaller map has smaller errors.
@@ -46,22 +50,21 @@ std::vector<Effect> constants_for(const std::vector<Recording>& recordings, cons
   const FitState& fit = *given.state;
   const bool scale =
       measures_distance(recordings, fitter_options(given.options).problem, given.model.noise);
+  const bool gyro = has_gyro(fit.recordings);
   std::vector<Effect> result;
-  const ScoreTest tests(fit);
-  for (const Candidate& one : candidates_for(fit, tests.context())) {
-    const CatalogueRecord* record = find_record(one.effect.name);
-    if (one.form != Form::catalogue || record == nullptr || !record->robot_constant) continue;
+  const ShapeContext context(fit.recordings, fit.model.robot, fit.paths);
+  for (const Candidate& one : candidates_for(fit, context)) {
+    const CatalogueRecord* record = record_of(one);
+    const Channel channel = one.effect.channel;
+    if (record == nullptr || !record->robot_constant) continue;
+    if (!scale && is_scale(channel)) continue;
+    if (is_laid_out(channel)) continue;               // these need a fit that is near already
+    if (gyro && channel == Channel::drift) continue;  // its bias is what drifts
     const bool there = std::any_of(
         fit.model.effects.begin(), fit.model.effects.end(), [&one](const Effect& other) {
           return other.channel == one.effect.channel && other.shape == one.effect.shape;
         });
-    // A gyro's bias, where there is one, is what drifts.
-    const bool twice = one.effect.channel == Channel::drift &&
-                       std::any_of(fit.recordings.begin(), fit.recordings.end(),
-                                   [](const Recording& rec) { return rec.drive.has_gyro(); });
-    if (!scale && is_scale(one.effect.channel)) continue;
-    if (is_laid_out(one.effect.channel)) continue;  // these need a fit that is near already
-    if (!there && !twice) result.push_back(one.effect);
+    if (!there) result.push_back(one.effect);
   }
   return result;
 }
@@ -218,10 +221,6 @@ ModelFit sure_ones(const std::vector<Recording>& recordings, ModelFit fit, std::
   return fit;
 }
 
-bool is_motion(Channel channel) {
-  return channel == Channel::travel || channel == Channel::turn || channel == Channel::sideways;
-}
-
 /// Larger wheels make all that is driven larger alike: one constant instead of two or three.
 ModelFit with_wheel_scale(const std::vector<Recording>& recordings, const ModelFit& fit,
                           std::size_t first) {
@@ -294,10 +293,11 @@ std::optional<GrossConstants> gross_constants(const std::vector<Recording>& reco
 namespace {
 
 /// What else could leave its trace, at a fit that has it.
-std::vector<LookAlike> look_alikes_at(const ModelFit& fit, std::size_t place) {
+std::vector<LookAlike> look_alikes_at(const ModelFit& fit, const ScoreTest& at_fit,
+                                      std::size_t place) {
   const FitState& state = *fit.state;
   const Effect& effect = fit.model.effects[place];
-  const ScoreTest tests = ScoreTest(state).lacking(place, effect);
+  const ScoreTest tests = at_fit.lacking(place, effect);
   std::vector<Tested> asked(1);
   asked.front().candidate.effect = effect;
   for (const Candidate& one : candidates_for(state, tests.context())) {
@@ -310,8 +310,8 @@ std::vector<LookAlike> look_alikes_at(const ModelFit& fit, std::size_t place) {
 }
 
 /// `most`: the chi^2 that all constants together take away.
-Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit, std::size_t place,
-                   double most) {
+Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit,
+                   const ScoreTest& at_fit, std::size_t place, double most) {
   const Effect& effect = fit.model.effects[place];
   Finding result;
   result.effect = effect;
@@ -330,7 +330,7 @@ Finding finding_at(const std::vector<Recording>& recordings, const ModelFit& fit
     result.minimal_detectable.push_back(std::sqrt(kDetectableScore) * result.sd.back());
   }
   result.joint_sd = result.sd;
-  result.look_alikes = look_alikes_at(fit, place);
+  result.look_alikes = look_alikes_at(fit, at_fit, place);
   return result;
 }
 
@@ -341,14 +341,14 @@ std::vector<Finding> findings_of(const std::vector<Recording>& recordings, const
   const ModelFit& fit = constants.fit;
   HeldOutMetrics predicted;
   try {
-    const HeldOut held_out = predict_held_out(recordings, fit, legs);
-    predicted = static_cast<const HeldOutMetrics&>(held_out);
+    predicted = metrics_of(predict_held_out(recordings, fit, legs));
   } catch (const SolveError&) {  // what is left without those legs does not tell them
   }
   const double most = std::max(0.0, given.chi2 - fit.chi2);
+  const ScoreTest at_fit(*fit.state);
   std::vector<Finding> result;
   for (std::size_t k = constants.first; k < fit.model.effects.size(); ++k) {
-    result.push_back(finding_at(recordings, fit, k, most));
+    result.push_back(finding_at(recordings, fit, at_fit, k, most));
     result.back().held_out = predicted;
   }
   return result;

@@ -6,12 +6,13 @@
 // score test about it means anything. So the numbers that every robot has (CatalogueRecord,
 // robot_constant) are fitted first, all at once, with the noise as the model states it:
 //
-//   from the fit as given, and from a start of their own
+//   from the fit as given
 //   where that leaves far too much, from where a calibration finds the drive's own constants
 //
 // Those that the data do not surely show, by the scatter that is left, go again. They are kept
-// where they explain most of the misfit and one of the drive's factors is off by 5 % and more;
-// smaller ones are left to the tests of all effects.
+// where they explain most of the misfit and one of the drive's factors is off by 5 % and more, or
+// where a handful of measurements can tell of nothing else; smaller ones are left to the tests of
+// all effects. Without a measured distance no scale is asked for.
 #pragma once
 
 #include "trussmap/diagnose.hpp"

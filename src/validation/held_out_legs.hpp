@@ -50,4 +50,9 @@ class HeldOutLegs {
   std::vector<PredictedLeg> legs_;
 };
 
+/// The figures, without the legs.
+[[nodiscard]] inline HeldOutMetrics metrics_of(const HeldOutMetrics& metrics) {
+  return metrics;
+}
+
 }  // namespace trussmap
