@@ -49,14 +49,14 @@ StartOptions start_options(const FitterOptions& options, StartKind kind) {
   return how;
 }
 
-/// Whether the model's own effects are of some size already.
-bool own_are_known(const FitState& fit) {
-  const auto own = static_cast<std::ptrdiff_t>(fit.model.effects.size() - fit.common_errors);
-  return std::any_of(fit.model.effects.begin(), fit.model.effects.begin() + own,
-                     [](const Effect& effect) {
-                       return std::any_of(effect.coefficients.begin(), effect.coefficients.end(),
-                                          [](double one) { return one != 0.0; });
-                     });
+/// Whether the model's own effects were of some size at first.
+bool own_are_known(const FitTask& task, const FitState& fit) {
+  const std::vector<Effect>& effects = task.model.effects;
+  const auto own = static_cast<std::ptrdiff_t>(effects.size() - fit.common_errors);
+  return std::any_of(effects.begin(), effects.begin() + own, [](const Effect& effect) {
+    return std::any_of(effect.coefficients.begin(), effect.coefficients.end(),
+                       [](double one) { return one != 0.0; });
+  });
 }
 
 /// Along unbroken drives, freed from the model's own effects as far as they are known: the common
@@ -65,7 +65,7 @@ void lay_start(const FitTask& task, StartKind kind, Fitting& now) {
   FitState& fit = now.fit;
   const Robot& robot = fit.model.robot;
   static_cast<void>(choose_gauge(fit.problem));  // refuses what has no start
-  const bool freed = own_are_known(fit) || (fit.common_errors > 0 && !now.only_common());
+  const bool freed = own_are_known(task, fit) || (fit.common_errors > 0 && !now.only_common());
   const bool as_fitted = task.options.problem.left_out.empty() && !freed;
   const std::vector<Recording> without =
       freed ? without_own_effects(task, fit) : std::vector<Recording>();
@@ -100,9 +100,14 @@ bool start_lost(const FitTask& task, const FitState& fit) {
 
 /// From one other start. Nothing where it leads nowhere.
 std::optional<FitChange> adjusted_from(const FitTask& task, StartKind kind, Fitting& now) {
+  const bool known = own_are_known(task, now.fit);
   for (std::size_t e = 0; e < now.fit.model.effects.size(); ++e) {
     std::vector<double>& values = now.fit.model.effects[e].coefficients;
-    if (now.is_common(e)) std::fill(values.begin(), values.end(), 0.0);
+    if (now.is_common(e)) {
+      std::fill(values.begin(), values.end(), 0.0);
+    } else if (known) {
+      values = task.model.effects[e].coefficients;
+    }
   }
   lay_start(task, kind, now);
   take_columns(task, now);
