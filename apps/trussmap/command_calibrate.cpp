@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth or survey.
+// trussmap calibrate: wheels, wheelbase and wheel noise from recordings with truth, fixes or a
+// survey.
 #include "commands.hpp"
 #include "model_recordings.hpp"
 #include "option_checks.hpp"
@@ -47,6 +48,7 @@ CalibrationOptions calibration_options(const CalibrateOptions& options) {
   CalibrationOptions result = options.calibration;
   result.survey = !left_out("survey");
   result.truth = !left_out("truth");
+  result.fixes = !left_out("fixes");
   return result;
 }
 
@@ -119,6 +121,14 @@ ordered_json json_of(const WheelCalibration& found, const CalibrationValidation&
                     {"heading_rad", found.truth.heading},
                     {"clocks", clocks}};
   }
+  if (!found.fixes.late.empty()) {
+    ordered_json late = ordered_json::array();
+    for (const auto& [session, one] : found.fixes.late) {
+      late.push_back({{"session", session}, {"late_s", one}});
+    }
+    out["fixes"] = {
+        {"ahead_m", found.fixes.ahead}, {"left_m", found.fixes.left}, {"sessions", late}};
+  }
   out["settled"] = found.settled;
   out["undetermined"] = found.undetermined;
   return out;
@@ -170,8 +180,8 @@ void setup_calibrate(const Command& app) {
   auto options = std::make_shared<CalibrateOptions>();
   const Command command = app.add_subcommand("calibrate",
                                              "Calibrate wheels, wheelbase and wheel noise from "
-                                             "recordings with truth, a survey, or a second "
-                                             "odometer's motions (loops)");
+                                             "recordings with truth, fixes, a survey, or a "
+                                             "second odometer's motions (loops)");
   command.add_option("RECORDING", options->recordings, "Folders of CSV files, one per session")
       .required()
       .type_name("DIR");
@@ -194,17 +204,19 @@ void setup_calibrate(const Command& app) {
       .add_option("--test", options->test,
                   "Recordings with truth, not calibrated by, to test the calibration on")
       .type_name("DIR");
-  command.add_option("--without", options->without, "Do not use the survey, or the truth")
+  command
+      .add_option("--without", options->without, "Do not use the survey, the truth, or the fixes")
       .delimiter(',')
-      .check(one_of({"survey", "truth"}))
+      .check(one_of({"survey", "truth", "fixes"}))
       .type_name("WHAT,...");
   add_html_option(command, options->page);
   add_plots_option(command, options->page);
   command.footer(
       "E_d, E_b and E_s become the model's effects wheel diameter ratio, wheelbase and wheel\n"
       "scale. Standard errors hold for the noise that the model states for truth, survey and\n"
-      "sightings; chi2/dof should be near 1. Where truth tracks the robot, and how late, is found "
-      "too.\n"
+      "sightings; chi2/dof should be near 1. Where truth and fixes track the robot, and how "
+      "late, is\n"
+      "found too.\n"
       "\n"
       "--test dead-reckons each recording from its first truth pose to its last, with the given\n"
       "model (nominal) and with the calibrated one: how far the end is off, and how far the "

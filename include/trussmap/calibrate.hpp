@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 //
-// Wheels, wheelbase and wheel noise from recordings with truth, a survey, or a second odometer's
-// motions (loops between poses that are apart): least squares over all that was measured.
+// Wheels, wheelbase and wheel noise from recordings with truth, fixes, a survey, or a second
+// odometer's motions (loops between poses that are apart): least squares over all that was
+// measured.
 //
 //   E_d   right over left wheel diameter     effect `difference`, g = 2 (E_d - 1)/(E_d + 1)   -
 //   E_b   actual over nominal wheelbase      effect `turn`,       g = 1/E_b - 1               -
@@ -25,8 +26,8 @@
 // All other noise is as the model states it. A parameter whose standard error would exceed 0.1 is
 // reported as undetermined (of a steering's gain, 0.03 of it).
 //
-// How the truth is mounted and clocked is estimated with the wheels (TruthAlignment): a truth whose
-// rows are late, or whose clock drifts, looks like wheel errors otherwise.
+// How truth and fixes are mounted and clocked is estimated with the wheels (TruthAlignment,
+// FixAlignment): rows that are late, or whose clock drifts, look like wheel errors otherwise.
 //
 // Fails where the truth contradicts the wheels: with headings turned by more than about 90 degrees,
 // or counted clockwise, the least chi^2 lies at a negative wheelbase or travel. No robot has that,
@@ -46,6 +47,7 @@ namespace trussmap {
 struct CalibrationOptions {
   bool survey = true;    ///< use surveyed landmark positions
   bool truth = true;     ///< use truth rows
+  bool fixes = true;     ///< use fixes
   bool noise = true;     ///< estimate k_L and k_R as well
   double holdout = 0.3;  ///< share of the legs that validate_calibration holds out; 0: none
   double leg = 1.0;      ///< m of driven path, length of such a leg
@@ -72,6 +74,13 @@ struct TruthAlignment {
   std::map<int, TruthClock> clocks;  ///< by session; none where no truth was used
 };
 
+/// Which point of the robot fixes are of, and how late they are.
+struct FixAlignment {
+  double ahead = 0.0;          ///< m, the antenna from the axle's centre, robot axes
+  double left = 0.0;           ///< m
+  std::map<int, double> late;  ///< s, by session; none where no fix was used
+};
+
 /// A constant of a drive with other wheels than two: g of its channel, with the shape 1.
 struct DriveConstant {
   Channel channel = Channel::turn;
@@ -87,6 +96,7 @@ struct WheelCalibration {
   std::vector<DriveConstant> constants;       ///< of other drives than differential, instead
   Model model;                                ///< the given one with all of that in it
   TruthAlignment truth;
+  FixAlignment fixes;
   double chi2 = 0.0;
   int dof = 0;
   /// False where the last round still moved an estimate by more than a tenth of its standard error:

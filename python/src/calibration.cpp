@@ -33,10 +33,10 @@ CalibrationOptions options_of(const std::vector<std::string>& without, double ho
   options.holdout = holdout;
   options.leg = leg;
   for (const std::string& one : without) {
-    if (one != "survey" && one != "truth") {
-      throw py::value_error("without: \"" + one + "\" is neither survey nor truth");
+    if (one != "survey" && one != "truth" && one != "fixes") {
+      throw py::value_error("without: \"" + one + "\" is none of survey, truth and fixes");
     }
-    (one == "survey" ? options.survey : options.truth) = false;
+    (one == "survey" ? options.survey : one == "truth" ? options.truth : options.fixes) = false;
   }
   return options;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
 #include "calibration/reckoning.hpp"
-#include "calibration/truth_alignment.hpp"
+#include "calibration/reference_alignment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "trussmap/calibrate.hpp"
 #include "trussmap/error.hpp"

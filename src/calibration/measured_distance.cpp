@@ -14,9 +14,19 @@ bool spans(const Loop& loop, const Noise& noise) {
   return std::hypot(loop.dx, loop.dy) > kFar * sd;
 }
 
+/// Whether two of the fixes are much further from each other than they may be off.
+bool spans(const std::vector<Fix>& fixes, const Noise& noise) {
+  constexpr double kFar = 10.0;  // standard deviations, as above
+  return std::any_of(fixes.begin(), fixes.end(), [&](const Fix& one) {
+    const double sd = std::isnan(one.sd) ? noise.fix : one.sd;
+    return std::hypot(one.x - fixes.front().x, one.y - fixes.front().y) > kFar * sd;
+  });
+}
+
 bool measures(const Recording& one, const ProblemOptions& options, const Noise& noise) {
   const auto sees_range = [](const Sighting& sighting) { return !sighting.standing(); };
   return (options.survey && !one.survey.empty()) || (options.truth && !one.truth.empty()) ||
+         (options.fixes && spans(one.fixes, noise)) ||
          std::any_of(one.sightings.begin(), one.sightings.end(), sees_range) ||
          (options.loops && std::any_of(one.loops.begin(), one.loops.end(),
                                        [&](const Loop& loop) { return spans(loop, noise); }));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The trussmap authors
 // SPDX-License-Identifier: MIT
-#include "calibration/truth_alignment.hpp"
+#include "calibration/reference_alignment.hpp"
 #include "calibration/truth_holdout.hpp"
 #include "calibration/wheel_calibration.hpp"
 #include "geometry/index.hpp"

@@ -6,8 +6,8 @@
 #include "calibration/heading_offset.hpp"
 #include "calibration/measured_distance.hpp"
 #include "calibration/most_likely_noise.hpp"
+#include "calibration/reference_alignment.hpp"
 #include "calibration/sought_constants.hpp"
-#include "calibration/truth_alignment.hpp"
 #include "estimation/recording_adjustment.hpp"
 #include "odometry/effect_correction.hpp"
 #include "recording/well_formed.hpp"
@@ -27,17 +27,21 @@
 namespace trussmap {
 namespace {
 
-/// Parameters: those of the constants that are wanted, and the alignment of the truth.
+References references_of(const ProblemOptions& options) {
+  return {options.truth, options.fixes};
+}
+
+/// Parameters: those of the constants that are wanted, and the alignment of truth and fixes.
 EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording>& recordings,
                                const Robot& robot, const WheelCalibrationOptions& options,
-                               const TruthAlignment& prior) {
+                               const ReferenceAlignment& prior) {
   const std::vector<SoughtConstant> constants = sought_constants(robot);
   EffectParameters parameters;
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
-  if (!options.problem.truth) return parameters;
-  for (EffectPattern& one : truth_alignment(recordings, robot, options.sessions, prior)) {
+  for (EffectPattern& one : reference_alignment(recordings, robot, references_of(options.problem),
+                                                options.sessions, prior)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
@@ -52,7 +56,7 @@ struct Fitted {
 };
 
 Fitted fit(const std::vector<Recording>& recordings, const Model& model, const Wanted& wanted,
-           const WheelCalibrationOptions& options, const TruthAlignment& prior) {
+           const WheelCalibrationOptions& options, const ReferenceAlignment& prior) {
   Fitted result;
   result.corrected = without_effects(recordings, model);
   result.problem = make_problem(result.corrected, model, options.problem);
@@ -61,11 +65,18 @@ Fitted fit(const std::vector<Recording>& recordings, const Model& model, const W
   return result;
 }
 
+/// Whether it may well be nothing, under other noise that is stated far too large.
+bool is_hidden(const WheelNoiseFit& found, const RecordingAdjustment& adjustment) {
+  constexpr double kFarTooSmall = 0.5;  // chi^2/dof
+  return adjustment.chi2 < kFarTooSmall * adjustment.dof &&
+         (found.k.array() < found.sd.array()).all();
+}
+
 /// k_L and k_R by the fit of the geometry, in the result and in its model.
 void find_noise(const Fitted& about, const ProblemOptions& options, WheelCalibration& result) {
   const std::optional<WheelNoiseFit> found = most_likely_noise(
       about.corrected, result.model, options, about.parameters, about.adjustment.state);
-  if (!found) {
+  if (!found || is_hidden(*found, about.adjustment)) {
     result.undetermined.emplace_back(
         "k_left and k_right: the other noise in the model hides that of the wheels");
     return;
@@ -180,6 +191,7 @@ WheelCalibrationOptions calibration_options(const CalibrationOptions& options) {
   WheelCalibrationOptions result;
   result.problem.survey = options.survey;
   result.problem.truth = options.truth;
+  result.problem.fixes = options.fixes;
   result.noise = options.noise;
   return result;
 }
@@ -203,15 +215,15 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
   const Eigen::Index geometry = std::count(wanted.begin(), wanted.end(), true);
   // Noise weighs the measurements, so it is found between two fits of the geometry.
   Fitted last;
+  ReferenceAlignment references;
   for (const bool noise : {options.noise, false}) {
     for (int round = 0; round < kRounds; ++round) {
-      last = fit(recordings, result.model, wanted, options, result.truth);
+      last = fit(recordings, result.model, wanted, options, references);
       g = refined(g, wanted, model.robot, last.adjustment.coefficients);
       result.model = with_constants(result.model, g);
-      if (options.problem.truth) {
-        const Eigen::VectorXd& all = last.adjustment.coefficients;
-        result.truth = alignment_of(recordings, options.sessions, all.tail(all.size() - geometry));
-      }
+      const Eigen::VectorXd& all = last.adjustment.coefficients;
+      references = alignment_of(recordings, references_of(options.problem), options.sessions,
+                                all.tail(all.size() - geometry));
       const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
       if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;
     }
@@ -219,6 +231,8 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
     if (noise && model.robot.drive == DriveKind::differential)
       find_noise(last, options.problem, result);
   }
+  result.truth = std::move(references.truth);
+  result.fixes = std::move(references.fixes);
   read_constants(result, g, wanted, last.adjustment);
   result.settled = stands_still(last.adjustment, geometry);
   return result;

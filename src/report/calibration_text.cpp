@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -53,26 +53,33 @@ std::string text(const TestedDrives& test) {
 }
 
 /// "95 ms early", "20 ms early to 30 ms late" where sessions differ.
-std::string lateness(double first, double last) {
-  const auto words = [](double late) {
-    return fmt::format("{:.0f} ms {}", 1000.0 * std::abs(late), late < 0.0 ? "early" : "late");
+std::string lateness(const std::vector<double>& late) {
+  const auto words = [](double one) {
+    return fmt::format("{:.0f} ms {}", 1000.0 * std::abs(one), one < 0.0 ? "early" : "late");
   };
-  const std::string one = words(first);
-  const std::string other = words(last);
+  const auto [least, most] = std::minmax_element(late.begin(), late.end());
+  const std::string one = words(*least);
+  const std::string other = words(*most);
   return one == other ? one : one + " to " + other;
 }
 
 std::string text(const TruthAlignment& truth) {
-  double first = std::numeric_limits<double>::infinity();
-  double last = -first;
-  for (const auto& [session, clock] : truth.clocks) {
-    first = std::min(first, clock.late);
-    last = std::max(last, clock.late);
-  }
+  std::vector<double> late;
+  late.reserve(truth.clocks.size());
+  for (const auto& [session, clock] : truth.clocks) late.push_back(clock.late);
   return fmt::format(
       "  truth: the point tracked is {:.1f} mm ahead and {:.1f} mm left of the axle's centre, its\n"
       "  heading is off by {:.1f} mrad, its rows are {} at the start\n",
-      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, lateness(first, last));
+      1000.0 * truth.ahead, 1000.0 * truth.left, 1000.0 * truth.heading, lateness(late));
+}
+
+std::string text(const FixAlignment& fixes) {
+  std::vector<double> late;
+  late.reserve(fixes.late.size());
+  for (const auto& [session, one] : fixes.late) late.push_back(one);
+  return fmt::format(
+      "  fixes: of a point {:.1f} mm ahead and {:.1f} mm left of the axle's centre, stamped {}\n",
+      1000.0 * fixes.ahead, 1000.0 * fixes.left, lateness(late));
 }
 
 }  // namespace
@@ -111,8 +118,14 @@ std::string calibration_text(const WheelCalibration& found, const CalibrationVal
         "as "
         "large\n",
         std::sqrt(dispersion));
+  } else if (found.dof > 0 && dispersion < 1.0 / kFarTooLarge) {
+    out += fmt::format(
+        "  errors are {:.2g} times what the model's noise allows: it is stated too large, and so "
+        "is the \u00b1\n",
+        std::sqrt(dispersion));
   }
   if (!found.truth.clocks.empty()) out += text(found.truth);
+  if (!found.fixes.late.empty()) out += text(found.fixes);
   if (test) out += text(*test);
   for (const std::string& one : found.undetermined) out += "\nnot determined: " + one + "\n";
   if (!found.settled) {

@@ -127,13 +127,15 @@ Page truth_page(const TruthCalibration& found, const std::string& subject) {
                                   {"E_b: wheelbase", wheels.wheelbase_ratio},
                                   {"E_s: travel", wheels.scale}},
                                  1.0, 100.0)};
-  charts.push_back(interval_chart(
-      "noise", "Noise of each wheel",
-      "k with its 95 % interval: after d metres the wheel's travel is uncertain by k times the "
-      "root "
-      "of d.",
-      "k [10\u207b\u00b3 m^1/2]",
-      {{"left wheel", wheels.noise_left}, {"right wheel", wheels.noise_right}}, 0.0, 1000.0));
+  if (wheels.noise_left && wheels.noise_right) {
+    charts.push_back(interval_chart(
+        "noise", "Noise of each wheel",
+        "k with its 95 % interval: after d metres the wheel's travel is uncertain by k times the "
+        "root "
+        "of d.",
+        "k [10\u207b\u00b3 m^1/2]",
+        {{"left wheel", wheels.noise_left}, {"right wheel", wheels.noise_right}}, 0.0, 1000.0));
+  }
   page.sections.push_back({"What was found", {std::move(charts), table_of(wheels)}});
   return page;
 }

@@ -111,8 +111,9 @@ TEST(WheelCalibration, ALateAndDriftingClockIsNoWheelError) {
 
 TEST(WheelCalibration, StraightLinesDoNotTellTheWheelbase) {
   const DrawnRobot robot;
-  const WheelCalibration found = calibrate_wheels(
-      {draw({{1.0, 0.0, 0.0}, {20.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot)}, model_of(robot));
+  const WheelCalibration found =
+      calibrate_wheels({draw({{1.0, 0.0, 0.0}, {20.0, 0.5, 0.0}, {1.0, 0.0, 0.0}}, robot)},
+                       model_of(robot), without_noise());
   EXPECT_FALSE(found.wheelbase_ratio);
   EXPECT_TRUE(found.diameter_ratio);
   EXPECT_TRUE(found.scale);

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The trussmap authors
+// SPDX-License-Identifier: MIT
+#include "calibration/reference_alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trussmap {
+namespace {
+
+// Far beyond what a marker put on by hand or two logs cut by hand are off by.
+constexpr double kLeverSd = 0.3;    // m
+constexpr double kHeadingSd = 0.1;  // rad
+constexpr double kLateSd = 0.3;     // s
+constexpr double kClockSd = 0.001;  // s/s
+constexpr double kAntennaSd = 3.0;  // m: a receiver's, which may sit on a long vehicle
+
+/// Where the robot was `late` seconds before time t, seen from where it is at t; at rest outside
+/// of the drive.
+Pose way_back(const Drive& drive, double t, double late, const Robot& robot) {
+  const auto inside = [&drive](double at) { return std::clamp(at, drive.start(), drive.t.back()); };
+  const double from = inside(std::min(t, t - late));
+  const double to = inside(std::max(t, t - late));
+  if (!(to > from)) return {};
+  const Pose way = segment_motion(segment_rows(drive, from, to, robot)).displacement;
+  return late > 0.0 ? inverse(way) : way;
+}
+
+/// What one second of lateness does to a truth row: the way back over the lateness of an earlier
+/// fit, which is exact there; without one, that of a moment about the row.
+ViewPattern per_second(const Drive& drive, double t, double late, const Robot& robot) {
+  constexpr double kMoment = 0.15;     // s: longer than a row's jitter
+  constexpr double kTellable = 0.005;  // s
+  Pose back;
+  double seconds = late;
+  if (std::abs(late) < kTellable) {
+    back = way_back(drive, t + 0.5 * kMoment, kMoment, robot);
+    seconds = kMoment;
+  } else {
+    back = way_back(drive, t, late, robot);
+  }
+  ViewPattern result;
+  result.ahead = back.x / seconds;
+  result.left = back.y / seconds;
+  result.heading = back.heading / seconds;
+  return result;
+}
+
+ViewPattern times(const ViewPattern& pattern, double factor) {
+  ViewPattern result;
+  result.ahead = factor * pattern.ahead;
+  result.left = factor * pattern.left;
+  result.heading = factor * pattern.heading;
+  return result;
+}
+
+double lateness(const TruthAlignment& alignment, int session, double t) {
+  const auto found = alignment.clocks.find(session);
+  if (found == alignment.clocks.end()) return 0.0;
+  return found->second.late + found->second.drift * (t - found->second.start);
+}
+
+int session_of(const std::vector<int>& sessions, std::size_t recording) {
+  return sessions.empty() ? static_cast<int>(recording) : sessions[recording];
+}
+
+/// Sessions with such rows, and when their drives start.
+template <typename Row>
+std::map<int, TruthClock> clocks_of(const std::vector<Recording>& recordings,
+                                    std::vector<Row> Recording::*rows,
+                                    const std::vector<int>& sessions) {
+  std::map<int, TruthClock> clocks;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    if ((recordings[k].*rows).empty()) continue;
+    clocks.try_emplace(session_of(sessions, k), TruthClock{0.0, 0.0, recordings[k].drive.start()});
+  }
+  return clocks;
+}
+
+/// Patterns of the rows of truth, or of the fixes.
+using Patterns = std::vector<std::vector<ViewPattern>> EffectPattern::*;
+
+/// One value for all rows of all recordings.
+template <typename Row>
+EffectPattern everywhere(const char* name, const ViewPattern& unit, double prior_sd,
+                         const std::vector<Recording>& recordings,
+                         std::vector<Row> Recording::*rows, Patterns patterns) {
+  EffectPattern result;
+  result.name = name;
+  result.prior_sd = prior_sd;
+  for (const Recording& one : recordings) {
+    (result.*patterns).emplace_back((one.*rows).size(), unit);
+  }
+  return result;
+}
+
+/// How late one session's rows are, with `late_at` what an earlier fit has found of that.
+template <typename Row, typename LateAt>
+EffectPattern lateness_of(int session, const std::vector<Recording>& recordings,
+                          std::vector<Row> Recording::*rows, Patterns patterns, const Robot& robot,
+                          const std::vector<int>& sessions, const LateAt& late_at) {
+  EffectPattern result;
+  result.prior_sd = kLateSd;
+  (result.*patterns).resize(recordings.size());
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    if (session_of(sessions, k) != session) continue;
+    for (const Row& row : recordings[k].*rows) {
+      (result.*patterns)[k].push_back(
+          per_second(recordings[k].drive, row.t, late_at(row.t), robot));
+    }
+  }
+  return result;
+}
+
+/// The clock that a lateness grows by.
+EffectPattern drift_of(const EffectPattern& late, const std::vector<Recording>& recordings,
+                       double start) {
+  EffectPattern result = late;
+  result.name = "truth's clock";
+  result.prior_sd = kClockSd;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    for (std::size_t row = 0; row < result.truths[k].size(); ++row) {
+      result.truths[k][row] = times(late.truths[k][row], recordings[k].truth[row].t - start);
+    }
+  }
+  return result;
+}
+
+constexpr ViewPattern kAhead{.ahead = 1.0};
+constexpr ViewPattern kLeft{.left = 1.0};
+constexpr ViewPattern kTurned{.heading = 1.0};
+
+EffectParameters of_truth(const std::vector<Recording>& recordings, const Robot& robot,
+                          const std::vector<int>& sessions, const TruthAlignment& prior) {
+  EffectParameters parameters;
+  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Recording::truth, sessions);
+  if (clocks.empty()) return parameters;
+  const auto add = [&](const char* name, const ViewPattern& unit, double sd) {
+    parameters.push_back(
+        everywhere(name, unit, sd, recordings, &Recording::truth, &EffectPattern::truths));
+  };
+  add("truth's point, ahead", kAhead, kLeverSd);
+  add("truth's point, left", kLeft, kLeverSd);
+  add("truth's heading", kTurned, kHeadingSd);
+  for (const auto& [session, start] : clocks) {
+    const int number = session;
+    EffectPattern late =
+        lateness_of(number, recordings, &Recording::truth, &EffectPattern::truths, robot, sessions,
+                    [&](double t) { return lateness(prior, number, t); });
+    late.name = "truth late";
+    EffectPattern clock = drift_of(late, recordings, start.start);
+    parameters.push_back(std::move(late));
+    parameters.push_back(std::move(clock));
+  }
+  return parameters;
+}
+
+EffectParameters of_fixes(const std::vector<Recording>& recordings, const Robot& robot,
+                          const std::vector<int>& sessions, const FixAlignment& prior) {
+  EffectParameters parameters;
+  const std::map<int, TruthClock> clocks = clocks_of(recordings, &Recording::fixes, sessions);
+  if (clocks.empty()) return parameters;
+  for (const auto& [name, unit] :
+       {std::pair{"antenna, ahead", kAhead}, std::pair{"antenna, left", kLeft}}) {
+    parameters.push_back(
+        everywhere(name, unit, kAntennaSd, recordings, &Recording::fixes, &EffectPattern::fixes));
+  }
+  for (const auto& [session, start] : clocks) {
+    const auto known = prior.late.find(session);
+    const double so_far = known == prior.late.end() ? 0.0 : known->second;
+    EffectPattern late = lateness_of(session, recordings, &Recording::fixes, &EffectPattern::fixes,
+                                     robot, sessions, [so_far](double) { return so_far; });
+    late.name = "fixes late";
+    parameters.push_back(std::move(late));
+  }
+  return parameters;
+}
+
+}  // namespace
+
+EffectParameters reference_alignment(const std::vector<Recording>& recordings, const Robot& robot,
+                                     References of, const std::vector<int>& sessions,
+                                     const ReferenceAlignment& prior) {
+  EffectParameters parameters;
+  if (of.truth) parameters = of_truth(recordings, robot, sessions, prior.truth);
+  if (!of.fixes) return parameters;
+  for (EffectPattern& one : of_fixes(recordings, robot, sessions, prior.fixes)) {
+    parameters.push_back(std::move(one));
+  }
+  return parameters;
+}
+
+ReferenceAlignment alignment_of(const std::vector<Recording>& recordings, References of,
+                                const std::vector<int>& sessions,
+                                const Eigen::VectorXd& coefficients) {
+  ReferenceAlignment result;
+  Eigen::Index at = 0;
+  TruthAlignment& truth = result.truth;
+  if (of.truth) truth.clocks = clocks_of(recordings, &Recording::truth, sessions);
+  if (!truth.clocks.empty()) {
+    truth.ahead = coefficients[at++];
+    truth.left = coefficients[at++];
+    truth.heading = coefficients[at++];
+  }
+  for (auto& [session, clock] : truth.clocks) {
+    clock.late = coefficients[at++];
+    clock.drift = coefficients[at++];
+  }
+  if (!of.fixes) return result;
+  const auto sessions_with = clocks_of(recordings, &Recording::fixes, sessions);
+  if (sessions_with.empty()) return result;
+  result.fixes.ahead = coefficients[at++];
+  result.fixes.left = coefficients[at++];
+  for (const auto& [session, clock] : sessions_with)
+    result.fixes.late[session] = coefficients[at++];
+  return result;
+}
+
+std::vector<Recording> aligned(const std::vector<Recording>& recordings,
+                               const TruthAlignment& alignment, const Robot& robot) {
+  std::vector<Recording> result = recordings;
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    for (TruthRow& row : result[k].truth) {
+      const double late = lateness(alignment, static_cast<int>(k), row.t);
+      const Pose back = way_back(result[k].drive, row.t, late, robot);
+      row.heading = wrap_angle(row.heading - alignment.heading - back.heading);
+      const Vector2 lever =
+          rotation(row.heading) * Vector2(alignment.ahead + back.x, alignment.left + back.y);
+      row.x -= lever.x();
+      row.y -= lever.y();
+    }
+  }
+  return result;
+}
+
+}  // namespace trussmap
