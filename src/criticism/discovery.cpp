@@ -107,6 +107,14 @@ bool predicts_worse(const HeldOut& before, Trial& trial, const std::vector<Recor
   return std::isinf(arrival) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
 }
 
+/// Of dead reckoning, beyond chance.
+bool is_worse(const HorizonChange& change) {
+  return change.share > kNoWorse && change.rise_in_sds > kBeyondChance;
+}
+bool is_better(const HorizonChange& change) {
+  return change.share < kLess && change.rise_in_sds < -kBeyondChance;
+}
+
 /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
 std::size_t best_of(std::vector<Trial>& trials, const std::vector<Recording>& recordings,
                     const LegOptions& legs) {
@@ -158,13 +166,14 @@ class Discoverer {
         take_constants(*diagnosis.gross);
         continue;
       }
-      if (found_.size() < given_ + options_.most_effects && add_for_reckoning()) continue;
-      if (result_.last.verdict != Diagnosis::Verdict::missing) break;
-      if (found_.size() >= given_ + options_.most_effects) {
+      const bool room = found_.size() < given_ + options_.most_effects;
+      const bool missing = result_.last.verdict == Diagnosis::Verdict::missing;
+      if (missing && !room) {
         result_.stopped = {StopReason::limit_reached, {}, options_.most_effects};
         break;
       }
-      if (!add_best()) break;
+      if (missing && add_best()) continue;
+      if (!room || !add_for_reckoning()) break;
     }
     result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
     widen_for_places(result_.found, found_);
@@ -268,10 +277,10 @@ class Discoverer {
       return false;
     }
     const std::size_t best = best_of(trials, recordings_, options_.diagnosis.legs);
-    const double reckoned = reckoned_share(trials[best].fit).value_or(1.0);
+    const HorizonChange reckoned = reckoned_change(trials[best].fit);
     const bool worse = predicts_worse(result_.steps.back().held_out, trials[best], recordings_,
                                       options_.diagnosis.legs);
-    if ((worse && reckoned >= kLess) || reckoned > kNoWorse) {
+    if ((worse && !is_better(reckoned)) || is_worse(reckoned)) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
@@ -289,14 +298,11 @@ class Discoverer {
     return true;
   }
 
-  /// Dead reckoning over the longer horizon with another fit, as each fit's own path judges it, as
-  /// a share of what it is now; nothing where there are too few windows.
-  [[nodiscard]] std::optional<double> reckoned_share(const ModelFit& fit) {
-    const HorizonError before = present_horizons().after_30;
-    const HorizonError after = horizon_errors(*fit.state).after_30;
-    if (std::min(before.windows, after.windows) < kFewestWindows) return std::nullopt;
-    if (before.rms > 0.0) return after.rms / before.rms;
-    return after.rms > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
+  /// Dead reckoning over the longer horizon with another fit beside the present one, as the other's
+  /// path judges both; none where there are too few windows.
+  [[nodiscard]] HorizonChange reckoned_change(const ModelFit& fit) const {
+    const HorizonChange change = horizon_change(*result_.found.state, *fit.state, 30.0);
+    return change.windows < kFewestWindows ? HorizonChange{} : change;
   }
 
   /// What the tests of all effects together are too many for may yet be plain where a known error
@@ -317,9 +323,9 @@ class Discoverer {
       if (trials.empty()) continue;
       const ModelFit& fit = trials.front().fit;
       if (wald(fit, fit.model.effects.size() - 1) < kWorthKeeping) continue;
-      const std::optional<double> share = reckoned_share(fit);
-      if (!share || *share >= least) continue;
-      least = *share;
+      const HorizonChange change = reckoned_change(fit);
+      if (!is_better(change) || change.share >= least) continue;
+      least = change.share;
       best = std::move(trials.front());
     }
     if (!best) return false;

@@ -38,7 +38,8 @@ const std::vector<ReadingKey>& reading_keys() {
   static const std::vector<ReadingKey> all{
       {"compass", "rad", &Noise::compass}, {"sighting", "m", &Noise::sighting},
       {"range", "m", &Noise::range},       {"fix", "m", &Noise::fix},
-      {"bearing", "rad", &Noise::bearing}, {"yaw", "rad", &Noise::yaw}};
+      {"bearing", "rad", &Noise::bearing}, {"yaw", "rad", &Noise::yaw},
+      {"truth", "m", &Noise::truth},       {"truth_heading", "rad", &Noise::truth_heading}};
   return all;
 }
 

@@ -6,7 +6,12 @@
 
 #include "trussmap/held_out.hpp"
 
+#include <vector>
+
 namespace trussmap {
+
+/// Their sum over its standard error. Infinity of fewer than two, or of values all alike.
+[[nodiscard]] double sum_in_sds(const std::vector<double>& values);
 
 /// Mean rise of the squared arrival errors of the legs that both have, over its standard error.
 /// Infinity where fewer than two are the same or all rise alike.

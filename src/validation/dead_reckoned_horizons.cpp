@@ -4,10 +4,13 @@
 
 #include "fit/cleared_recording.hpp"
 #include "recording/time_spans.hpp"
+#include "validation/arrival_rise.hpp"
 #include "validation/blocked_coefficients.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace trussmap {
 namespace {
@@ -35,62 +38,96 @@ Vector2 driven(const Drive& drive, const SessionPath& path, double from, double 
   return rotation(-a.heading) * (b.position() - a.position());
 }
 
-/// Squared errors over one horizon, window by window.
-class Windows {
- public:
-  explicit Windows(double horizon) : horizon_(horizon) {}
+/// The squared error at the end of one window, m^2.
+struct WindowError {
+  std::size_t session = 0;
+  double t = 0.0;  ///< s, its start
+  double squared = 0.0;
+};
 
-  /// Those of a session whose middle is in a block, reckoned with the coefficients without it.
-  void add(const FitState& fit, std::size_t session, const std::vector<double>& nodes,
-           const TimeBlocks& blocks, int block, const SessionPath& reckoned) {
-    const Drive& drive = fit.recordings[session].drive;
-    for (double t = nodes.front(); t + horizon_ <= nodes.back(); t += 0.5 * horizon_) {
-      if (blocks.at(static_cast<int>(session), t + 0.5 * horizon_) != block) continue;
-      if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon_)) continue;
-      const auto& left_out = fit.used.left_out;
-      if (!left_out.empty() && overlaps_any({t, t + horizon_}, left_out[session])) continue;
-      const Vector2 off = driven(drive, reckoned, t, t + horizon_) -
-                          driven(drive, fit.paths[session], t, t + horizon_);
-      sum_ += off.squaredNorm();
-      ++windows_;
+/// Those of a session whose middle is in a block, by a path that is reckoned with the coefficients
+/// without it.
+void add_windows(const FitState& judge, std::size_t session, const std::vector<double>& nodes,
+                 const TimeBlocks& blocks, int block, const SessionPath& reckoned, double horizon,
+                 std::vector<WindowError>& windows) {
+  const Drive& drive = judge.recordings[session].drive;
+  for (double t = nodes.front(); t + horizon <= nodes.back(); t += 0.5 * horizon) {
+    if (blocks.at(static_cast<int>(session), t + 0.5 * horizon) != block) continue;
+    if (!is_anchored(nodes, t) || !is_anchored(nodes, t + horizon)) continue;
+    const auto& left_out = judge.used.left_out;
+    if (!left_out.empty() && overlaps_any({t, t + horizon}, left_out[session])) continue;
+    const Vector2 off = driven(drive, reckoned, t, t + horizon) -
+                        driven(drive, judge.paths[session], t, t + horizon);
+    windows.push_back({session, t, off.squaredNorm()});
+  }
+}
+
+/// Of the one fit's dead reckoning by the other's path; per horizon.
+std::vector<std::vector<WindowError>> window_errors(const FitState& fit, const FitState& judge,
+                                                    const std::vector<double>& horizons) {
+  constexpr int kBlocks = 5;
+  const TimeBlocks blocks(judge.problem, kBlocks);
+  const std::vector<Eigen::VectorXd> offsets = offsets_without_blocks(fit, blocks);
+  std::vector<std::vector<WindowError>> windows(horizons.size());
+  for (int block = 0; block < kBlocks; ++block) {
+    const std::vector<ClearedRecording> clear = cleared(fit, offsets[idx(block)]);
+    for (std::size_t s = 0; s < clear.size(); ++s) {
+      const std::vector<double> nodes = node_times(judge, s);
+      if (nodes.empty()) continue;
+      const SessionPath reckoned = reckoned_path(clear[s], fit.model);
+      for (std::size_t k = 0; k < horizons.size(); ++k) {
+        add_windows(judge, s, nodes, blocks, block, reckoned, horizons[k], windows[k]);
+      }
     }
   }
+  return windows;
+}
 
-  [[nodiscard]] HorizonError error() const {
-    return {windows_ > 0 ? std::sqrt(sum_ / windows_) : 0.0, windows_};
-  }
-
- private:
-  double horizon_;
-  double sum_ = 0.0;
-  int windows_ = 0;
-};
+double mean_square(const std::vector<WindowError>& windows) {
+  double sum = 0.0;
+  for (const WindowError& one : windows) sum += one.squared;
+  return windows.empty() ? 0.0 : sum / static_cast<double>(windows.size());
+}
 
 }  // namespace
 
 std::vector<HorizonError> horizon_errors(const FitState& fit, const std::vector<double>& horizons) {
-  constexpr int kBlocks = 5;
-  const TimeBlocks blocks(fit.problem, kBlocks);
-  const std::vector<Eigen::VectorXd> offsets = offsets_without_blocks(fit, blocks);
-  std::vector<Windows> windows(horizons.begin(), horizons.end());
-  for (int block = 0; block < kBlocks; ++block) {
-    const std::vector<ClearedRecording> clear = cleared(fit, offsets[idx(block)]);
-    for (std::size_t s = 0; s < clear.size(); ++s) {
-      const std::vector<double> nodes = node_times(fit, s);
-      if (nodes.empty()) continue;
-      const SessionPath reckoned = reckoned_path(clear[s], fit.model);
-      for (Windows& one : windows) one.add(fit, s, nodes, blocks, block, reckoned);
-    }
-  }
   std::vector<HorizonError> errors;
-  errors.reserve(windows.size());
-  for (const Windows& one : windows) errors.push_back(one.error());
+  errors.reserve(horizons.size());
+  for (const std::vector<WindowError>& one : window_errors(fit, fit, horizons)) {
+    errors.push_back({std::sqrt(mean_square(one)), static_cast<int>(one.size())});
+  }
   return errors;
 }
 
 HorizonErrors horizon_errors(const FitState& fit) {
   const std::vector<HorizonError> errors = horizon_errors(fit, {10.0, 30.0});
   return {errors[0], errors[1]};
+}
+
+HorizonChange horizon_change(const FitState& before, const FitState& after, double horizon) {
+  constexpr std::size_t kTogether = 4;  // windows overlap by half, and errors last
+  const auto in_time = [](const WindowError& a, const WindowError& b) {
+    return std::pair(a.session, a.t) < std::pair(b.session, b.t);
+  };
+  std::vector<WindowError> first = window_errors(before, after, {horizon}).front();
+  std::vector<WindowError> second = window_errors(after, after, {horizon}).front();
+  std::sort(first.begin(), first.end(), in_time);
+  std::sort(second.begin(), second.end(), in_time);
+  HorizonChange change;
+  change.windows = static_cast<int>(first.size());
+  if (mean_square(first) > 0.0) {
+    change.share = std::sqrt(mean_square(second) / mean_square(first));
+  } else if (mean_square(second) > 0.0) {
+    change.share = std::numeric_limits<double>::infinity();
+  }
+  std::vector<double> rises;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (k % kTogether == 0) rises.push_back(0.0);
+    rises.back() += second[k].squared - first[k].squared;
+  }
+  change.rise_in_sds = sum_in_sds(rises);
+  return change;
 }
 
 }  // namespace trussmap

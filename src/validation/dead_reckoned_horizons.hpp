@@ -35,4 +35,15 @@ struct HorizonErrors {
 [[nodiscard]] std::vector<HorizonError> horizon_errors(const FitState& fit,
                                                        const std::vector<double>& horizons);
 
+/// How another fit's dead reckoning compares.
+struct HorizonChange {
+  double share = 1.0;        ///< of the error, rms
+  double rise_in_sds = 0.0;  ///< of the squared error, over its standard error by blocks of windows
+  int windows = 0;
+};
+
+/// Both judged by the path of the fit `after`, of the same recordings, in the same windows.
+[[nodiscard]] HorizonChange horizon_change(const FitState& before, const FitState& after,
+                                           double horizon);
+
 }  // namespace trussmap

@@ -41,7 +41,8 @@ constinit const TruthKind kTruth{{.words = "truth",
                                   .in_map = InMap::pose,
                                   .noise = "truth",
                                   .other_from = 2,
-                                  .other_noise = "truth_heading"}};
+                                  .other_noise = "truth_heading",
+                                  .noise_is_sought = true}};
 
 }  // namespace
 
