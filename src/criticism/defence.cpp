@@ -229,12 +229,10 @@ class Defence {
 }  // namespace
 
 Defended defended_against_noise(const std::vector<Recording>& recordings, const FitWithNoise& found,
+                                const std::optional<ModelFit>& with,
                                 const std::vector<Effect>& effects, const DefenceOptions& options) {
   Defended result;
-  std::optional<ModelFit> with;
-  try {
-    with = refit_with(recordings, found.fit, effects);
-  } catch (const SolveError&) {  // nobody knows then
+  if (!with) {  // nobody knows then
     result.effects.assign(effects.size(), true);
     return result;
   }

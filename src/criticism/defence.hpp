@@ -36,9 +36,10 @@ struct DefenceOptions {
   double level = 0.05;     ///< of significance
   bool as_stated = false;  ///< the errors are as large as stated
 };
-/// Throws as refit does.
+/// `with`: fitted with the effects (if_fitted_with, refits.hpp). Throws as refit does.
 [[nodiscard]] Defended defended_against_noise(const std::vector<Recording>& recordings,
                                               const FitWithNoise& found,
+                                              const std::optional<ModelFit>& with,
                                               const std::vector<Effect>& effects,
                                               const DefenceOptions& options);
 

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -35,21 +36,24 @@ constexpr double kExplains = 1e-6;     // p, below which an adjustment warns of 
 class Diagnostician {
  public:
   Diagnostician(const std::vector<Recording>& recordings, const ModelFit& fit,
-                const DiagnoseOptions& options)
+                const DiagnoseOptions& options, const KnownLegs& known)
       : recordings_(recordings),
         fit_(fit),
         state_(*fit.state),
         options_(options),
-        legs_(recordings, state_, fitter_options(fit.options), options.legs),
+        legs_(known.legs && known.of == fit.state
+                  ? known.legs
+                  : std::make_shared<const HeldOutLegs>(recordings, state_,
+                                                        fitter_options(fit.options), options.legs)),
         tests_(state_),
-        search_(state_, tests_, {options.level, options.most_missing}, &legs_) {}
+        search_(state_, tests_, {options.level, options.most_missing}, legs_.get()) {}
 
   DiagnosisRun run() {
     result_.chi2 = fit_.chi2;
     result_.dof = fit_.dof;
     result_.coefficients = fit_.coefficients;
     result_.warnings = fit_.warnings;
-    result_.held_out = legs_.metrics();
+    result_.held_out = legs_->metrics();
     result_.lacks = lacks_of(recordings_, fit_.model.robot, fit_.options);
     search_.run();
     result_.tried = static_cast<std::size_t>(search_.tried());
@@ -77,7 +81,7 @@ class Diagnostician {
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Eigen::VectorXd& moved) const {
-    return moved.size() == 0 ? metrics_of(result_.held_out) : metrics_of(legs_.moved(moved));
+    return moved.size() == 0 ? metrics_of(result_.held_out) : metrics_of(legs_->moved(moved));
   }
 
   [[nodiscard]] HeldOutMetrics predicted(const Tested& one) const {
@@ -115,7 +119,7 @@ class Diagnostician {
 
   [[nodiscard]] bool changes_nothing(const Tested& one, const HeldOutMetrics& with_it,
                                      double floor) const {
-    return legs_.has_slopes() && !result_.held_out.legs.empty() && fit_.p_value > kFitsAnyway &&
+    return legs_->has_slopes() && !result_.held_out.legs.empty() && fit_.p_value > kFitsAnyway &&
            with_it.arrival_rms > (1.0 - kNegligible) * result_.held_out.arrival_rms &&
            detectable_rise(one, floor) < kNegligible;
   }
@@ -267,7 +271,8 @@ class Diagnostician {
   const ModelFit& fit_;
   const FitState& state_;
   const DiagnoseOptions& options_;
-  HeldOutLegs legs_;  // before the tests: the largest of what is needed only for a while
+  /// Before the tests: the largest of what is needed only for a while.
+  std::shared_ptr<const HeldOutLegs> legs_;
   ScoreTest tests_;
   EffectSearch search_;
   std::vector<std::vector<LookAlike>> look_alikes_;  ///< of each that is missing
@@ -300,32 +305,40 @@ void tell_of_left_out(Diagnosis& diagnosis, std::size_t still) {
 
 /// About a fit that may be believed.
 DiagnosisRun diagnosis_about(const std::vector<Recording>& recordings, const ModelFit& fit,
-                             const Noise& stated, const DiagnoseOptions& options) {
+                             const Noise& stated, const DiagnoseOptions& options,
+                             const KnownLegs& known) {
   auto under = std::make_shared<const FitWithNoise>(
       options.estimate_noise ? with_noise_beside(recordings, fit, stated) : FitWithNoise{fit, {}});
-  DiagnosisRun run = Diagnostician(recordings, under->fit, options).run();
-  std::vector<Effect> missing = effects_found(run.result);
+  DiagnosisRun run;
+  std::vector<Effect> missing;
+  std::optional<ModelFit> with;  // what is missing, where it can be fitted
+  const auto judge = [&] {
+    run = Diagnostician(recordings, under->fit, options, known).run();
+    missing = effects_found(run.result);
+    with.reset();
+    if (!missing.empty()) with = if_fitted_with(recordings, under->fit, missing);
+  };
   const auto judge_by = [&](FitWithNoise other) {
     under = std::make_shared<const FitWithNoise>(std::move(other));
-    run = Diagnostician(recordings, under->fit, options).run();
-    missing = effects_found(run.result);
+    judge();
   };
+  judge();
   if (options.estimate_noise && !missing.empty()) {
-    if (auto beside = with_noise_beside_found(recordings, *under, missing, stated)) {
+    if (auto beside = with_noise_beside_found(recordings, *under, with, missing, stated)) {
       judge_by(std::move(*beside));
     }
   }
   if (options.estimate_noise && !missing.empty()) {
     const bool as_stated = under->fit.model.noise == stated && under->fit.p_value > kFitsAnyway;
     Defended defended = defended_against_noise(
-        recordings, *under, missing,
+        recordings, *under, with, missing,
         {stated, static_cast<double>(run.result.tried), options.level, as_stated});
     if (defended.otherwise) judge_by(std::move(*defended.otherwise));
   }
   const Noise& asked_of = options.estimate_noise ? stated : fit.model.noise;
   bool answered = under->noise.changed();  // the noise is not the model's any more
   if (!missing.empty()) {
-    RemainingErrors rest = remaining_errors(recordings, under->fit, asked_of, missing);
+    RemainingErrors rest = remaining_errors(recordings, under->fit, with, asked_of, missing);
     run.result.events = std::move(rest.events);
     run.result.noise = std::move(rest.noise);
     if (rest.fitted) tell_of_left_out(run.result, rest.left_out);
@@ -346,7 +359,7 @@ DiagnosisRun diagnosis_about(const std::vector<Recording>& recordings, const Mod
 DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const ModelFit& fit,
                               GrossConstants constants, const Noise& stated,
                               const DiagnoseOptions& options) {
-  DiagnosisRun run = diagnosis_about(recordings, constants.fit, stated, options);
+  DiagnosisRun run = diagnosis_about(recordings, constants.fit, stated, options, {});
   Diagnosis& result = run.result;
   ModelFit given = fit;
   if (result.under) {
@@ -385,11 +398,12 @@ DiagnosisRun diagnosis_beside(const std::vector<Recording>& recordings, const Mo
 }  // namespace
 
 DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings, const ModelFit& fit,
-                           const Noise& stated, const DiagnoseOptions& options) {
+                           const Noise& stated, const DiagnoseOptions& options,
+                           const KnownLegs& known) {
   if (std::optional<GrossConstants> gross = gross_constants(recordings, fit)) {
     return diagnosis_beside(recordings, fit, *std::move(gross), stated, options);
   }
-  return diagnosis_about(recordings, fit, stated, options);
+  return diagnosis_about(recordings, fit, stated, options, known);
 }
 
 Diagnosis diagnose(const std::vector<Recording>& recordings, const ModelFit& fit,

@@ -7,7 +7,9 @@
 #include "criticism/candidates.hpp"
 #include "criticism/gross_constants.hpp"
 #include "trussmap/diagnose.hpp"
+#include "validation/held_out_legs.hpp"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,9 +22,16 @@ struct DiagnosisRun {
   std::optional<GrossConstants> gross;
 };
 
+/// Held-out legs that are worked out already, of the fit with this state.
+struct KnownLegs {
+  std::shared_ptr<const FitState> of = nullptr;
+  std::shared_ptr<const HeldOutLegs> legs = nullptr;
+};
+
 /// `stated`: the noise that the user's model has, which the fit's may differ from by now.
 [[nodiscard]] DiagnosisRun run_diagnosis(const std::vector<Recording>& recordings,
                                          const ModelFit& fit, const Noise& stated,
-                                         const DiagnoseOptions& options);
+                                         const DiagnoseOptions& options,
+                                         const KnownLegs& known = {});
 
 }  // namespace trussmap

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace trussmap {
 namespace {
@@ -63,6 +64,7 @@ struct Trial {
   Candidate candidate;
   ModelFit fit;
   std::optional<HeldOut> held_out = std::nullopt;  ///< once asked for; no legs where untold
+  std::shared_ptr<const HeldOutLegs> legs = nullptr;
 };
 
 bool was_fitted(const ModelFit& fit) {
@@ -89,7 +91,9 @@ std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials, std::size_t t
 double arrival_of(Trial& trial, const std::vector<Recording>& recordings, const LegOptions& legs) {
   if (!trial.held_out) {
     try {
-      trial.held_out = predict_held_out(recordings, trial.fit, legs);
+      trial.legs = std::make_shared<const HeldOutLegs>(recordings, *trial.fit.state,
+                                                       fitter_options(trial.fit.options), legs);
+      trial.held_out = trial.legs->metrics();
     } catch (const SolveError&) {  // what is left without those legs does not tell the effect
       trial.held_out = HeldOut{};
       trial.held_out->arrival_rms = std::numeric_limits<double>::infinity();
@@ -107,12 +111,11 @@ bool predicts_worse(const HeldOut& before, Trial& trial, const std::vector<Recor
   return std::isinf(arrival) || rise_in_sds(before, *trial.held_out) > kBeyondChance;
 }
 
-/// Of dead reckoning, beyond chance.
-bool is_worse(const HorizonChange& change) {
-  return change.share > kNoWorse && change.rise_in_sds > kBeyondChance;
-}
-bool is_better(const HorizonChange& change) {
-  return change.share < kLess && change.rise_in_sds < -kBeyondChance;
+/// Of dead reckoning: with an effect that explains much, beyond chance only.
+bool reckons_worse(const HorizonChange& change, const Finding& with) {
+  constexpr double kPlain = 1e-6;  // p
+  return change.share > kNoWorse &&
+         (with.p_adjusted > kPlain || change.rise_in_sds > kBeyondChance);
 }
 
 /// chi^2 decides where it can, else held-out legs, else the order of the diagnosis.
@@ -155,7 +158,8 @@ class Discoverer {
     while (true) {
       tell({DiscoveryStage::Kind::searching, {}});
       DiagnosisRun diagnosis =
-          run_diagnosis(recordings_, result_.found, stated_, options_.diagnosis);
+          run_diagnosis(recordings_, result_.found, stated_, options_.diagnosis, legs_);
+      legs_ = {};
       result_.last = std::move(diagnosis.result);
       take_noise();
       candidates_ = std::move(diagnosis.candidates);
@@ -166,14 +170,13 @@ class Discoverer {
         take_constants(*diagnosis.gross);
         continue;
       }
-      const bool room = found_.size() < given_ + options_.most_effects;
-      const bool missing = result_.last.verdict == Diagnosis::Verdict::missing;
-      if (missing && !room) {
+      if (found_.size() < given_ + options_.most_effects && add_for_reckoning()) continue;
+      if (result_.last.verdict != Diagnosis::Verdict::missing) break;
+      if (found_.size() >= given_ + options_.most_effects) {
         result_.stopped = {StopReason::limit_reached, {}, options_.most_effects};
         break;
       }
-      if (missing && add_best()) continue;
-      if (!room || !add_for_reckoning()) break;
+      if (!add_best()) break;
     }
     result_.consistent = result_.last.verdict == Diagnosis::Verdict::nothing_missing;
     widen_for_places(result_.found, found_);
@@ -280,12 +283,13 @@ class Discoverer {
     const HorizonChange reckoned = reckoned_change(trials[best].fit);
     const bool worse = predicts_worse(result_.steps.back().held_out, trials[best], recordings_,
                                       options_.diagnosis.legs);
-    if ((worse && !is_better(reckoned)) || is_worse(reckoned)) {
+    if ((worse && reckoned.share >= kLess) || reckons_worse(reckoned, winner)) {
       stop(StopReason::predicts_worse, trials[best].candidate.effect.name);
       return false;
     }
     std::vector<LookAlike> look_alikes = rivals_of(trials, best, winner);
     found_.push_back(trials[best].candidate);
+    legs_ = {trials[best].fit.state, trials[best].legs};
     result_.found = std::move(trials[best].fit);
     seek_parameters_anew();
     std::vector<std::string> dropped = eliminate_backward();
@@ -307,13 +311,13 @@ class Discoverer {
 
   /// What the tests of all effects together are too many for may yet be plain where a known error
   /// of the motion is asked for by itself: a wheelbase beside a loss in arcs. It has to be surely
-  /// there and to make dead reckoning better. Only beside something found: nothing is sought so in
-  /// recordings that the model explains.
+  /// there and to make dead reckoning better; of several the one that explains most is taken. Only
+  /// beside something found: nothing is sought so in recordings that the model explains.
   bool add_for_reckoning() {
     if (found_.size() == given_) return false;
     if (present_horizons().after_30.windows < kFewestWindows) return false;
     std::optional<Trial> best;
-    double least = kLess;
+    double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < result_.last.findings.size(); ++k) {
       if (!is_common_motion(candidates_[k]) ||
           result_.last.findings[k].score < 0.25 * kWorthKeeping) {
@@ -323,9 +327,8 @@ class Discoverer {
       if (trials.empty()) continue;
       const ModelFit& fit = trials.front().fit;
       if (wald(fit, fit.model.effects.size() - 1) < kWorthKeeping) continue;
-      const HorizonChange change = reckoned_change(fit);
-      if (!is_better(change) || change.share >= least) continue;
-      least = change.share;
+      if (chi2_of_all(fit) >= least || reckoned_change(fit).share >= kLess) continue;
+      least = chi2_of_all(fit);
       best = std::move(trials.front());
     }
     if (!best) return false;
@@ -390,6 +393,7 @@ class Discoverer {
   Noise stated_;
   std::vector<Candidate> found_;            ///< one per effect of the model; empty for those given
   std::vector<Candidate> candidates_;       ///< one per finding of the last diagnosis
+  KnownLegs legs_;                          ///< of what was added last
   std::shared_ptr<const FitState> judged_;  ///< of which the errors over the horizons are
   HorizonErrors horizons_;
   Discovery result_;

@@ -107,18 +107,18 @@ FitWithNoise with_noise_beside(const std::vector<Recording>& recordings, const M
 
 std::optional<FitWithNoise> with_noise_beside_found(const std::vector<Recording>& recordings,
                                                     const FitWithNoise& under,
+                                                    const std::optional<ModelFit>& with,
                                                     const std::vector<Effect>& found,
                                                     const Noise& stated) {
   const bool sought = std::any_of(found.begin(), found.end(), [](const Effect& one) {
     return std::any_of(one.shape.begin(), one.shape.end(),
                        [](const Shape& shape) { return !shape.parameters().empty(); });
   });
-  if (!sought || !under.noise.changed()) return std::nullopt;
+  if (!sought || !under.noise.changed() || !with) return std::nullopt;
   NoiseFitOptions options;
   options.errors = false;
   try {
-    const ModelFit beside = refit_with(recordings, under.fit, found);
-    NoiseReml reml(*beside.state, stated);
+    NoiseReml reml(*with->state, stated);
     FittedNoise noise = fit_noise(reml, {}, options);
     if (noise.noise == under.noise.noise) return std::nullopt;
     noise.tried = std::max(noise.tried, under.noise.tried);

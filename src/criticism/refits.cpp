@@ -3,6 +3,7 @@
 #include "criticism/refits.hpp"
 
 #include "fit/fit_state.hpp"
+#include "trussmap/error.hpp"
 
 namespace trussmap {
 
@@ -11,6 +12,15 @@ ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fi
   Model model = fit.model;
   model.effects.insert(model.effects.end(), effects.begin(), effects.end());
   return refit(recordings, model, fit);
+}
+
+std::optional<ModelFit> if_fitted_with(const std::vector<Recording>& recordings,
+                                       const ModelFit& fit, const std::vector<Effect>& effects) {
+  try {
+    return refit_with(recordings, fit, effects);
+  } catch (const SolveError&) {
+    return std::nullopt;
+  }
 }
 
 ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,

@@ -6,6 +6,7 @@
 
 #include "trussmap/fit_model.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -13,6 +14,11 @@ namespace trussmap {
 /// With these effects in the model, after its own.
 [[nodiscard]] ModelFit refit_with(const std::vector<Recording>& recordings, const ModelFit& fit,
                                   const std::vector<Effect>& effects);
+
+/// Nothing where they cannot be fitted together.
+[[nodiscard]] std::optional<ModelFit> if_fitted_with(const std::vector<Recording>& recordings,
+                                                     const ModelFit& fit,
+                                                     const std::vector<Effect>& effects);
 
 /// With this noise.
 [[nodiscard]] ModelFit refit_under(const std::vector<Recording>& recordings, const ModelFit& fit,

@@ -8,7 +8,6 @@
 #include "criticism/score_test.hpp"
 #include "fit/fit_state.hpp"
 #include "linalg/dense.hpp"
-#include "trussmap/error.hpp"
 
 #include <iterator>
 #include <utility>
@@ -28,15 +27,6 @@ struct Asked {
   }
 };
 
-Asked with_effects(const std::vector<Recording>& recordings, const ModelFit& fit,
-                   const std::vector<Effect>& missing) {
-  try {
-    return {refit_with(recordings, fit, missing), {}};
-  } catch (const SolveError&) {
-    return {fit, missing};
-  }
-}
-
 std::vector<NoiseTest> laws_of(const Asked& asked) {
   const ScoreTest tests(*asked.fit.state);
   return test_noise_laws(*asked.fit.state, tests, asked.nuisance(tests));
@@ -50,9 +40,10 @@ Asked with_noise_as(const std::vector<Recording>& recordings, const Noise& state
 }  // namespace
 
 RemainingErrors remaining_errors(const std::vector<Recording>& recordings, const ModelFit& fit,
-                                 const Noise& stated, const std::vector<Effect>& missing) {
+                                 const std::optional<ModelFit>& with, const Noise& stated,
+                                 const std::vector<Effect>& missing) {
   RemainingErrors result;
-  const Asked asked = with_effects(recordings, fit, missing);
+  const Asked asked = with ? Asked{*with, {}} : Asked{fit, missing};
   result.fitted = asked.beside.empty();
   result.left_out = asked.fit.left_out.size();
   result.p_value = asked.fit.p_value;

@@ -9,6 +9,7 @@
 #include "trussmap/diagnose.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace trussmap {
@@ -21,11 +22,14 @@ struct RemainingErrors {
   double p_value = 0.0;           ///< of chi^2
 };
 
-/// `fit` lacks `missing`, whose places and thresholds are known; `stated`: the noise that the
-/// user's model has. Where they cannot be fitted together, all is asked of the fit as it is, less
-/// what their columns explain. Throws as refit does.
+/// `fit` lacks `missing`, whose places and thresholds are known, and which are in the fit `with`
+/// (if_fitted_with, refits.hpp); `stated`: the noise that the user's model has. Where they cannot
+/// be fitted together, all is asked of the fit as it is, less what their columns explain. Throws as
+/// refit does.
 [[nodiscard]] RemainingErrors remaining_errors(const std::vector<Recording>& recordings,
-                                               const ModelFit& fit, const Noise& stated,
+                                               const ModelFit& fit,
+                                               const std::optional<ModelFit>& with,
+                                               const Noise& stated,
                                                const std::vector<Effect>& missing);
 
 /// The laws of noise alone, of a fit that lacks nothing.

@@ -113,6 +113,17 @@ bool is_settled(const FitterOptions& options, const Fitting& now, const FitChang
   return change.coefficients < (has(is_delay) ? kCutAnew : 1.0);
 }
 
+/// Whether rounds go round in circles: by a delay a sighting may fall into one row and back. Each
+/// figure is what a round still moved.
+bool circles(const std::vector<double>& moved) {
+  constexpr std::ptrdiff_t kPatience = 6;  // rounds
+  constexpr double kNoLess = 0.5;
+  if (std::ssize(moved) <= 2 * kPatience) return false;
+  const auto lately = moved.end() - kPatience;
+  return *std::min_element(lately, moved.end()) >
+         kNoLess * *std::min_element(moved.begin(), lately);
+}
+
 std::vector<EffectEstimate> estimates(const Fitting& now) {
   const FitState& fit = now.fit;
   std::vector<EffectEstimate> result;
@@ -134,7 +145,7 @@ std::vector<EffectEstimate> estimates(const Fitting& now) {
   return result;
 }
 
-void warn(const FitterOptions& options, const FitChange& change, FitState& fit) {
+void warn(int rounds, const FitChange& change, FitState& fit) {
   for (const NoiseProcess& one : fit.model.noise.processes) {
     if (!(one.tails > 0.0) || has_used_tails(one)) continue;
     fit.adjustment.warnings.push_back(
@@ -142,10 +153,9 @@ void warn(const FitterOptions& options, const FitChange& change, FitState& fit) 
                " are not used: only white noise of sightings has them"));
   }
   if (fit.settled) return;
-  fit.adjustment.warnings.push_back(joined("shapes and path did not settle in ", options.max_rounds,
-                                           " rounds; in the last the path moved by up to ",
-                                           change.path, " m or rad, a measurement by up to ",
-                                           change.offsets, " standard deviations"));
+  fit.adjustment.warnings.push_back(joined(
+      "shapes and path did not settle in ", rounds, " rounds; in the last the path moved by up to ",
+      change.path, " m or rad, a measurement by up to ", change.offsets, " standard deviations"));
 }
 
 }  // namespace
@@ -212,6 +222,7 @@ FitState fit_recordings(const std::vector<Recording>& recordings, const Model& m
   lay_out_recordings(task, now);
   start_fit(task, now);
   FitChange change;
+  std::vector<double> moved;
   for (; now.round < options.max_rounds; ++now.round) {
     const bool first = now.round == 0;
     const std::size_t measured = fit.problem.measurements.size();
@@ -226,16 +237,18 @@ FitState fit_recordings(const std::vector<Recording>& recordings, const Model& m
     change = first ? adjust_from_starts(task, now)
                    : adjust_once(task, same ? &fit.adjustment : nullptr, now);
     fit.settled = is_settled(options, now, change);
-    const bool last = fit.settled || now.round + 1 == options.max_rounds;
+    moved.push_back(std::max(change.coefficients, change.offsets / options.still_offset));
+    const bool last = fit.settled || now.round + 1 == options.max_rounds || circles(moved);
     if ((first || last) && options.fit_effects && hold_one(task, now)) {
       fit.settled = false;
+      moved.clear();
       continue;
     }
-    if (fit.settled) break;
+    if (last) break;
   }
   if (options.paths && !now.columns_see_paths()) lay_paths(fit);
   fit.effects = estimates(now);
-  warn(options, change, fit);
+  warn(std::min(now.round + 1, options.max_rounds), change, fit);
   return std::move(fit);
 }
 

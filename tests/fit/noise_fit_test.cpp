@@ -4,11 +4,13 @@
 #include "trussmap/noise_fit.hpp"
 
 #include "estimation/simulated_recordings.hpp"
+#include "trussmap/dead_reckoning.hpp"
 #include "trussmap/diagnose.hpp"
 
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <random>
 #include <stdexcept>
 #include <string>
 
@@ -94,6 +96,32 @@ TEST(FitNoise, FindsTravelErrorsOfLegs) {
   const NoiseSource& travel = source_of(noise, "travel, per leg");
   EXPECT_NEAR(travel.sd, 0.004, 4.0 * travel.sd_error);
   EXPECT_LT(travel.sd_error, 0.001);
+}
+
+// Truth that is dead reckoning with errors ten and six times as large as stated, independent from
+// row to row: no noise of the wheels stands in for them.
+TEST(FitNoise, FindsTheTruthsOwnNoise) {
+  RoughRecording one = rough_recording("", 7);
+  one.recording.sightings.clear();
+  one.recording.survey.clear();
+  one.recording.drive.heading.clear();
+  const std::vector<Pose> path =
+      dead_reckoned_path(one.recording.drive, one.model.robot, one.model.noise);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (std::size_t row = 19; row < path.size(); row += 20) {
+    one.recording.truth.push_back({one.recording.drive.t[row], path[row].x + 0.02 * normal(random),
+                                   path[row].y + 0.02 * normal(random),
+                                   path[row].heading + 0.03 * normal(random)});
+  }
+  const FittedNoise noise = noise_of(one);
+  const NoiseSource& place = source_of(noise, "truth");
+  EXPECT_NEAR(place.sd, 0.02, 4.0 * place.sd_error);
+  EXPECT_LT(place.sd_error, 0.002);
+  const NoiseSource& heading = source_of(noise, "truth_heading");
+  EXPECT_NEAR(heading.sd, 0.03, 4.0 * heading.sd_error);
+  EXPECT_LT(heading.sd_error, 0.003);
+  EXPECT_LT(source_of(noise, "wheels").sd, 0.001);
 }
 
 // A wheelbase 3 % off looks like turning errors; beside the effect, or with it in the model, the

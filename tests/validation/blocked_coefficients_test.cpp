@@ -121,5 +121,25 @@ TEST(BlockedCoefficients, VainEffectsGainLessThanInTheSample) {
   EXPECT_GT(after.after_10.rms, 0.95 * before.after_10.rms);
 }
 
+// Wheels that are wrong, with and without them in the model: each way round, judged by the other's
+// path. A model beside itself changes nothing.
+TEST(HorizonChange, TellsTheBetterModelBeyondChance) {
+  Disturbance wheels;
+  wheels.motion = [](const testing::RecordedRow& row) {
+    return testing::Travelled{row.ds(), 0.97 * row.dtheta()};
+  };
+  const Recording recording = recorded(wheels, 64);
+  const ModelFit without = fit_model({recording}, inverted_model());
+  const ModelFit with = fit_model({recording}, with_effects({{Channel::turn, "1"}}));
+  const HorizonChange better = horizon_change(*without.state, *with.state, 10.0);
+  EXPECT_GT(better.windows, 20);
+  EXPECT_LT(better.share, 0.9);
+  EXPECT_LT(better.rise_in_sds, -2.0);
+  const HorizonChange worse = horizon_change(*with.state, *without.state, 10.0);
+  EXPECT_GT(worse.share, 1.1);
+  EXPECT_GT(worse.rise_in_sds, 2.0);
+  EXPECT_EQ(horizon_change(*with.state, *with.state, 10.0).share, 1.0);
+}
+
 }  // namespace
 }  // namespace trussmap::blocked_coefficients_test
