@@ -36,6 +36,12 @@ struct SurveyComparison {
   double rms_all = 0.0;  ///< m, rigid, with the contradicting ones
   std::vector<std::string> contradicting;                      ///< names, in order
   std::vector<std::pair<std::string, std::string>> exchanged;  ///< each lies where the other should
+
+  /// Whether the scale means anything: where none makes them alike, the best one is that of a map
+  /// shrunk to a point.
+  [[nodiscard]] bool has_scale() const {
+    return (similarity.scale > 0.5 && similarity.scale < 2.0) || similarity.rms < 0.5 * rigid.rms;
+  }
 };
 
 /// Needs three common landmarks; with fewer, `landmarks` says how many and the rest is zero.

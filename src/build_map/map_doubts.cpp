@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "build_map/map_doubts.hpp"
 
+#include "build_map/measured_doubts.hpp"
 #include "geometry/units.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
@@ -67,22 +68,6 @@ double distance_from(const FitState& fit, const LandmarkGraph& map) {
 }
 
 /// Root mean square distance of places from their middle, m.
-double extent_of(const std::vector<Vector2>& places) {
-  const double count = std::max(1.0, static_cast<double>(places.size()));
-  Vector2 middle = Vector2::Zero();
-  for (const Vector2& one : places) middle += one / count;
-  double sum = 0.0;
-  for (const Vector2& one : places) sum += (one - middle).squaredNorm();
-  return std::sqrt(sum / count);
-}
-
-double extent_of(const LandmarkGraph& map) {
-  std::vector<Vector2> places;
-  places.reserve(idx(map.landmarks()));
-  for (int k = 0; k < map.landmarks(); ++k) places.push_back(map.landmark(k).position);
-  return extent_of(places);
-}
-
 int sightings_of(const RecordingProblem& problem) {
   return static_cast<int>(
       std::count_if(problem.measurements.begin(), problem.measurements.end(), is_sighting));
@@ -240,15 +225,6 @@ void doubt_ties(BuiltMap& built) {
   }
 }
 
-void doubt_against_survey(BuiltMap& built) {
-  if (!built.on_survey || built.on_survey->comparison.contradicting.empty()) return;
-  const SurveyComparison& comparison = built.on_survey->comparison;
-  const bool exchanged = 2 * comparison.exchanged.size() == comparison.contradicting.size();
-  built.warnings.push_back(joined("the survey contradicts the map at ",
-                                  listed(comparison.contradicting),
-                                  exchanged ? ": exchanged labels" : ""));
-}
-
 std::vector<std::string> unique(std::vector<std::string> names) {
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
@@ -321,6 +297,22 @@ void doubt_shape(BuiltMap& built, const MapFitState& best) {
 
 }  // namespace
 
+double extent_of(const std::vector<Vector2>& places) {
+  const double count = std::max(1.0, static_cast<double>(places.size()));
+  Vector2 middle = Vector2::Zero();
+  for (const Vector2& one : places) middle += one / count;
+  double sum = 0.0;
+  for (const Vector2& one : places) sum += (one - middle).squaredNorm();
+  return std::sqrt(sum / count);
+}
+
+double extent_of(const LandmarkGraph& map) {
+  std::vector<Vector2> places;
+  places.reserve(idx(map.landmarks()));
+  for (int k = 0; k < map.landmarks(); ++k) places.push_back(map.landmark(k).position);
+  return extent_of(places);
+}
+
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 5;
   std::string result;
@@ -367,13 +359,14 @@ void doubt(BuiltMap& built, const MapFitState& best, const std::vector<Recording
   doubt_fit(built, best);
   if (!built.paths.empty()) {
     doubt_ties(built);
+    doubt_against_truth(built);
     return;
   }
   tell_left_out(best.fit, built.warnings);
   std::ranges::move(mirror_warnings(best.fit.problem, best.fit.adjustment),
                     std::back_inserter(built.warnings));
   doubt_shape(built, best);
-  doubt_against_survey(built);
+  doubt_against_survey(built, model.noise);
 }
 
 }  // namespace trussmap

@@ -286,8 +286,11 @@ Page map_page(const BuiltMap& built, const std::string& subject) {
       page.facts.push_back({fmt::format("{:.3f} m", built.on_survey->rms_dead_reckoning),
                             "dead reckoning off the survey (rms)"});
     }
-    page.facts.push_back({fmt::format("{:.3f} m", survey.similarity.rms),
-                          "with a scale as well: " + map_scale_in_words(survey.similarity.scale)});
+    if (survey.has_scale()) {
+      page.facts.push_back(
+          {fmt::format("{:.3f} m", survey.similarity.rms),
+           "with a scale as well: " + map_scale_in_words(survey.similarity.scale)});
+    }
   }
   page.facts.push_back(
       {fmt::format("{:.2f}", built.quality.dispersion), "dispersion (1: as the model says)"});

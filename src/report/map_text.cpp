@@ -25,8 +25,10 @@ std::string survey_text(const MapOnSurvey& on_survey) {
     text +=
         fmt::format("  {:<28} {:>8.3f} m\n", "rms of dead reckoning", on_survey.rms_dead_reckoning);
   }
-  text += fmt::format("  {:<28} {:>8.3f} m  ({})\n", "rms with a scale as well", map.similarity.rms,
-                      map_scale_in_words(map.similarity.scale));
+  if (map.has_scale()) {
+    text += fmt::format("  {:<28} {:>8.3f} m  ({})\n", "rms with a scale as well",
+                        map.similarity.rms, map_scale_in_words(map.similarity.scale));
+  }
   if (map.contradicting.empty()) return text;
   text += fmt::format(
       "\n  These landmarks contradict the survey and do not count above (with them the rms "

@@ -35,7 +35,7 @@ Found found(const Discovery& discovery, Channel channel) {
 }
 
 // Its dead reckoning looks worse beside its own path than the stated model's beside that model's.
-TEST(PracticeDiscovery, ALoadOnOneWheelIsTaken) {
+TEST(SlowPracticeDiscovery, ALoadOnOneWheelIsTaken) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   const Discovery discovery = discovered("data/hidden/k");
   EXPECT_TRUE(discovery.consistent);
@@ -45,7 +45,7 @@ TEST(PracticeDiscovery, ALoadOnOneWheelIsTaken) {
 }
 
 // A compass offset or a creep, and the wheels' scale, which explains more than any loss in arcs.
-TEST(PracticeDiscovery, WhatExplainsMostComesBeforeWhatHelpsDeadReckoning) {
+TEST(SlowPracticeDiscovery, WhatExplainsMostComesBeforeWhatHelpsDeadReckoning) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   const Discovery discovery = discovered("data/hidden/l");
   EXPECT_TRUE(discovery.consistent);
