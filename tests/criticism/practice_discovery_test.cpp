@@ -45,7 +45,7 @@ TEST(SlowPracticeDiscovery, ALoadOnOneWheelIsTaken) {
 }
 
 // A compass offset or a creep, and the wheels' scale, which explains more than any loss in arcs.
-TEST(SlowPracticeDiscovery, WhatExplainsMostComesBeforeWhatHelpsDeadReckoning) {
+TEST(SlowPracticeDiscovery, OfCommonErrorsTheOneThatExplainsMostIsTaken) {
   TRUSSMAP_NEEDS_SHARED("data/hidden");
   const Discovery discovery = discovered("data/hidden/l");
   EXPECT_TRUE(discovery.consistent);
