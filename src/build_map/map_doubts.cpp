@@ -67,7 +67,6 @@ double distance_from(const FitState& fit, const LandmarkGraph& map) {
   return here.size() < 2 ? 0.0 : align_rigidly(here, there).rms;
 }
 
-/// Root mean square distance of places from their middle, m.
 int sightings_of(const RecordingProblem& problem) {
   return static_cast<int>(
       std::count_if(problem.measurements.begin(), problem.measurements.end(), is_sighting));

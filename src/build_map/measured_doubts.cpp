@@ -3,6 +3,8 @@
 #include "build_map/measured_doubts.hpp"
 
 #include "build_map/map_doubts.hpp"
+#include "estimation/kinds/independent_rows.hpp"
+#include "map/common_landmarks.hpp"
 #include "statistics/median.hpp"
 #include "text/number_text.hpp"
 #include "trussmap/planar.hpp"
@@ -27,35 +29,16 @@ bool contradicts(double rms, double sd, double extent) {
 double survey_sd(const std::vector<SurveyPoint>& points, const Noise& noise) {
   std::vector<double> sds;
   sds.reserve(points.size());
-  for (const SurveyPoint& one : points) sds.push_back(std::isnan(one.sd) ? noise.survey : one.sd);
+  for (const SurveyPoint& one : points) sds.push_back(stated_or(one.sd, noise.survey));
   return median(std::move(sds));
 }
 
-/// The map's landmarks and where the survey has them, those left out that contradict by themselves.
-struct Pairs {
-  std::vector<Vector2> map;
-  std::vector<Vector2> survey;
-};
-
-Pairs pairs_of(const BuiltMap& built) {
-  Pairs result;
-  const std::vector<std::string>& out = built.on_survey->comparison.contradicting;
-  for (const SurveyPoint& one : built.on_survey->points) {
-    const auto place = built.map.find(one.landmark);
-    if (!place || std::find(out.begin(), out.end(), one.landmark) != out.end()) continue;
-    result.map.push_back(built.map.landmark(*place).position);
-    result.survey.emplace_back(one.x, one.y);
-  }
-  return result;
-}
-
-/// What makes the map fit the survey, in words; empty: nothing that is looked for.
-std::string explanation(const BuiltMap& built, const Pairs& pairs) {
-  const SurveyComparison& found = built.on_survey->comparison;
+/// What makes the map fit the survey, in words.
+std::string explanation(const SurveyComparison& found, const CommonLandmarks& common) {
   const double mended = kMends * found.rigid.rms;
-  std::vector<Vector2> mirrored = pairs.survey;
+  std::vector<Vector2> mirrored = common.surveyed;
   for (Vector2& one : mirrored) one.y() = -one.y();
-  if (align_rigidly(pairs.map, mirrored).rms < mended) {
+  if (align_rigidly(common.in_map, mirrored).rms < mended) {
     return "; it fits the mirrored survey: are x and y exchanged there, or has one the wrong sign?";
   }
   if (found.similarity.rms < mended) {
@@ -64,9 +47,7 @@ std::string explanation(const BuiltMap& built, const Pairs& pairs) {
                   factor > 1.0 ? " times as large" : " times as small",
                   ": is the survey in another unit, or is the wheels' travel off by as much?");
   }
-  Pairs both = pairs;
-  for (Vector2& one : both.survey) one.y() = -one.y();
-  if (align_by_similarity(both.map, both.survey).rms < mended) {
+  if (align_by_similarity(common.in_map, mirrored).rms < mended) {
     return "; it fits the mirrored survey in another unit";
   }
   return "; is it of another place, or are names exchanged?";
@@ -85,11 +66,12 @@ void doubt_against_survey(BuiltMap& built, const Noise& noise) {
   }
   const double sd = std::hypot(built.quality.median_sd, built.quality.from_adjusted,
                                survey_sd(built.on_survey->points, noise));
-  const Pairs pairs = pairs_of(built);
-  if (!contradicts(comparison.rigid.rms, sd, extent_of(pairs.map))) return;
+  const CommonLandmarks common =
+      common_landmarks(positions_of(built.map), built.on_survey->points, comparison.contradicting);
+  if (!contradicts(comparison.rigid.rms, sd, extent_of(common.in_map))) return;
   built.warnings.push_back(joined("the survey contradicts the map, by ",
                                   short_text(comparison.rigid.rms, 3), " m (rms)",
-                                  explanation(built, pairs)));
+                                  explanation(comparison, common)));
 }
 
 void doubt_against_truth(BuiltMap& built) {

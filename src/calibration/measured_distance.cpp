@@ -2,24 +2,25 @@
 // SPDX-License-Identifier: MIT
 #include "calibration/measured_distance.hpp"
 
+#include "estimation/kinds/independent_rows.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace trussmap {
 namespace {
 
+constexpr double kFar = 10.0;  // standard deviations: what they add to a square is then 1 %
+
 bool spans(const Loop& loop, const Noise& noise) {
-  constexpr double kFar = 10.0;  // standard deviations: what they add to a square is then 1 %
-  const double sd = std::isnan(loop.sd) ? noise.loop : loop.sd;
-  return std::hypot(loop.dx, loop.dy) > kFar * sd;
+  return std::hypot(loop.dx, loop.dy) > kFar * stated_or(loop.sd, noise.loop);
 }
 
 /// Whether two of the fixes are much further from each other than they may be off.
 bool spans(const std::vector<Fix>& fixes, const Noise& noise) {
-  constexpr double kFar = 10.0;  // standard deviations, as above
   return std::any_of(fixes.begin(), fixes.end(), [&](const Fix& one) {
-    const double sd = std::isnan(one.sd) ? noise.fix : one.sd;
-    return std::hypot(one.x - fixes.front().x, one.y - fixes.front().y) > kFar * sd;
+    return std::hypot(one.x - fixes.front().x, one.y - fixes.front().y) >
+           kFar * stated_or(one.sd, noise.fix);
   });
 }
 

@@ -179,24 +179,24 @@ EffectParameters of_fixes(const std::vector<Recording>& recordings, const Robot&
 }  // namespace
 
 EffectParameters reference_alignment(const std::vector<Recording>& recordings, const Robot& robot,
-                                     References of, const std::vector<int>& sessions,
+                                     const ProblemOptions& used, const std::vector<int>& sessions,
                                      const ReferenceAlignment& prior) {
   EffectParameters parameters;
-  if (of.truth) parameters = of_truth(recordings, robot, sessions, prior.truth);
-  if (!of.fixes) return parameters;
+  if (used.truth) parameters = of_truth(recordings, robot, sessions, prior.truth);
+  if (!used.fixes) return parameters;
   for (EffectPattern& one : of_fixes(recordings, robot, sessions, prior.fixes)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
 }
 
-ReferenceAlignment alignment_of(const std::vector<Recording>& recordings, References of,
-                                const std::vector<int>& sessions,
+ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
+                                const ProblemOptions& used, const std::vector<int>& sessions,
                                 const Eigen::VectorXd& coefficients) {
   ReferenceAlignment result;
   Eigen::Index at = 0;
   TruthAlignment& truth = result.truth;
-  if (of.truth) truth.clocks = clocks_of(recordings, &Recording::truth, sessions);
+  if (used.truth) truth.clocks = clocks_of(recordings, &Recording::truth, sessions);
   if (!truth.clocks.empty()) {
     truth.ahead = coefficients[at++];
     truth.left = coefficients[at++];
@@ -206,7 +206,7 @@ ReferenceAlignment alignment_of(const std::vector<Recording>& recordings, Refere
     clock.late = coefficients[at++];
     clock.drift = coefficients[at++];
   }
-  if (!of.fixes) return result;
+  if (!used.fixes) return result;
   const auto sessions_with = clocks_of(recordings, &Recording::fixes, sessions);
   if (sessions_with.empty()) return result;
   result.fixes.ahead = coefficients[at++];

@@ -17,6 +17,7 @@
 #pragma once
 
 #include "estimation/effect_parameters.hpp"
+#include "estimation/recording_problem.hpp"
 #include "trussmap/calibrate.hpp"
 
 #include <vector>
@@ -28,24 +29,19 @@ struct ReferenceAlignment {
   FixAlignment fixes;
 };
 
-/// Of which of them the alignment is sought.
-struct References {
-  bool truth = true;
-  bool fixes = true;
-};
-
 /// Coefficients of all that, truth's before the fixes', each in this order, sessions in rising
 /// order, late and clock in turn. Weak priors keep what a motion does not show near 0. None of what
-/// no recording has. `sessions`: of each recording, where several are segments of one drive; empty:
-/// 0, 1, 2 ... `prior`: what an earlier fit has found.
+/// no recording has or is not used. `sessions`: of each recording, where several are segments of
+/// one drive; empty: 0, 1, 2 ... `prior`: what an earlier fit has found.
 [[nodiscard]] EffectParameters reference_alignment(const std::vector<Recording>& recordings,
-                                                   const Robot& robot, References of,
+                                                   const Robot& robot, const ProblemOptions& used,
                                                    const std::vector<int>& sessions,
                                                    const ReferenceAlignment& prior = {});
 
 /// The estimated coefficients of those parameters, read.
 [[nodiscard]] ReferenceAlignment alignment_of(const std::vector<Recording>& recordings,
-                                              References of, const std::vector<int>& sessions,
+                                              const ProblemOptions& used,
+                                              const std::vector<int>& sessions,
                                               const Eigen::VectorXd& coefficients);
 
 /// Recordings, session after session, with their truth moved to where it shows the axle's centre

@@ -27,10 +27,6 @@
 namespace trussmap {
 namespace {
 
-References references_of(const ProblemOptions& options) {
-  return {options.truth, options.fixes};
-}
-
 /// Parameters: those of the constants that are wanted, and the alignment of truth and fixes.
 EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording>& recordings,
                                const Robot& robot, const WheelCalibrationOptions& options,
@@ -40,8 +36,8 @@ EffectParameters parameters_of(const Wanted& wanted, const std::vector<Recording
   for (std::size_t k = 0; k < constants.size(); ++k) {
     if (wanted[k]) parameters.push_back(plain_effect(constants[k].channel, recordings, robot));
   }
-  for (EffectPattern& one : reference_alignment(recordings, robot, references_of(options.problem),
-                                                options.sessions, prior)) {
+  for (EffectPattern& one :
+       reference_alignment(recordings, robot, options.problem, options.sessions, prior)) {
     parameters.push_back(std::move(one));
   }
   return parameters;
@@ -222,7 +218,7 @@ WheelCalibration calibrated_from(std::vector<double> g, const std::vector<Record
       g = refined(g, wanted, model.robot, last.adjustment.coefficients);
       result.model = with_constants(result.model, g);
       const Eigen::VectorXd& all = last.adjustment.coefficients;
-      references = alignment_of(recordings, references_of(options.problem), options.sessions,
+      references = alignment_of(recordings, options.problem, options.sessions,
                                 all.tail(all.size() - geometry));
       const Eigen::VectorXd steps = last.adjustment.coefficients.head(geometry);
       if (geometry == 0 || steps.cwiseAbs().maxCoeff() < kSettled) break;

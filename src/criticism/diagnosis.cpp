@@ -43,8 +43,7 @@ class Diagnostician {
         options_(options),
         legs_(known.legs && known.of == fit.state
                   ? known.legs
-                  : std::make_shared<const HeldOutLegs>(recordings, state_,
-                                                        fitter_options(fit.options), options.legs)),
+                  : std::make_shared<const HeldOutLegs>(recordings, fit, options.legs)),
         tests_(state_),
         search_(state_, tests_, {options.level, options.most_missing}, legs_.get()) {}
 

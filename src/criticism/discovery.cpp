@@ -91,8 +91,7 @@ std::vector<LookAlike> rivals_of(const std::vector<Trial>& trials, std::size_t t
 double arrival_of(Trial& trial, const std::vector<Recording>& recordings, const LegOptions& legs) {
   if (!trial.held_out) {
     try {
-      trial.legs = std::make_shared<const HeldOutLegs>(recordings, *trial.fit.state,
-                                                       fitter_options(trial.fit.options), legs);
+      trial.legs = std::make_shared<const HeldOutLegs>(recordings, trial.fit, legs);
       trial.held_out = trial.legs->metrics();
     } catch (const SolveError&) {  // what is left without those legs does not tell the effect
       trial.held_out = HeldOut{};

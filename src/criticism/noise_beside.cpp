@@ -67,10 +67,8 @@ std::vector<Effect> suspects(const FitState& fit) {
 ModelFit with_suspects(const std::vector<Recording>& recordings, const ModelFit& fit) {
   std::vector<Effect> found = suspects(*fit.state);
   for (; !found.empty(); found.pop_back()) {
-    try {
-      return refit_with(recordings, fit, found);
-    } catch (const SolveError&) {
-      continue;
+    if (std::optional<ModelFit> with = if_fitted_with(recordings, fit, found)) {
+      return *std::move(with);
     }
   }
   return fit;

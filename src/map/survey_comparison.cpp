@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "trussmap/survey_comparison.hpp"
 
+#include "map/common_landmarks.hpp"
 #include "statistics/median.hpp"
 
 #include <algorithm>
@@ -10,22 +11,11 @@
 #include <random>
 
 namespace trussmap {
-namespace {
 
-constexpr double kMedians = 10.0;
-constexpr std::size_t kMostPairs = 5000;
-constexpr double kRms = 10.0;
-constexpr std::size_t kFewest = 3;
-
-struct Common {
-  std::vector<std::string> names;
-  std::vector<Vector2> in_map;
-  std::vector<Vector2> surveyed;
-};
-
-Common common_landmarks(const LandmarkPositions& map, const std::vector<SurveyPoint>& survey,
-                        const std::vector<std::string>& leave_out) {
-  Common common;
+CommonLandmarks common_landmarks(const LandmarkPositions& map,
+                                 const std::vector<SurveyPoint>& survey,
+                                 const std::vector<std::string>& leave_out) {
+  CommonLandmarks common;
   for (const SurveyPoint& point : survey) {
     const auto found = map.find(point.landmark);
     if (found == map.end()) continue;
@@ -37,7 +27,14 @@ Common common_landmarks(const LandmarkPositions& map, const std::vector<SurveyPo
   return common;
 }
 
-std::vector<double> distances(const Common& common, const Alignment& alignment) {
+namespace {
+
+constexpr double kMedians = 10.0;
+constexpr std::size_t kMostPairs = 5000;
+constexpr double kRms = 10.0;
+constexpr std::size_t kFewest = 3;
+
+std::vector<double> distances(const CommonLandmarks& common, const Alignment& alignment) {
   std::vector<double> result;
   result.reserve(common.names.size());
   for (std::size_t k = 0; k < common.names.size(); ++k) {
@@ -48,7 +45,7 @@ std::vector<double> distances(const Common& common, const Alignment& alignment) 
 
 /// The pair's alignment whose median distance is least (Rousseeuw, "Least median of squares
 /// regression", 1984): of all pairs, or of some drawn at random where they are many.
-Alignment robust_alignment(const Common& common) {
+Alignment robust_alignment(const CommonLandmarks& common) {
   const std::size_t count = common.names.size();
   Alignment best;
   double least = std::numeric_limits<double>::infinity();
@@ -76,8 +73,8 @@ Alignment robust_alignment(const Common& common) {
   return best;
 }
 
-Common subset(const Common& common, const std::vector<bool>& keep) {
-  Common result;
+CommonLandmarks subset(const CommonLandmarks& common, const std::vector<bool>& keep) {
+  CommonLandmarks result;
   for (std::size_t k = 0; k < common.names.size(); ++k) {
     if (!keep[k]) continue;
     result.names.push_back(common.names[k]);
@@ -88,7 +85,7 @@ Common subset(const Common& common, const std::vector<bool>& keep) {
 }
 
 /// Which landmarks agree with the survey.
-std::vector<bool> agreeing(const Common& common) {
+std::vector<bool> agreeing(const CommonLandmarks& common) {
   const std::size_t count = common.names.size();
   std::vector<bool> all(count, true);
   std::vector<bool> keep = all;
@@ -107,7 +104,7 @@ std::vector<bool> agreeing(const Common& common) {
     for (std::size_t k = 0; k < count; ++k) keep[k] = off[k] <= limit;
     const auto left_out = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), false));
     if (3 * left_out > count || count - left_out < kFewest) return all;
-    const Common inner = subset(common, keep);
+    const CommonLandmarks inner = subset(common, keep);
     alignment = align_rigidly(inner.in_map, inner.surveyed);
   }
   return keep;
@@ -126,11 +123,11 @@ LandmarkPositions positions_of(const LandmarkGraph& map) {
 SurveyComparison compare_with_survey(const LandmarkPositions& map,
                                      const std::vector<SurveyPoint>& survey) {
   SurveyComparison result;
-  const Common common = common_landmarks(map, survey, {});
+  const CommonLandmarks common = common_landmarks(map, survey, {});
   result.landmarks = static_cast<int>(common.names.size());
   if (common.names.size() < kFewest) return result;
   const std::vector<bool> keep = agreeing(common);
-  const Common inner = subset(common, keep);
+  const CommonLandmarks inner = subset(common, keep);
   result.landmarks = static_cast<int>(inner.names.size());
   result.rigid = align_rigidly(inner.in_map, inner.surveyed);
   result.similarity = align_by_similarity(inner.in_map, inner.surveyed);
@@ -157,7 +154,7 @@ SurveyComparison compare_with_survey(const LandmarkPositions& map,
 
 double survey_rms(const LandmarkPositions& map, const std::vector<SurveyPoint>& survey,
                   const std::vector<std::string>& leave_out) {
-  const Common common = common_landmarks(map, survey, leave_out);
+  const CommonLandmarks common = common_landmarks(map, survey, leave_out);
   return common.names.size() < 2 ? 0.0 : align_rigidly(common.in_map, common.surveyed).rms;
 }
 

@@ -194,7 +194,7 @@ bool HeldOutLegs::same_layout(const RecordingProblem& problem) const {
 
 HeldOut predict_held_out(const std::vector<Recording>& recordings, const ModelFit& fit,
                          const LegOptions& legs) {
-  return HeldOutLegs(recordings, *fit.state, fitter_options(fit.options), legs).metrics();
+  return HeldOutLegs(recordings, fit, legs).metrics();
 }
 
 }  // namespace trussmap

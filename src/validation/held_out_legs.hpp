@@ -21,6 +21,8 @@ class HeldOutLegs {
   /// leg sees nor a survey knows are passed over. Throws like fit_model.
   HeldOutLegs(const std::vector<Recording>& recordings, const FitState& fit,
               const FitterOptions& options, const LegOptions& legs = {});
+  HeldOutLegs(const std::vector<Recording>& recordings, const ModelFit& fit, const LegOptions& legs)
+      : HeldOutLegs(recordings, *fit.state, fitter_options(fit.options), legs) {}
 
   [[nodiscard]] HeldOut metrics() const { return moved(Eigen::VectorXd()); }
 

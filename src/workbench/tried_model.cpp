@@ -53,7 +53,7 @@ struct TriedModel::Tried {
     fit = judged_fit(run.result, first);
     say(progress, TryingStage::comparing);
     tests.emplace(*fit.state);
-    legs.emplace(*recordings, *fit.state, fitter_options(fit.options), options.legs);
+    legs.emplace(*recordings, fit, options.legs);
     comparison = compare(*recordings, fit, {options.fit, options.legs, options.level}, *tests,
                          {run.result.missing, legs->metrics()});
     sizes = sizes_of(run.result, tests->context());

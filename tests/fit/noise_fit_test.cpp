@@ -47,6 +47,13 @@ const NoiseSource& source_of(const FittedNoise& noise, const std::string& name) 
   throw std::runtime_error("no source " + name);
 }
 
+/// Found within four standard errors: one run in 16 000 is not.
+void expect_found(const FittedNoise& noise, const std::string& name, double sd, double most_error) {
+  const NoiseSource& source = source_of(noise, name);
+  EXPECT_NEAR(source.sd, sd, 4.0 * source.sd_error) << name;
+  EXPECT_LT(source.sd_error, most_error) << name;
+}
+
 bool lasts(const FittedNoise& noise) {
   return std::any_of(noise.sources.begin(), noise.sources.end(),
                      [](const NoiseSource& one) { return one.lasts; });
@@ -66,17 +73,12 @@ TEST(FitNoise, LeavesWhiteNoiseAsItIsStated) {
   EXPECT_LE(named, 2);
 }
 
-// Four standard errors: one run in 16 000 per size.
 TEST(FitNoise, FindsWhiteNoiseTwiceAsLarge) {
   const FittedNoise noise = noise_of(rough_recording("half", 3));
   ASSERT_TRUE(noise.changed());
-  const NoiseSource& wheels = source_of(noise, "wheels");
-  EXPECT_NEAR(wheels.sd, 0.006, 4.0 * wheels.sd_error);
-  EXPECT_LT(wheels.sd_error, 0.001);
-  const NoiseSource& compass = source_of(noise, "compass");
-  EXPECT_NEAR(compass.sd, 0.04, 4.0 * compass.sd_error);
-  EXPECT_LT(compass.sd_error, 0.002);
-  EXPECT_EQ(noise.noise.compass, compass.sd);
+  expect_found(noise, "wheels", 0.006, 0.001);
+  expect_found(noise, "compass", 0.04, 0.002);
+  EXPECT_EQ(noise.noise.compass, source_of(noise, "compass").sd);
   EXPECT_FALSE(lasts(noise));
 }
 
@@ -95,9 +97,7 @@ TEST(FitNoise, FindsCompassErrorsThatLast) {
 
 TEST(FitNoise, FindsTravelErrorsOfLegs) {
   const FittedNoise noise = noise_of(rough_recording("floor", 5));
-  const NoiseSource& travel = source_of(noise, "travel, per leg");
-  EXPECT_NEAR(travel.sd, 0.004, 4.0 * travel.sd_error);
-  EXPECT_LT(travel.sd_error, 0.001);
+  expect_found(noise, "travel, per leg", 0.004, 0.001);
 }
 
 // Truth with errors ten and six times as large as stated, independent from row to row: no noise of
@@ -116,12 +116,8 @@ TEST(FitNoise, FindsTheTruthsOwnNoise) {
                                    pose.heading + 0.03 * normal(random)});
   }
   const FittedNoise noise = noise_of(one);
-  const NoiseSource& place = source_of(noise, "truth");
-  EXPECT_NEAR(place.sd, 0.02, 4.0 * place.sd_error);
-  EXPECT_LT(place.sd_error, 0.002);
-  const NoiseSource& heading = source_of(noise, "truth_heading");
-  EXPECT_NEAR(heading.sd, 0.03, 4.0 * heading.sd_error);
-  EXPECT_LT(heading.sd_error, 0.003);
+  expect_found(noise, "truth", 0.02, 0.002);
+  expect_found(noise, "truth_heading", 0.03, 0.003);
   const NoiseSource& wheels = source_of(noise, "wheels");
   EXPECT_NEAR(wheels.sd, 0.003, 4.0 * wheels.sd_error);
 }
